@@ -13,6 +13,7 @@
 //@ include lib/moved.glsl
 //@ include lib/pages.glsl
 //@ include lib/shown.glsl
+//@ include lib/srgb.glsl
 //@ include lib/tangent.glsl
 
 uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
@@ -44,6 +45,19 @@ vec2 slope_at(in vec2 post, in int level) {
     PagePlace at = page_place(post, level);
     return filtered(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer))).rg;
 }
+
+#ifdef DRAPED
+/// Replaces the reflectance of the ground by an overlay's colours, premultiplied sRGB.
+void lay_lit(inout Surface s, in vec4 laid) {
+    vec3 reflectance = srgb_decoded(min(laid.rgb / max(laid.a, 1e-3), 1.0));
+    s.diffuse = mix(s.diffuse, reflectance, laid.a);
+    s.ambient = mix(s.ambient, reflectance, laid.a);
+    s.specular *= 1.0 - laid.a;
+    s.emissive *= 1.0 - laid.a;
+    // The image has its own texture: bumps of materials would be drawn over it.
+    s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
+}
+#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -117,6 +131,10 @@ void main() {
     hook_albedo(s);
     hook_normal(s);
     hook_material(s);
+#ifdef DRAPED
+    vec4 laid = draped(uintBitsToFloat(what.xy), across);
+    if (frame.drape.w > 0.0) lay_lit(s, laid);
+#endif
 
     vec3 to_sun;
     vec3 irradiance = sun_light(s.up, to_sun);
@@ -139,8 +157,7 @@ void main() {
     vec4 over = vec4(0.0);
     hook_display(s, over);
 #ifdef DRAPED
-    over += (1.0 - over.a) * draped(uintBitsToFloat(what.xy), length(frame.pixel_ray_dx.xyz) * depth *
-                                                                  frame.normal_texels_per_m);
+    over += (1.0 - over.a) * (1.0 - frame.drape.w) * laid;
 #endif
     // What is stored may be clamped to a number.
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);

@@ -10,8 +10,8 @@ namespace relevo::cli {
 
 void OverlayArguments::add_to(CLI::App& verb) {
     verb.add_option("--overlay", file,
-                    "Raster to show on the ground in true colours, with a legend: from relevo sun, "
-                    "or any that GDAL reads")
+                    "Raster to show on the ground: figures with a legend, from relevo sun or any "
+                    "raster that GDAL reads; an image of red, green and blue in its own colours")
         ->group("Overlay");
     verb.add_option(
             "--overlay-colours", colours,
@@ -27,7 +27,7 @@ void OverlayArguments::add_to(CLI::App& verb) {
 void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
     if (!file.empty()) scene.overlay = scene::Overlay{.file = file};
     if ((more || !colours.empty() || !range.empty()) && !scene.overlay)
-        bad_usage("--overlay: missing; its colours, range, band, opacity and title need it");
+        bad_usage("--overlay: missing; its colours, range, band, opacity, light and title need it");
     if (!colours.empty()) scene.overlay->colours = colours;
     if (range.empty()) return;
     const std::vector<std::string> ends = split(range, ',');

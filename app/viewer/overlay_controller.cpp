@@ -179,8 +179,8 @@ Coloured OverlayController::coloured(const Picture& image) const {
     Coloured all{image.legends, std::nullopt};
     if (!is_displayed()) return all;
     const session::Overlay& overlay = state_.overlay->overlay;
-    all.legends.insert(all.legends.begin(),
-                       session::dated_legend(overlay, /*zone=*/"", state_.centre));
+    if (const auto legend = session::dated_legend(overlay, /*zone=*/"", state_.centre))
+        all.legends.insert(all.legends.begin(), *legend);
     all.overlay_time = overlay.time;
     return all;
 }

@@ -55,6 +55,15 @@ void opacity(State& state) {
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
 }
 
+/// Of the scene's overlay alone: figures of the sun have a legend, whose colours light would
+/// change.
+void light(State& state) {
+    bool lit = state.document.scene.overlay->lit;
+    if (!ImGui::Checkbox("lit by the sun", &lit)) return;
+    state.document.scene.overlay->lit = lit;
+    state.step = true;
+}
+
 /// Resolution of the overlay, and progress.
 void work(const State& state) {
     const ImVec2 size{-1, ImGui::GetTextLineHeight()};
@@ -95,7 +104,7 @@ void overlay_panel(State& state) {
         return;
     }
     opacity(state);
-    if (kind == OverlayKind::File) return;
+    if (kind == OverlayKind::File) return light(state);
     work(state);
     save(state);
 }

@@ -172,11 +172,9 @@ struct SceneThread::Impl {
     }
 
     std::shared_ptr<const Opened> as_opened() const {
-        std::optional<chart::Legend> legend;
-        if (session->scene().overlay) legend = session->legends().front();
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
                                                session->outline(), session->heights_to_aim_at(),
-                                               session->moment(), std::move(legend)});
+                                               session->moment(), session->overlay_legend()});
     }
 
     /// Reads the complete DEM in the background, after the first frame of a preview.

@@ -143,7 +143,8 @@ bool same_figures(const OverlayWanted& a, const OverlayWanted& b) {
     if (a.dem != b.dem || a.file.has_value() != b.file.has_value()) return false;
     if (a.file)
         return a.file->file == b.file->file && a.file->band == b.file->band &&
-               a.file->colours == b.file->colours && a.file->range == b.file->range;
+               a.file->colours == b.file->colours && a.file->range == b.file->range &&
+               a.file->lit == b.file->lit;
     return session::same_figures(a.raster, b.raster);
 }
 

@@ -11,6 +11,9 @@
 namespace relevo::render {
 namespace {
 
+/// Along an axis: a page table of 1024 entries.
+constexpr double kMostTexels = 1024 * kNormalNodes;
+
 /// Texels along an axis that are nearest to a node, [first, end).
 struct Span {
     int first, end;
@@ -43,6 +46,28 @@ std::uint32_t mean(const Array2d<std::uint32_t>& rgba, const Span& columns, cons
     return texel;
 }
 
+std::uint32_t times_opacity(std::uint32_t texel, double opacity) {
+    std::uint32_t result = 0;
+    for (unsigned k = 0; k < 4; ++k)
+        result |= static_cast<std::uint32_t>(std::lround(opacity * (texel >> 8 * k & 255)))
+                  << 8 * k;
+    return result;
+}
+
+std::vector<std::uint32_t> photo_page(const Drape& drape, const DrapeTexels& texels, int level,
+                                      glm::ivec2 page) {
+    const glm::dvec2 step = double(1 << level) / texels.per_post;
+    const Array2d<std::uint32_t> rgba = drape.photo->read(
+        {.first_post = texels.first_post + glm::dvec2(page * kNormalNodes - 1) * step,
+         .step = step,
+         .count = glm::ivec2(kNormalPage_px)});
+    std::vector<std::uint32_t> result(rgba.begin(), rgba.end());
+    if (drape.opacity < 1)
+        for (std::uint32_t& texel : result)
+            texel = times_opacity(texel, drape.opacity);
+    return result;
+}
+
 }  // namespace
 
 std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
@@ -53,8 +78,24 @@ std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
            byte(alpha) << 24;
 }
 
+DrapeTexels drape_texels(const Drape& drape, const dem::Pyramid& pyramid) {
+    DrapeTexels texels;
+    texels.count = pyramid.size(0);
+    if (drape.photo) {
+        texels.first_post = drape.photo->first_post();
+        texels.per_post = drape.photo->pixels_per_post();
+        const glm::dvec2 side = drape.photo->last_post() - texels.first_post;
+        texels.count = glm::ivec2(glm::min(glm::ceil(side * texels.per_post), kMostTexels)) + 1;
+    }
+    const int side = std::max(texels.count.x, texels.count.y) - 1;
+    while (kNormalNodes << (texels.levels - 1) < side)
+        ++texels.levels;
+    return texels;
+}
+
 std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
                                       glm::ivec2 page) {
+    if (drape.photo) return photo_page(drape, drape_texels(drape, pyramid), level, page);
     const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
     std::vector<Span> columns, rows;
     for (int i = 0; i < kNormalPage_px; ++i) {

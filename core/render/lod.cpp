@@ -145,28 +145,62 @@ const PatchNet& TileTree::net(const TileKey& key) {
 Box TileTree::box(const TileKey& key, double exaggeration) {
     Node& n = node(key);
     if (n.exaggeration == exaggeration) return n.box;
+    n.box = box_of(key, {0, 0}, {1, 1}, exaggeration);
+    n.exaggeration = exaggeration;
+    return n.box;
+}
+
+/// @param from, to  parts of the tile's sides, 0 to 1
+Box TileTree::box_of(const TileKey& key, const glm::dvec2& from, const glm::dvec2& to,
+                     double exaggeration) {
+    const PatchNet& net = node(key).net;
     const dem::Pyramid::Bounds bounds = pyramid_->bounds(key.level, key.at);
     const auto [low_m, high_m] = displacement_.range_m(bounds.lowest_m, bounds.highest_m);
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
-    for (const double u : {0.0, 0.5, 1.0}) {
-        for (const double v : {0.0, 0.5, 1.0}) {
+    for (const double u : {from.x, 0.5 * (from.x + to.x), to.x}) {
+        for (const double v : {from.y, 0.5 * (from.y + to.y), to.y}) {
             for (const double h : {low_m, high_m}) {
-                const glm::dvec3 p = n.net.place(u, v, h * exaggeration);
+                const glm::dvec3 p = net.place(u, v, h * exaggeration);
                 box.low = glm::min(box.low, p);
                 box.high = glm::max(box.high, p);
             }
         }
     }
     // Between those points the proxy grid deviates by up to 1/16 of its second differences.
-    const auto& p = n.net.position_m;
+    const auto& p = net.position_m;
     const double bulge =
         (length(p[2]) + length(p[6]) + length(p[5]) + length(p[7]) + length(p[8])) / 16;
     const double margin = bulge + 0.01 + displacement_.aside_m;
     box.low -= margin;
     box.high += margin;
-    n.box = box;
-    n.exaggeration = exaggeration;
     return box;
+}
+
+std::optional<Box> TileTree::box(const glm::dvec2& first, const glm::dvec2& last,
+                                 double exaggeration) {
+    const double side = std::max(last.x - first.x, last.y - first.y);
+    int level = 0;
+    while (level + 1 < pyramid_->levels() && (kTileQuads << level) < side)
+        ++level;
+    const double tile = kTileQuads << level;
+    const glm::ivec2 most = pyramid_->tiles(level) - 1;
+    const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(first / tile)), glm::ivec2(0), most),
+                     high = glm::clamp(glm::ivec2(glm::floor(last / tile)), low, most);
+    std::optional<Box> all;
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            const TileKey key{level, {x, y}};
+            if (pyramid_->bounds(level, key.at).empty()) continue;
+            const glm::dvec2 span(
+                span_on_dem(*pyramid_, key.at * (kTileQuads << level), kTileQuads << level));
+            const auto share = [&](const glm::dvec2& post) {
+                return glm::clamp((post - glm::dvec2(key.at) * tile) / glm::max(span, 1.0), 0.0,
+                                  1.0);
+            };
+            const Box part = box_of(key, share(first), share(last), exaggeration);
+            all = all ? Box{glm::min(all->low, part.low), glm::max(all->high, part.high)} : part;
+        }
+    return all;
 }
 
 bool TileTree::below_horizon(const Box& box, const LodView& view) const {

@@ -98,6 +98,13 @@ class TileTree {
     /// Bounding box of a tile's posts, displaced and undisplaced.
     Box box(const TileKey& key, double exaggeration);
 
+    /// Bounding box of a rectangle of posts, from first to last, as box(). nullopt if it has no
+    /// ground.
+    std::optional<Box> box(const glm::dvec2& first, const glm::dvec2& last, double exaggeration);
+
+    /// True if a view shows nothing of a box.
+    bool hidden(const Box& box, const LodView& view) const;
+
     /// Ranges that meet a view's tolerance and let adjacent levels morph without cracks.
     LodRanges ranges(const LodView& view);
 
@@ -154,7 +161,8 @@ class TileTree {
     void measure_relief();
     std::vector<TileDraw> select_orthographic(const LodView& view);
     std::vector<TileDraw> select_from_eye(const LodView& view, const Resident* resident);
-    bool hidden(const Box& box, const LodView& view) const;
+    Box box_of(const TileKey& key, const glm::dvec2& from, const glm::dvec2& to,
+               double exaggeration);
     bool below_horizon(const Box& box, const LodView& view) const;
 
     const dem::Pyramid* pyramid_;

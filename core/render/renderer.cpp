@@ -272,8 +272,7 @@ struct Renderer::Impl : FrameServices {
     void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) const {
         if (reads("surface_pages")) terrain.keep_surface();
         if (reads("water_pages")) terrain.keep_water();
-        block.normal_levels = static_cast<float>(terrain.normal_levels());
-        block.normal_texels_per_m = static_cast<float>(1 / terrain.normal_spacing_m());
+        terrain.write(block);
         if (reads(kClimateTexture)) terrain.keep_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -26,9 +25,6 @@ constexpr int kMaxNormalPages = 384;   // 102 MB
 
 /// Factor of the tolerance between attempts.
 constexpr double kCoarser = 1.2;
-
-/// Marks missing pages in the page table.
-constexpr std::uint16_t kNoLayer = 0xffff;
 
 std::uint64_t next_serial() {
     static std::atomic<std::uint64_t> last{0};
@@ -95,11 +91,9 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
     normal_layers_ = std::min({normal_count, kMaxNormalPages, most});
-    const auto across = static_cast<int>(std::bit_ceil(static_cast<unsigned>(
-        std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)))));
     page_table_ =
-        gl::Texture(gl::TextureKind::D2, gl::Format::RG16UI, {across, across, 1}, 0, "page table");
-    page_table_.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        PageTable(std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)),
+                  "page table");
 }
 
 void Terrain::displace(const Displacement& displacement) {
@@ -130,11 +124,6 @@ void Terrain::clear_surface() {
                           [this](const TileKey& key) {
                               return bytes_of(surface_page(pyramid_, key.level, key.at));
                           }});
-    if (drape_)
-        layers.push_back({"drape_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
-                          [this, drape = drape_](const TileKey& key) {
-                              return bytes_of(drape_page(*drape, pyramid_, key.level, key.at));
-                          }});
     if (keeps_water_)
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
                           [this](const TileKey& key) {
@@ -146,7 +135,16 @@ void Terrain::clear_surface() {
 void Terrain::drape(std::shared_ptr<const Drape> drape) {
     if (drape == drape_) return;
     drape_ = std::move(drape);
-    surface_ = PageCache();  // recreated for the next frame with all its layers
+    drape_pages_.reset();
+    if (drape_)
+        drape_pages_.emplace(drape_, pyramid_, normal_spacing_m_,
+                             std::min(kMaxNormalPages, options_.max_array_layers));
+}
+
+void Terrain::write(FrameBlock& block) const {
+    block.normal_levels = static_cast<float>(normal_levels_);
+    block.normal_texels_per_m = static_cast<float>(1 / normal_spacing_m_);
+    if (drape_pages_) drape_pages_->write(block);
 }
 
 void Terrain::keep_water() {
@@ -180,9 +178,11 @@ const ClimateVolume& Terrain::keep_climate(int day) {
 
 const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == kClimateTexture) return climate_ ? &climate_->texture() : nullptr;
-    if (name == "page_table") return &page_table_;
+    if (name == "page_table") return &page_table_.texture();
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     if (const gl::Texture* const light = light_.texture(name)) return light;
+    if (const gl::Texture* const drape = drape_pages_ ? drape_pages_->texture(name) : nullptr)
+        return drape;
     return surface_.find(name);
 }
 
@@ -277,8 +277,10 @@ TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_p
     TileSelection selection =
         loading == Loading::Background ? select_in_background(view) : select(view);
     if (!surface_.find("normal_pages")) clear_surface();
-    prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading,
-                    deterministic);
+    const LodView pixels = LodView::of_camera(camera, width_px, height_px, 1, exaggeration);
+    prepare_surface(pixels, loading, deterministic);
+    if (drape_pages_)
+        complete_ = drape_pages_->prepare(tree_, pixels, loading, deterministic) && complete_;
     return selection;
 }
 
@@ -340,40 +342,8 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool determi
         came = surface_.require(pages);
     }
     if (came || deterministic || table_is_narrowed_)
-        write_page_table(deterministic ? &pages : nullptr);
+        page_table_.write(surface_, deterministic ? &pages : nullptr);
     table_is_narrowed_ = deterministic;
-}
-
-void Terrain::write_page_table(const std::vector<TileKey>* only) {
-    std::unordered_set<std::uint64_t> read;
-    if (only)
-        for (const TileKey& key : *only)
-            read.insert(key.packed());
-    std::vector<std::uint16_t> coarser;
-    int coarser_side = 0;
-    for (int level = page_table_.levels() - 1; level >= 0; --level) {
-        const int side = std::max(1, page_table_.extent().width >> level);
-        std::vector<std::uint16_t> entries(std::size_t{2} * static_cast<std::size_t>(side * side),
-                                           kNoLayer);
-        for (int y = 0; y < side; ++y) {
-            for (int x = 0; x < side; ++x) {
-                std::uint16_t* const entry = &entries[static_cast<std::size_t>(2 * (y * side + x))];
-                const TileKey key{level, {x, y}};
-                const int layer = only && !read.contains(key.packed()) ? -1 : surface_.slot(key);
-                if (layer >= 0) {
-                    entry[0] = static_cast<std::uint16_t>(layer);
-                    entry[1] = static_cast<std::uint16_t>(level);
-                } else if (coarser_side > 0) {
-                    std::copy_n(
-                        &coarser[static_cast<std::size_t>(2 * ((y / 2) * coarser_side + x / 2))], 2,
-                        entry);
-                }
-            }
-        }
-        page_table_.write(level, {0, 0, 0}, {side, side, 1}, std::as_bytes(std::span(entries)));
-        coarser = std::move(entries);
-        coarser_side = side;
-    }
 }
 
 TileMesh::Instance Terrain::instance_of(const TileSelection::Tile& tile,

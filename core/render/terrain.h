@@ -18,11 +18,13 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/climate_volume.h"
-#include "render/drape.h"
+#include "render/drape_pages.h"
+#include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
+#include "render/page_table.h"
 #include "render/sides.h"
 #include "render/tile_mesh.h"
 #include "render/water_field.h"
@@ -101,7 +103,10 @@ class Terrain {
     /// True if the last frame had all its pages, as always with Loading::Wait.
     bool is_complete() const { return complete_; }
     /// True if pages are being made in the background.
-    bool is_making_pages() const { return heights_.is_making() || surface_.is_making(); }
+    bool is_making_pages() const {
+        return heights_.is_making() || surface_.is_making() ||
+               (drape_pages_ && drape_pages_->is_making());
+    }
 
     /// Draws with the bound program, framebuffer and textures. The program gets positions relative
     /// to `origin_m`. A selection is valid until the next one is made, unless that keeps it.
@@ -149,8 +154,9 @@ class Terrain {
     /// True if triangles are counter-clockwise as seen from above. False on grids with reversed
     /// rows.
     bool winds_counterclockwise();
-    int normal_levels() const { return normal_levels_; }           ///< of normal pages
-    double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
+    double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest normal pages
+    /// Writes the page layers' part of the block.
+    void write(FrameBlock& block) const;
 
   private:
     TileSelection select_in_background(const LodView& view);
@@ -161,8 +167,6 @@ class Terrain {
     double tolerance_in_budget(const LodView& wanted);
     void prepare_surface(const LodView& view, Loading loading, bool deterministic);
     void clear_surface();
-    /// @param only  pages to list; null: all resident ones
-    void write_page_table(const std::vector<TileKey>* only);
     std::vector<std::byte> make_normals(const TileKey& key) const;
     TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
     std::vector<TileMesh::Tile> tiles_of(const TileSelection& selection,
@@ -192,12 +196,13 @@ class Terrain {
     std::optional<WaterField> water_;
     bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
     bool complete_ = true;
-    gl::Texture page_table_;
+    PageTable page_table_;
     TileMesh mesh_;
     Sides sides_;
     // Last members: their threads read the members above.
     PageCache heights_;  // by tile
     PageCache surface_;  // normals and other data by place
+    std::optional<DrapePages> drape_pages_;
 };
 
 }  // namespace relevo::render

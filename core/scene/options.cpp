@@ -24,6 +24,7 @@ using Kind = Option::Kind;
 constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
 constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
 constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
+constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 Value number(double value) {
@@ -103,6 +104,11 @@ constexpr Option kOptions[] = {
      "Opacity of the overlay, 0 to 1", Kind::Number, 0, 1, {},
      [](const Scene& s) { return number(overlay_of(s).opacity); },
      [](Scene& s, const Value& v) { s.overlay->opacity = v.number; }},
+    {"overlay", "light", "--overlay-light", "Overlay",
+     "Light of the overlay: flat (its own colours), lit (shaded by the scene's sun)", Kind::Word, 0,
+     0, kLights,
+     [](const Scene& s) { return text(kLights[overlay_of(s).lit ? 1 : 0]); },
+     [](Scene& s, const Value& v) { s.overlay->lit = v.text == "lit"; }},
     {"overlay", "title", "--overlay-title", "Overlay",
      "Title of the legend; default: the band's name", Kind::Text, 0, 0, {},
      [](const Scene& s) { return text(overlay_of(s).title); },

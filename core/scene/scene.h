@@ -29,14 +29,15 @@ struct Effects {
     std::vector<std::string> plugin_path;  ///< folders of further plugins
 };
 
-/// A raster that lies on the ground in true colours.
+/// A raster that lies on the ground: figures in colours of a ramp, or an image in its own.
 struct Overlay {
     std::string file;     ///< a name that GDAL opens
-    int band = 1;         ///< from 1
+    int band = 1;         ///< from 1; of an image: 1 draws the image, others their band
     std::string colours;  ///< a ramp's name or a colour file; empty: by what the band says it is
     std::optional<std::pair<double, double>> range;  ///< of a ramp's ends; none: the raster's
     double opacity = 1;                              ///< 0 to 1
-    std::string title;                               ///< of the legend; empty: the band's name
+    bool lit = false;   ///< shaded by the scene's sun; else drawn in its own colours
+    std::string title;  ///< of the legend; empty: the band's name
 };
 
 /// Whether Overlay::colours are a colour file, whose path has a slash or a dot, and not a ramp that

@@ -8,10 +8,14 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/band_over.h"
 #include "dem/files_of.h"
+#include "dem/photo.h"
 
 namespace relevo::session {
 namespace {
@@ -65,10 +69,35 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool
                                                 : chart::named_ramp(asked.colours, from, to);
 }
 
+/// Whether the scene's overlay is drawn in its own colours.
+bool is_photo(const scene::Overlay& asked) {
+    if (!asked.colours.empty() || asked.range || asked.band != 1) return false;
+    const dem::PhotoKind kind = dem::photo_kind(asked.file);
+    if (kind == dem::PhotoKind::None) return false;
+    // Bands of sunlight are bytes, and GDAL calls three of them red, green and blue.
+    if (time_of(asked)) return false;
+    if (kind == dem::PhotoKind::Deep)
+        bad_input(
+            fmt::format("{}: red, green and blue of more than 8 bits, expected 8; convert the "
+                        "overlay with gdal_translate -ot Byte -scale, or name colours for one "
+                        "band with --overlay-colours",
+                        asked.file));
+    return true;
+}
+
+Overlay photo_of(const scene::Overlay& asked, const dem::Grid& grid) {
+    auto drape = std::make_shared<render::Drape>();
+    drape->photo = dem::Photo::open(asked.file, grid);
+    drape->opacity = asked.opacity;
+    drape->lit = asked.lit;
+    return {.drape = std::move(drape), .has_given_title = !asked.title.empty()};
+}
+
 }  // namespace
 
-Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity) {
+Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity, bool lit) {
     auto drape = std::make_shared<render::Drape>();
+    drape->lit = lit;
     drape->rgba = Array2d<std::uint32_t>(values.width(), values.height());
     parallel_for(0, values.height(), 16, [&](int first, int end) {
         for (int row = first; row < end; ++row)
@@ -99,6 +128,7 @@ std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
 }
 
 Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
+    if (is_photo(asked)) return photo_of(asked, grid);
     const dem::BandOver band = dem::read_band_over(grid, asked.file, asked.band);
     const std::optional<OverlayTime> time = overlay_time(band.about);
     const bool mask = time && time->sun && is_mask(band);
@@ -116,18 +146,18 @@ Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
         };
         legend.classes = {{"in the sun", color(1)}, {"in the shade", color(0)}};
     }
-    Overlay overlay = overlay_of(band.values, std::move(legend), asked.opacity);
+    Overlay overlay = overlay_of(band.values, std::move(legend), asked.opacity, asked.lit);
     overlay.time = time;
     overlay.has_given_title = !asked.title.empty();
     return overlay;
 }
 
-chart::Legend dated_legend(const Overlay& overlay, const std::string& zone,
-                           const geo::Geodetic& middle) {
-    chart::Legend legend = overlay.legend;
-    if (!overlay.time || overlay.has_given_title) return legend;
+std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::string& zone,
+                                          const geo::Geodetic& middle) {
+    std::optional<chart::Legend> legend = overlay.legend;
+    if (!legend || !overlay.time || overlay.has_given_title) return legend;
     if (const std::string when = clock_text(*overlay.time, zone, middle); !when.empty())
-        legend.title += ", " + when;
+        legend->title += ", " + when;
     return legend;
 }
 

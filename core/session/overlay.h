@@ -17,19 +17,22 @@ namespace relevo::session {
 
 struct Overlay {
     std::shared_ptr<const render::Drape> drape;
-    chart::Legend legend;
-    std::optional<OverlayTime> time{};  ///< set if it shows sunlight
+    std::optional<chart::Legend> legend;  ///< nullopt: colours without a meaning, as of a photo
+    std::optional<OverlayTime> time{};    ///< set if it shows sunlight
     bool has_given_title = false;
 };
 
-/// The legend. For a sun overlay its title includes the time, unless the title was given.
+/// The legend, if there is one. For a sun overlay its title includes the time, unless the title was
+/// given.
 /// @param zone, middle  as clock_text()
-chart::Legend dated_legend(const Overlay& overlay, const std::string& zone,
-                           const geo::Geodetic& middle);
+std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::string& zone,
+                                          const geo::Geodetic& middle);
 
 /// @param values   on the DEM's grid, as dem::BandOver
 /// @param opacity  0 to 1, multiplies that of the colours
-Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity);
+/// @param lit      as render::Drape::lit
+Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity,
+                   bool lit = false);
 
 /// Default ramp: from 0 for hours, 0 to 1 for fractions, else from the lowest to the highest value.
 /// @param name, unit  of the band, as written by Relevo or other GDAL programs
@@ -40,9 +43,12 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
 /// @throws Error (BadInput) as dem::band_metadata()
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay);
 
-/// Reads a scene's overlay, resampled to the DEM's posts.
+/// Reads a scene's overlay: an image of 8 bits as a photo in its own colours, unless the scene has
+/// colours or a range for it, or a band other than the first. Else a band, resampled to the DEM's
+/// posts.
 /// @param grid  of the DEM's posts
-/// @throws Error (BadInput) as dem::read_band_over(), chart::named_ramp() and read_ramp()
+/// @throws Error (BadInput) as dem::Photo::open(), dem::read_band_over(), chart::named_ramp() and
+///     read_ramp(), and for colours of more than 8 bits
 Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
 
 /// Adds the files of an overlay to the inputs of a run.

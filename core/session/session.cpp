@@ -101,10 +101,14 @@ std::vector<chart::Legend> Session::colour_legends() const {
 
 std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
-    if (impl_->overlay)
-        all.insert(all.begin(),
-                   dated_legend(*impl_->overlay, scene().moment.zone, ground().frame.origin()));
+    if (const std::optional<chart::Legend> legend = overlay_legend())
+        all.insert(all.begin(), *legend);
     return all;
+}
+
+std::optional<chart::Legend> Session::overlay_legend() const {
+    if (!impl_->overlay) return std::nullopt;
+    return dated_legend(*impl_->overlay, scene().moment.zone, ground().frame.origin());
 }
 
 const std::vector<std::string>& Session::compared() const {

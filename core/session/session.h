@@ -131,6 +131,8 @@ class Session {
     void drape(std::shared_ptr<const render::Drape> drape);
     /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
+    /// The legend of the scene's overlay; nullopt without one.
+    std::optional<chart::Legend> overlay_legend() const;
     /// Options::compared.
     const std::vector<std::string>& compared() const;
     /// Time of the scene's overlay; nullopt if it does not show sunlight. Stamps show it instead of

@@ -1,19 +1,27 @@
 //! provides  draped: the colours of a raster that lies on the ground by place
-//! reads     gbuffer, drape pages: premultiplied sRGB, in the layers of the normal pages
+//! reads     gbuffer, drape pages: premultiplied sRGB, a virtual texture of its own (render/drape_pages.h)
 
 //@ include lib/pages.glsl
 
 uniform sampler2DArray drape_pages;
+uniform usampler2D drape_table;  // as page_table
 
-/// Colours at a post, as a level of the pyramid has them.
-vec4 drape_at(in vec2 post, in int level) {
-    PagePlace at = page_place(post, level);
-    return textureLod(drape_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer)), 0.0);
+/// Colours at a texel of the finest level, as a level has them.
+vec4 drape_at(in vec2 texel, in int level) {
+    uvec2 page = texelFetch(drape_table, ivec2(texel) >> (kNormalNodesLog2 + level), level).rg;
+    if (page.r == kNoPage) return vec4(0.0);
+    int shift = kNormalNodesLog2 + int(page.g);
+    vec2 node = (texel - vec2((ivec2(texel) >> shift) << shift)) * exp2(-float(page.g));
+    return textureLod(drape_pages, vec3((node + 1.5) / kNormalPage_px, float(page.r)), 0.0);
 }
 
-/// Premultiplied sRGB at a post, over a pixel of so many posts.
+/// Premultiplied sRGB at a post, over a pixel of so many posts; 0 beside the raster.
 vec4 draped(in vec2 post, in float posts_a_pixel) {
-    float level = clamp(log2(posts_a_pixel), 0.0, frame.normal_levels - 1.0);
-    return mix(drape_at(post, int(level)), drape_at(post, min(int(level) + 1, int(frame.normal_levels) - 1)),
-               fract(level));
+    vec2 per_post = frame.drape_texels.zw;
+    vec2 texel = (post - frame.drape_texels.xy) * per_post;
+    if (any(lessThan(texel, vec2(-0.5))) || any(greaterThan(texel, frame.drape.xy + 0.5))) return vec4(0.0);
+    texel = clamp(texel, vec2(0.0), frame.drape.xy * (1.0 - 1e-6));
+    float last = frame.drape.z - 1.0;
+    float level = clamp(log2(posts_a_pixel * sqrt(per_post.x * per_post.y)), 0.0, last);
+    return mix(drape_at(texel, int(level)), drape_at(texel, int(min(floor(level) + 1.0, last))), fract(level));
 }

@@ -211,9 +211,9 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
         EXPECT_FALSE(std::filesystem::exists(dir_ / "refused.png"));
         return run.err;
     };
-    EXPECT_EQ(
-        said({"--overlay-opacity", "0.5"}),
-        "relevo: error: --overlay: missing; its colours, range, band, opacity and title need it\n");
+    EXPECT_EQ(said({"--overlay-opacity", "0.5"}),
+              "relevo: error: --overlay: missing; its colours, range, band, opacity, light and "
+              "title need it\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-range", "5,5"}),
               "relevo: error: --overlay-range: 5,5: expected LOW,HIGH with LOW below HIGH, such as "
               "0,14\n");

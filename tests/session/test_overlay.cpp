@@ -27,7 +27,7 @@ Overlay heights_as(scene::Overlay asked) {
 }
 
 void expect_from_to(const Overlay& overlay, double from, double to) {
-    const chart::Ramp& ramp = overlay.legend.ramp;
+    const chart::Ramp& ramp = overlay.legend->ramp;
     ASSERT_GE(ramp.stops.size(), 2u);
     EXPECT_NEAR(ramp.stops.front().value, from, 1e-6 * std::abs(to));
     EXPECT_NEAR(ramp.stops.back().value, to, 1e-6 * std::abs(to));
@@ -47,8 +47,8 @@ TEST(Overlay, ARangeIsWhereTheColoursBeginAndEnd) {
     // As the heights do where none is given.
     const Overlay own = heights_as({.colours = "inferno"});
     const Overlay usual = heights_as({});
-    const double low = own.legend.ramp.stops.front().value,
-                 high = own.legend.ramp.stops.back().value;
+    const double low = own.legend->ramp.stops.front().value,
+                 high = own.legend->ramp.stops.back().value;
     EXPECT_GT(low, 200);
     EXPECT_LT(low, 300);
     EXPECT_GT(high, low + 500);
@@ -58,7 +58,7 @@ TEST(Overlay, ARangeIsWhereTheColoursBeginAndEnd) {
 TEST(Overlay, ValuesHaveTheColoursOfTheRange) {
     // Viridis from 400 to 900 m: what is lower is as 400, the middle is its middle colour.
     const Overlay overlay = heights_as({.range = std::pair(400.0, 900.0)});
-    const chart::Ramp& ramp = overlay.legend.ramp;
+    const chart::Ramp& ramp = overlay.legend->ramp;
     EXPECT_EQ(ramp.at(250).rgb, 0x440154u);
     EXPECT_EQ(ramp.at(400).rgb, 0x440154u);
     EXPECT_EQ(ramp.at(650).rgb, 0x21918cu);

@@ -70,8 +70,8 @@ TEST(SunOverlay, HasTheFiguresOfTheCommandLine) {
         const auto shown = end_of(work);
         ASSERT_EQ(shown->error, "");
         EXPECT_TRUE(shown->is_whole());
-        EXPECT_EQ(shown->overlay.legend.title, title);
-        EXPECT_EQ(shown->overlay.legend.unit, unit);
+        EXPECT_EQ(shown->overlay.legend->title, title);
+        EXPECT_EQ(shown->overlay.legend->unit, unit);
         run(fmt::format("sun {} {} -o {} --overwrite", verb, jacksboro(), file.string()));
         const dem::BandOver band = dem::read_band_over(wanted.dem->field.grid, file.string(), 1);
         // Where places are looked up figures are mixed with a millionth of their neighbours'.

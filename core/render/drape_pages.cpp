@@ -1,0 +1,104 @@
+#include "render/drape_pages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <span>
+
+#include <glm/common.hpp>
+
+#include "render/pages.h"
+
+namespace relevo::render {
+namespace {
+
+/// Factor of the angle of a pixel between attempts.
+constexpr double kCoarser = 1.2;
+/// Pixels are measured by depth, which is less than distance in the corners of the frame.
+constexpr double kCorner = 0.7;
+
+glm::ivec2 pages_of(const DrapeTexels& texels, int level) {
+    const int side = kNormalNodes << level;
+    return glm::max((texels.count - 1 + side - 1) / side, glm::ivec2(1));
+}
+
+int pages_of_all_levels(const DrapeTexels& texels) {
+    double sum = 0;
+    for (int level = 0; level < texels.levels; ++level) {
+        const glm::dvec2 count(pages_of(texels, level));
+        sum += count.x * count.y;
+    }
+    return static_cast<int>(std::min(sum, 1e6));
+}
+
+}  // namespace
+
+DrapePages::DrapePages(std::shared_ptr<const Drape> drape, const dem::Pyramid& pyramid,
+                       double spacing_m, int slots)
+    : drape_(std::move(drape)), pyramid_(pyramid), texels_(drape_texels(*drape_, pyramid)) {
+    texel_m_ = spacing_m / std::sqrt(texels_.per_post.x * texels_.per_post.y);
+    const glm::ivec2 finest = pages_of(texels_, 0);
+    table_ = PageTable(std::max(finest.x, finest.y), "overlay table");
+    const auto make = [this](const TileKey& key) {
+        const std::vector<std::uint32_t> texels = drape_page(*drape_, pyramid_, key.level, key.at);
+        std::vector<std::byte> bytes(texels.size() * sizeof(std::uint32_t));
+        std::memcpy(bytes.data(), texels.data(), bytes.size());
+        return bytes;
+    };
+    cache_ =
+        PageCache({{"drape_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear, make}},
+                  std::min(slots, pages_of_all_levels(texels_)));
+}
+
+/// Adds the visible pages of a page, from coarse to fine as far as a view shows them.
+/// @param angle  of a pixel [rad]
+void DrapePages::visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
+                       std::vector<TileKey>& pages) const {
+    const glm::dvec2 low(key.at * (kNormalNodes << key.level));
+    const glm::dvec2 first = texels_.first_post + low / texels_.per_post;
+    const glm::dvec2 last = first + double(kNormalNodes << key.level) / texels_.per_post;
+    const std::optional<Box> box = tree.box(first, last, view.exaggeration);
+    if (!box || tree.hidden(*box, view)) return;
+    pages.push_back(key);
+    const double distance_m = view.eye_m ? box->distance(*view.eye_m) : 0;
+    if (key.level == 0 || kCorner * distance_m * angle >= texel_m_ * std::exp2(key.level)) return;
+    const glm::ivec2 count = pages_of(texels_, key.level - 1);
+    for (int q = 0; q < 4; ++q) {
+        const glm::ivec2 at = 2 * key.at + glm::ivec2(q & 1, q >> 1);
+        if (at.x < count.x && at.y < count.y) visit(tree, view, angle, {key.level - 1, at}, pages);
+    }
+}
+
+bool DrapePages::prepare(TileTree& tree, const LodView& view, Loading loading, bool deterministic) {
+    std::vector<TileKey> pages;
+    for (double angle = view.tolerance;; angle *= kCoarser) {
+        pages.clear();
+        visit(tree, view, angle, {texels_.levels - 1, {0, 0}}, pages);
+        if (static_cast<int>(pages.size()) <= cache_.slots()) break;
+    }
+    bool came = false;
+    if (loading == Loading::Background && !pages.empty()) {
+        std::ranges::stable_sort(
+            pages, [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+        came = cache_.require(std::span(pages).first(1));  // the coarsest page covers everything
+        came = cache_.request(pages) || came;
+    } else {
+        came = cache_.require(pages);
+    }
+    if (came || deterministic || table_is_narrowed_)
+        table_.write(cache_, deterministic ? &pages : nullptr);
+    table_is_narrowed_ = deterministic;
+    return std::ranges::all_of(pages, [&](const TileKey& key) { return cache_.slot(key) >= 0; });
+}
+
+const gl::Texture* DrapePages::texture(std::string_view name) const {
+    return name == "drape_table" ? &table_.texture() : cache_.find(name);
+}
+
+void DrapePages::write(FrameBlock& block) const {
+    block.drape_texels = glm::vec4(texels_.first_post, texels_.per_post);
+    block.drape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels, drape_->lit ? 1 : 0};
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "gl/texture.h"
+#include "render/drape.h"
+#include "render/frame_block.h"
+#include "render/loading.h"
+#include "render/lod.h"
+#include "render/page_cache.h"
+#include "render/page_table.h"
+
+namespace relevo::render {
+
+/// A drape on the device: a virtual texture of its own resolution, whose tile pages are made where
+/// a view needs them. lib/drape.glsl reads it.
+class DrapePages {
+  public:
+    /// @param pyramid    must outlive this
+    /// @param spacing_m  from post to post
+    /// @param slots      pages at most
+    DrapePages(std::shared_ptr<const Drape> drape, const dem::Pyramid& pyramid, double spacing_m,
+               int slots);
+
+    /// Makes the pages of a view.
+    /// @param tree           of the pyramid
+    /// @param view           with a tolerance of one pixel
+    /// @param deterministic  do not read finer pages that earlier frames left
+    /// @returns true if all are resident
+    bool prepare(TileTree& tree, const LodView& view, Loading loading, bool deterministic);
+    /// True if pages are being made in the background.
+    bool is_making() const { return cache_.is_making(); }
+
+    /// "drape_pages", "drape_table", else null.
+    const gl::Texture* texture(std::string_view name) const;
+    /// Writes the drape's part of the block.
+    void write(FrameBlock& block) const;
+
+  private:
+    void visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
+               std::vector<TileKey>& pages) const;
+
+    std::shared_ptr<const Drape> drape_;
+    const dem::Pyramid& pyramid_;
+    DrapeTexels texels_;
+    double texel_m_;  ///< distance of texels on the finest level
+    PageTable table_;
+    bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
+    PageCache cache_;                 // last: its threads read the members above
+};
+
+}  // namespace relevo::render
