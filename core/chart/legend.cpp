@@ -11,7 +11,8 @@ namespace relevo::chart {
 namespace {
 
 constexpr double kPadding = 10, kBarWidth = 16, kBarHeight = 150, kGap = 6, kLetters = 11,
-                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104, kClassHeight = 20;
+                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104, kClassHeight = 20,
+                 kStepHeight = 18;
 constexpr int kSteps = 75;  // of a continuous ramp
 constexpr int kLabels = 6;  // at most
 
@@ -40,6 +41,33 @@ std::vector<Label> labels_of(const Ramp& ramp, const std::string& unit) {
     if (!labels.empty() && !unit.empty() && unit != "1")
         labels.back().text += (unit == "°" ? "" : " ") + unit;
     return labels;
+}
+
+/// Labels beside steps of one height, the highest edge above.
+std::vector<Label> labels_of(const std::vector<double>& edges, const std::string& unit) {
+    std::vector<Label> labels;
+    for (std::size_t k = 0; k < edges.size(); ++k)
+        labels.push_back({kStepHeight * static_cast<double>(edges.size() - 1 - k),
+                          fmt::format("{:.6g}", edges[k])});
+    if (!unit.empty() && unit != "1") labels.back().text += (unit == "°" ? "" : " ") + unit;
+    return labels;
+}
+
+void draw_steps(const Legend& about, double left, double top, Drawing& drawing) {
+    const std::size_t count = about.edges.size() - 1;
+    for (std::size_t k = 0; k < count; ++k)
+        drawing.rect(
+            {left, top + kStepHeight * static_cast<double>(count - 1 - k), kBarWidth, kStepHeight},
+            {.fill = about.ramp.at(about.edges[k]), .stroke = Color{0x303030, 0.6}, .width = 0.8});
+}
+
+void draw_labels(const std::vector<Label>& labels, double right, double top, Drawing& drawing) {
+    for (const Label& label : labels) {
+        const double y = top + label.y;
+        drawing.line({right, y}, {right + 4, y}, {.stroke = Color{0x303030}, .width = 0.8});
+        drawing.text({right + kGap + 2, y + kLetters * 0.36}, label.text,
+                     {.size = kLetters, .color = {0x202020}});
+    }
 }
 
 void draw_bar(const Ramp& ramp, double left, double top, Drawing& drawing) {
@@ -107,16 +135,20 @@ std::vector<double> round_values(double from, double to, int most) {
 
 Drawing legend(const Legend& about) {
     const std::vector<std::string> lines = wrapped(about.title, kTitle, kMostTitle);
-    const bool is_range = about.classes.empty() && about.ramp.stops.size() > 1 &&
-                          about.ramp.stops.back().value > about.ramp.stops.front().value;
-    const std::vector<Label> labels =
-        is_range && !about.ring ? labels_of(about.ramp, about.unit) : std::vector<Label>{};
+    const bool is_range =
+        about.classes.empty() &&
+        (!about.edges.empty() || (about.ramp.stops.size() > 1 &&
+                                  about.ramp.stops.back().value > about.ramp.stops.front().value));
+    const std::vector<Label> labels = !is_range || about.ring ? std::vector<Label>{}
+                                      : about.edges.empty()   ? labels_of(about.ramp, about.unit)
+                                                              : labels_of(about.edges, about.unit);
     double width = about.ring ? kRing + 2 * kPadding : kLeastWidth;
-    const double body = about.ring ? kRing
-                        : !about.classes.empty()
-                            ? static_cast<double>(about.classes.size()) * kClassHeight - kGap
-                        : is_range ? kBarHeight
-                                   : kLetters;
+    const double body =
+        about.ring               ? kRing
+        : !about.classes.empty() ? static_cast<double>(about.classes.size()) * kClassHeight - kGap
+        : !about.edges.empty()   ? static_cast<double>(about.edges.size() - 1) * kStepHeight
+        : is_range               ? kBarHeight
+                                 : kLetters;
     for (const Legend::Class& one : about.classes)
         width =
             std::max(width, kBarWidth + kGap + text_width(one.name, kLetters) + 2 * kPadding + 4);
@@ -134,13 +166,11 @@ Drawing legend(const Legend& about) {
     if (about.ring) draw_ring(about.ramp, (drawing.width() - kRing) / 2, top, drawing);
     if (!about.classes.empty()) draw_classes(about.classes, kPadding, top, drawing);
     if (!is_range || about.ring) return drawing;
-    draw_bar(about.ramp, kPadding, top, drawing);
-    for (const Label& label : labels) {
-        const double y = top + label.y, right = kPadding + kBarWidth;
-        drawing.line({right, y}, {right + 4, y}, {.stroke = Color{0x303030}, .width = 0.8});
-        drawing.text({right + kGap + 2, y + kLetters * 0.36}, label.text,
-                     {.size = kLetters, .color = {0x202020}});
-    }
+    if (about.edges.empty())
+        draw_bar(about.ramp, kPadding, top, drawing);
+    else
+        draw_steps(about, kPadding, top, drawing);
+    draw_labels(labels, kPadding + kBarWidth, top, drawing);
     return drawing;
 }
 

@@ -21,6 +21,9 @@ struct Legend {
         bool operator==(const Class&) const = default;
     };
     std::vector<Class> classes{};  ///< instead of the ramp's values
+    /// Values between which the ramp has one colour each, which has a stop at each edge but the
+    /// last. Drawn equally high, the edges' values beside them. Empty: by value.
+    std::vector<double> edges{};
 
     bool operator==(const Legend&) const = default;
 };

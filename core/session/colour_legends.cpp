@@ -81,6 +81,38 @@ void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
     if (below) ramp.stops = std::move(more);
 }
 
+/// Of steps: their colours from edge to edge.
+chart::Legend legend_of_steps(const ColourRamp& steps) {
+    chart::Legend legend{.title = steps.label, .unit = steps.unit, .edges = steps.edges};
+    legend.ramp.continuous = false;
+    for (std::size_t k = 0; k < steps.colours.size(); ++k)
+        legend.ramp.stops.push_back({steps.edges[k], colour_of(steps.colours[k])});
+    return legend;
+}
+
+/// Adds the entries of a plugin's colours to a legend of their title.
+void add_entries(const ColourRamp& of, std::vector<chart::Legend>& legends) {
+    auto same = std::ranges::find_if(
+        legends, [&](const chart::Legend& l) { return l.title == of.label && !l.classes.empty(); });
+    if (same == legends.end()) same = legends.insert(same, {.title = of.label});
+    for (std::size_t k = 0; k < of.colours.size(); ++k)
+        same->classes.push_back({of.entries[k], colour_of(of.colours[k])});
+}
+
+/// Adds a ramp to the one that it continues, or as a legend.
+void add_ramp(const ColourRamp& ramp, std::pair<double, double> ends,
+              std::vector<chart::Legend>& legends) {
+    auto stops = stops_of(ramp, ends.first, ends.second);
+    const auto same = std::ranges::find_if(legends, [&](const chart::Legend& l) {
+        return l.title == ramp.label && l.unit == ramp.unit && l.edges.empty() && l.classes.empty();
+    });
+    if (same != legends.end()) return join(std::move(stops), same->ramp);
+    legends.push_back({.title = ramp.label,
+                       .unit = ramp.unit,
+                       .ramp = {.stops = std::move(stops)},
+                       .ring = ramp.is_ring});
+}
+
 }  // namespace
 
 std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const DemRange& ground) {
@@ -88,19 +120,12 @@ std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const De
     for (const effect::Effect* effect : effects.loaded.selection.effects)
         for (const ColourRamp& ramp : effect->ramps()) {
             if (!is_shown(ramp, effects.values)) continue;
-            const auto ends = ends_of(ramp, effects.values, ground);
-            if (!ends) continue;
-            auto stops = stops_of(ramp, ends->first, ends->second);
-            const auto same = std::ranges::find_if(legends, [&](const chart::Legend& l) {
-                return l.title == ramp.label && l.unit == ramp.unit;
-            });
-            if (same == legends.end())
-                legends.push_back({.title = ramp.label,
-                                   .unit = ramp.unit,
-                                   .ramp = {.stops = std::move(stops)},
-                                   .ring = ramp.is_ring});
-            else
-                join(std::move(stops), same->ramp);
+            if (!ramp.entries.empty())
+                add_entries(ramp, legends);
+            else if (!ramp.edges.empty())
+                legends.push_back(legend_of_steps(ramp));
+            else if (const auto ends = ends_of(ramp, effects.values, ground))
+                add_ramp(ramp, *ends, legends);
         }
     return legends;
 }

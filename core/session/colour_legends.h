@@ -13,8 +13,8 @@ struct DemRange {
     bool has_sea_floor = false;  ///< dem::Water::has_sea_floor
 };
 
-/// Legends of the colour ramps that the active effects declare. Ramps with the same title and unit
-/// share a legend, such as those of seas and of land.
+/// Legends of the colours that the active effects declare. Ramps with the same title and unit share
+/// a legend, such as those of seas and of land, and so do entries with the same title.
 std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const DemRange& ground);
 
 }  // namespace relevo::session

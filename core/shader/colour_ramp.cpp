@@ -1,5 +1,6 @@
 #include "shader/colour_ramp.h"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -17,27 +18,20 @@ class RampReader {
     RampReader(ColourRamp& ramp, std::string_view owner) : ramp_(ramp), owner_(owner) {}
 
     void annotation(const std::vector<AnnotationWord>& words) {
-        bool has_ramp = false;
         for (const AnnotationWord& word : words) {
-            if (word.name == "ramp") {
-                ends(word);
-                has_ramp = true;
-            } else if (word.name == "unit" && word.arguments.size() == 1) {
-                ramp_.unit = word.arguments[0];
-            } else if (word.name == "label" && word.arguments.size() == 1) {
-                ramp_.label = word.arguments[0];
-            } else if (word.name == "where" && word.arguments.size() == 2) {
-                ramp_.where = fmt::format("{}.{}", owner_, word.arguments[0]);
-                ramp_.where_word = word.arguments[1];
-            } else {
-                fail(
-                    fmt::format("expected ramp(from, to), unit(m), label(\"Text\") or "
-                                "where(parameter, word) but got {}({})",
-                                word.name, fmt::join(word.arguments, ", ")));
-            }
+            if (word.name == "ramp" || word.name == "steps" || word.name == "entries")
+                meaning(word);
+            else
+                detail(word);
         }
-        if (!has_ramp) fail("a constant's annotation is a ramp(from, to), which is missing");
-        if (ramp_.label.empty()) fail("a ramp has a label(\"Text\"), which is missing");
+        if (kind_.empty())
+            fail(
+                "a constant's annotation has a ramp(from, to), steps(edge, edge, ...) or "
+                "entries(name, ...), which is missing");
+        if (ramp_.label.empty())
+            fail(fmt::format("{} a label(\"Text\"), which is missing",
+                             kind_ == "ramp" ? "a ramp has" : kind_ + " have"));
+        if (kind_ == "entries" && !ramp_.unit.empty()) fail("entries have names and no unit");
     }
 
     void colours(std::string_view text) {
@@ -55,15 +49,81 @@ class RampReader {
             if (!text.empty() && text.front() != ',') fail_colours();
             if (!text.empty()) text.remove_prefix(1);
         }
-        if (ramp_.colours.size() < 2) fail_colours();
+        if (ramp_.colours.size() < (kind_ == "ramp" ? 2 : 1)) fail_colours();
+        check_count();
     }
 
   private:
+    /// ramp(), steps() or entries().
+    void meaning(const AnnotationWord& word) {
+        if (!kind_.empty())
+            fail(kind_ == word.name ? fmt::format("{} is given twice", kind_)
+                                    : "it can be only one of ramp, steps and entries");
+        kind_ = word.name;
+        if (kind_ == "ramp")
+            ends(word);
+        else if (kind_ == "steps")
+            steps(word);
+        else
+            entries(word);
+    }
+
+    void detail(const AnnotationWord& word) {
+        if (word.name == "unit" && word.arguments.size() == 1) {
+            ramp_.unit = word.arguments[0];
+        } else if (word.name == "label" && word.arguments.size() == 1) {
+            ramp_.label = word.arguments[0];
+        } else if (word.name == "where" && word.arguments.size() == 2) {
+            ramp_.where = fmt::format("{}.{}", owner_, word.arguments[0]);
+            ramp_.where_word = word.arguments[1];
+        } else {
+            fail(
+                fmt::format("expected ramp(from, to), steps(edge, edge, ...), entries(name, ...), "
+                            "unit(m), label(\"Text\") or where(parameter, word) but got {}",
+                            written(word)));
+        }
+    }
+
+    static std::string written(const AnnotationWord& word) {
+        return fmt::format("{}({})", word.name, fmt::join(word.arguments, ", "));
+    }
+
+    void steps(const AnnotationWord& word) {
+        for (const std::string& argument : word.arguments) {
+            const std::optional<double> edge = parse_number(argument);
+            if (!edge || (!ramp_.edges.empty() && !(*edge > ramp_.edges.back())))
+                fail(fmt::format("expected steps(edge, edge, ...), rising numbers, but got {}",
+                                 written(word)));
+            ramp_.edges.push_back(*edge);
+        }
+    }
+
+    void entries(const AnnotationWord& word) {
+        ramp_.entries = word.arguments;
+        for (const std::string& name : ramp_.entries)
+            if (name.empty() || std::ranges::count(ramp_.entries, name) > 1)
+                fail(fmt::format("expected entries(name, ...), all different, but got {}",
+                                 written(word)));
+    }
+
+    /// Steps have an edge more than colours, entries have as many names.
+    void check_count() const {
+        const std::size_t colours = ramp_.colours.size();
+        if (kind_ == "steps" && ramp_.edges.size() != colours + 1)
+            fail(fmt::format("expected {} edges for {} colours but got {}", colours + 1, colours,
+                             ramp_.edges.size()));
+        if (kind_ == "entries" && ramp_.entries.size() != colours)
+            fail(fmt::format("expected {} names for {} colours but got {}", colours, colours,
+                             ramp_.entries.size()));
+    }
+
     [[noreturn]] void fail(std::string_view message) const {
         source_error(ramp_.file, ramp_.line, fmt::format("{}: {}", ramp_.name, message));
     }
     [[noreturn]] void fail_colours() const {
-        fail("a ramp is at least two colours, vec3[](vec3(0.1, 0.2, 0.3), ...), numbers of 0 to 1");
+        fail(fmt::format(
+            "{}, vec3[](vec3(0.1, 0.2, 0.3), ...), numbers of 0 to 1",
+            kind_ == "ramp" ? "a ramp is at least two colours" : kind_ + " are colours"));
     }
 
     std::array<double, 3> colour(std::string_view text) const {
@@ -106,6 +166,7 @@ class RampReader {
 
     ColourRamp& ramp_;
     std::string_view owner_;
+    std::string kind_;  // "ramp", "steps" or "entries"
 };
 
 }  // namespace

@@ -137,7 +137,7 @@ void read_ramp(SourceCursor& cursor, std::size_t first, std::size_t name, std::s
         ++equals;
     if (cursor.str(first) != "const" || cursor.str(first + 1) != "vec3" || names != 1 ||
         equals == cursor.at)
-        cursor.fail(line, fmt::format("{}: an annotation after a variable is for a ramp of "
+        cursor.fail(line, fmt::format("{}: an annotation after a variable is for a legend of "
                                       "colours, const vec3 {}[N] = vec3[](...);",
                                       name_text, name_text));
     cursor.source.ramps.push_back(parse_ramp(cursor.source.owner, name_text,

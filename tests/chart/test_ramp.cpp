@@ -189,6 +189,28 @@ TEST(Legend, AValueStandsBesideItsColour) {
     }
 }
 
+TEST(Legend, StepsHaveTheirColoursBetweenTheValuesOfTheirEdges) {
+    Legend about{.title = "Slope", .unit = "deg", .edges = {0, 2.5, 10, 90}};
+    about.ramp = {{{0, {0x20c040}}, {2.5, {0xf0e060}}, {10, {0xc01030}}}, {}, false};
+    const Drawing drawing = legend(about);
+    const image::Image8 picture = to_image(drawing);
+    std::vector<std::string> words;
+    std::vector<glm::dvec2> places;
+    for (const Drawing::Item& item : drawing.items())
+        if (const auto* text = std::get_if<Drawing::Text>(&item)) {
+            words.push_back(text->words);
+            places.push_back(text->at - glm::dvec2(16, 0.36 * text->lettering.size));
+        }
+    ASSERT_THAT(words, ElementsAre("Slope", "0", "2.5", "10", "90 deg"));
+    // The bar is left of the letters; a class is between two of them.
+    for (std::size_t k = 1; k + 1 < places.size(); ++k) {
+        EXPECT_LE(apart(picture, places[k].x, (places[k].y + places[k + 1].y) / 2,
+                        about.ramp.stops[k - 1].color.rgb),
+                  2);
+        EXPECT_GT(places[k].y, places[k + 1].y + 15) << "the highest above";
+    }
+}
+
 TEST(Legend, ARingHasEastOnTheRightAndNorthAbove) {
     const Ramp ramp{{{0, {0xff0000}},
                      {90, {0x00ff00}},

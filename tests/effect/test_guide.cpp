@@ -75,6 +75,17 @@ TEST(PluginGuide, ItsRampIsOne) {
                   "float parameter of the plugin's but got rain.most"));
 }
 
+TEST(PluginGuide, ItsClassesAreStepsAndEntries) {
+    const Plugins plugins;
+    plugins.add("avalanche", "", block(guide(), "glsl avalanche.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    const std::vector<shader::ColourRamp> ramps = registry.effects()[0].ramps();
+    ASSERT_EQ(ramps.size(), 2u);
+    EXPECT_THAT(ramps[0].edges, testing::ElementsAre(0, 30, 35, 40, 90));
+    EXPECT_THAT(ramps[1].entries, testing::ElementsAre("rock", "fresh snow"));
+}
+
 TEST(PluginGuide, ItsFrostReadsTheClimate) {
     const Plugins plugins;
     plugins.add("frost", "", block(guide(), "glsl frost.glsl"));

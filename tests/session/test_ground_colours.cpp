@@ -1,6 +1,8 @@
 // Colours on the ground: the legend's are those of the picture, where they belong.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
 #include <fmt/format.h>
@@ -207,6 +209,64 @@ TEST(Infill, PaintsFilledHolesAndNothingElse) {
         }
     EXPECT_GT(painted, 50);
     EXPECT_EQ(wrong, 0);
+}
+
+/// A plugin that paints land by classes of height, and names two colours.
+void add_classes(scene::Scene& scene) {
+    const std::filesystem::path folder = test::scratch_dir("classes");
+    std::filesystem::create_directories(folder / "classes");
+    std::ofstream(folder / "classes" / "plugin.json")
+        << R"({"format": 1, "id": "classes", "name": "Classes", "description": "Classes of height",
+               "version": "1.0.0"})";
+    std::ofstream(folder / "classes" / "classes.glsl")
+        << "uniform int classes_by = 0; //@ enum(height, ground)\n"
+           "const vec3 classes_height[3] = vec3[](vec3(0.2, 0.4, 0.2), vec3(0.8, 0.8, 0.4), "
+           "vec3(0.6, 0.2, 0.0)); //@ steps(0, 400, 600, 2000) unit(m) label(\"Height\") "
+           "where(by, height)\n"
+           "const vec3 classes_rock[1] = vec3[](vec3(0.4, 0.4, 0.4)); //@ entries(rock) "
+           "label(\"Ground\") where(by, ground)\n"
+           "const vec3 classes_cold[2] = vec3[](vec3(1.0, 1.0, 1.0), vec3(0.6, 0.8, 1.0)); //@ "
+           "entries(\"fresh snow\", ice) label(\"Ground\") where(by, ground)\n"
+           "void classes_on_display(in Surface s, inout vec4 overlay) {\n"
+           "    overlay = vec4(classes_height[s.height_m < 400.0 ? 0 : s.height_m < 600.0 ? 1 : "
+           "2], 1.0);\n}\n";
+    scene.effects.plugin_path = {folder.string()};
+}
+
+scene::Scene scene_of_classes(const char* by) {
+    scene::Scene scene = scene_of(
+        "slope.tif", [](int column, int row) { return 300 + 4 * column + row; }, {"classes"});
+    add_classes(scene);
+    scene.stamps.legend = false;
+    scene.effects.settings = {{"classes.by", by}};
+    return scene;
+}
+
+TEST(ColourLegend, OfStepsIsThePictures) {
+    FilesInUse files;
+    Session session(scene_of_classes("height"), {.device = "software"}, files);
+    const auto height_m = [](const glm::dvec2& post) {
+        const double height = 300 + 4 * post.x + post.y;
+        // Not where an edge is within a pixel.
+        const bool at_edge = std::min(std::abs(height - 400), std::abs(height - 600)) < 10;
+        return at_edge ? std::nan("") : height;
+    };
+    EXPECT_GT(share_right(session, height_m, 1), 0.999);
+    const std::vector<chart::Legend> legends = session.colour_legends();
+    EXPECT_EQ(legends.at(0).title, "Height");
+    EXPECT_EQ(legends.at(0).unit, "m");
+    EXPECT_EQ(legends.at(0).edges, (std::vector<double>{0, 400, 600, 2000}));
+}
+
+TEST(ColourLegend, OfEntriesHasAllOfOneTitle) {
+    FilesInUse files;
+    Session session(scene_of_classes("ground"), {.device = "software"}, files);
+    const std::vector<chart::Legend> legends = session.colour_legends();
+    ASSERT_EQ(legends.size(), 1u);
+    EXPECT_EQ(legends[0].title, "Ground");
+    EXPECT_EQ(legends[0].classes,
+              (std::vector<chart::Legend::Class>{
+                  {"rock", {0x666666}}, {"fresh snow", {0xffffff}}, {"ice", {0x99ccff}}}));
 }
 
 TEST(ExaggeratedPicture, IsThatOfGroundAsHigh) {
