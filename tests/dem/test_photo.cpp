@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <gdal.h>
 #include <gmock/gmock.h>
 
 #include "dem/fixture.h"
@@ -136,6 +137,26 @@ TEST(Photo, ALargeFileWithoutOverviewsHasTheSameColoursFromItsReducedCopy) {
         EXPECT_NEAR(channel(rgba.at(i, 5), 0), pixel / 20 - 0.5, 1);
         EXPECT_NEAR(channel(rgba.at(5, i), 1), pixel / 20 - 0.5, 1);
     }
+}
+
+TEST(Photo, OfAPaletteHasItsColours) {
+    Raster raster = image();
+    raster.bands = 1;
+    raster.value = [](int column, int, int) { return column < 60 ? 1.0 : 2.0; };
+    const std::string path = write_raster(folder() / "palette.tif", raster);
+    GDALDatasetH dataset = GDALOpen(path.c_str(), GA_Update);
+    GDALColorTableH table = GDALCreateColorTable(GPI_RGB);
+    const GDALColorEntry red{200, 30, 10, 255}, none{9, 9, 9, 0};
+    GDALSetColorEntry(table, 1, &red);
+    GDALSetColorEntry(table, 2, &none);
+    ASSERT_EQ(GDALSetRasterColorTable(GDALGetRasterBand(dataset, 1), table), CE_None);
+    GDALDestroyColorTable(table);
+    GDALClose(dataset);
+    EXPECT_EQ(photo_kind(path), PhotoKind::Palette);
+    const auto photo = Photo::open(path, grid());
+    EXPECT_EQ(at_post(*photo, 10, 10), 0xff0a1ec8u);
+    // Alpha of a TIFF's colour table is not stored.
+    EXPECT_NE(at_post(*photo, 30, 10), at_post(*photo, 10, 10));
 }
 
 TEST(Photo, KindsAreByBands) {
