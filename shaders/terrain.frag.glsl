@@ -4,7 +4,7 @@
 //!           with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
-//@ include lib/drape.glsl
+//@ include lib/overlay.glsl
 //@ include lib/exposed.glsl
 //@ include lib/filtered.glsl
 //@ include lib/finite.glsl
@@ -46,7 +46,7 @@ vec2 slope_at(in vec2 post, in int level) {
     return filtered(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer))).rg;
 }
 
-#ifdef DRAPED
+#ifdef OVERLAY_RASTER
 /// Replaces the reflectance of the ground by an overlay's colours, premultiplied sRGB.
 void lay_lit(inout Surface s, in vec4 laid) {
     vec3 reflectance = srgb_decoded(min(laid.rgb / max(laid.a, 1e-3), 1.0));
@@ -131,9 +131,9 @@ void main() {
     hook_albedo(s);
     hook_normal(s);
     hook_material(s);
-#ifdef DRAPED
-    vec4 laid = draped(uintBitsToFloat(what.xy), across);
-    if (frame.drape.w > 0.0) lay_lit(s, laid);
+#ifdef OVERLAY_RASTER
+    vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
+    if (frame.overlay_shape.w > 0.0) lay_lit(s, laid);
 #endif
 
     vec3 to_sun;
@@ -156,8 +156,8 @@ void main() {
     hook_atmosphere(s, view, radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
-#ifdef DRAPED
-    over += (1.0 - over.a) * (1.0 - frame.drape.w) * laid;
+#ifdef OVERLAY_RASTER
+    over += (1.0 - over.a) * (1.0 - frame.overlay_shape.w) * laid;
 #endif
     // What is stored may be clamped to a number.
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);

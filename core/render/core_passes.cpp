@@ -199,7 +199,7 @@ class Declaration {
                                      .fragment_main = "terrain.frag.glsl",
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
-        if (facts_.draped) recipe.defines.push_back({"DRAPED", ""});
+        if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
         Pass pass{.name = "terrain",

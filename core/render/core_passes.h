@@ -33,7 +33,7 @@ struct FrameFacts {
     bool radiance = false;        ///< linear radiance is stored; else shading ends in colours
     bool antialias = true;        ///< silhouettes are smoothed
     bool overlays = false;        ///< effects or a raster draw over the tone-mapped ground
-    bool draped = false;          ///< a raster lies on the ground: Terrain::drape
+    bool overlay_raster = false;          ///< a raster lies on the ground: Terrain::set_overlay
     bool audited = false;         ///< the terrain pass also writes what SunSeen has
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool displaced = false;       ///< effects move the ground

@@ -73,13 +73,13 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
     const shader::FolderTexts core(share_dir() / "shaders");
     const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                 input.values->value(kNormalAddress)[0] == 1;
-    if (vertex_normals && options.draped)
+    if (vertex_normals && options.overlay_raster)
         bad_input(
             fmt::format("render: {}: vertex shows no overlay; remove the overlay or pass "
                         "--set {}=fragment",
                         kNormalAddress, kNormalAddress));
     ProgramOptions wanted{.vertex_normals = vertex_normals,
-                          .draped = options.draped,
+                          .overlay_raster = options.overlay_raster,
                           .shown = !options.radiance,
                           .antialias = options.antialias,
                           .audited = options.audited,

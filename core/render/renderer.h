@@ -28,8 +28,8 @@ struct RendererOptions {
     /// Stores linear radiance for read_radiance(). Otherwise shading writes display-referred
     /// colours directly, which saves a pass.
     bool radiance = true;
-    /// Draws an overlay: Terrain::drape. Not with normals per vertex.
-    bool draped = false;
+    /// Draws an overlay: Terrain::set_overlay. Not with normals per vertex.
+    bool overlay_raster = false;
     /// Whether the first frame is probably seen from outside the DEM. Programs of the other graph
     /// are linked when needed.
     bool outside = false;

@@ -132,19 +132,19 @@ void Terrain::clear_surface() {
     surface_ = PageCache(std::move(layers), normal_layers_);
 }
 
-void Terrain::drape(std::shared_ptr<const Drape> drape) {
-    if (drape == drape_) return;
-    drape_ = std::move(drape);
-    drape_pages_.reset();
-    if (drape_)
-        drape_pages_.emplace(drape_, pyramid_, normal_spacing_m_,
+void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
+    if (raster == overlay_) return;
+    overlay_ = std::move(raster);
+    overlay_pages_.reset();
+    if (overlay_)
+        overlay_pages_.emplace(overlay_, pyramid_, normal_spacing_m_,
                              std::min(kMaxNormalPages, options_.max_array_layers));
 }
 
 void Terrain::write(FrameBlock& block) const {
     block.normal_levels = static_cast<float>(normal_levels_);
     block.normal_texels_per_m = static_cast<float>(1 / normal_spacing_m_);
-    if (drape_pages_) drape_pages_->write(block);
+    if (overlay_pages_) overlay_pages_->write(block);
 }
 
 void Terrain::keep_water() {
@@ -181,8 +181,8 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == "page_table") return &page_table_.texture();
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     if (const gl::Texture* const light = light_.texture(name)) return light;
-    if (const gl::Texture* const drape = drape_pages_ ? drape_pages_->texture(name) : nullptr)
-        return drape;
+    if (const gl::Texture* const raster = overlay_pages_ ? overlay_pages_->texture(name) : nullptr)
+        return raster;
     return surface_.find(name);
 }
 
@@ -279,8 +279,8 @@ TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_p
     if (!surface_.find("normal_pages")) clear_surface();
     const LodView pixels = LodView::of_camera(camera, width_px, height_px, 1, exaggeration);
     prepare_surface(pixels, loading, deterministic);
-    if (drape_pages_)
-        complete_ = drape_pages_->prepare(tree_, pixels, loading, deterministic) && complete_;
+    if (overlay_pages_)
+        complete_ = overlay_pages_->prepare(tree_, pixels, loading, deterministic) && complete_;
     return selection;
 }
 

@@ -18,7 +18,7 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/climate_volume.h"
-#include "render/drape_pages.h"
+#include "render/overlay_pages.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/loading.h"
@@ -105,7 +105,7 @@ class Terrain {
     /// True if pages are being made in the background.
     bool is_making_pages() const {
         return heights_.is_making() || surface_.is_making() ||
-               (drape_pages_ && drape_pages_->is_making());
+               (overlay_pages_ && overlay_pages_->is_making());
     }
 
     /// Draws with the bound program, framebuffer and textures. The program gets positions relative
@@ -132,7 +132,7 @@ class Terrain {
     void keep_water();
 
     /// Sets the overlay for programs that read it; null: none.
-    void drape(std::shared_ptr<const Drape> drape);
+    void set_overlay(std::shared_ptr<const OverlayRaster> raster);
 
     /// Makes climate tables with the snow of a day (0 to 364).
     /// @returns tables for FrameBlock
@@ -185,7 +185,7 @@ class Terrain {
     int normal_levels_ = 1;
     int normal_layers_ = 1;
 
-    std::shared_ptr<const Drape> drape_;
+    std::shared_ptr<const OverlayRaster> overlay_;
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
     bool keeps_surface_ = false, keeps_water_ = false;
@@ -202,7 +202,7 @@ class Terrain {
     // Last members: their threads read the members above.
     PageCache heights_;  // by tile
     PageCache surface_;  // normals and other data by place
-    std::optional<DrapePages> drape_pages_;
+    std::optional<OverlayPages> overlay_pages_;
 };
 
 }  // namespace relevo::render

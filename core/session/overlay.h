@@ -8,7 +8,7 @@
 #include "chart/legend.h"
 #include "dem/grid.h"
 #include "image/image.h"
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 #include "scene/scene.h"
 #include "session/overlay_time.h"
 
@@ -16,7 +16,7 @@
 namespace relevo::session {
 
 struct Overlay {
-    std::shared_ptr<const render::Drape> drape;
+    std::shared_ptr<const render::OverlayRaster> raster;
     std::optional<chart::Legend> legend;  ///< nullopt: colours without a meaning, as of a photo
     std::optional<OverlayTime> time{};    ///< set if it shows sunlight
     bool has_given_title = false;
@@ -30,7 +30,7 @@ std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::str
 
 /// @param values   on the DEM's grid, as dem::BandOver
 /// @param opacity  0 to 1, multiplies that of the colours
-/// @param lit      as render::Drape::lit
+/// @param lit      as render::OverlayRaster::lit
 Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity,
                    bool lit = false);
 

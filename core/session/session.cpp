@@ -89,8 +89,8 @@ void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
 }
 
-void Session::drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->set_drape(std::move(drape));
+void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
+    impl_->set_overlay(std::move(raster));
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {

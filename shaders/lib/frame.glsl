@@ -47,6 +47,6 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sun_light_table[128];  // over the DEM, by the sine of the geometric elevation: as sun_light[0] (sun_light())
     vec4 eye_anchor;          // a point near the eye, for lib/repeats.glsl; xy: east and north of the DEM's centre, in
                               // whole steps of 2048 m; zw: from there to the eye [m]
-    vec4 drape_texels;        // of an overlay, for lib/drape.glsl; xy: post of its first texel, zw: texels per post
-    vec4 drape;               // xy: its last texel, z: levels, w: 1 where it is lit
+    vec4 overlay_texels;        // of an overlay, for lib/overlay.glsl; xy: post of its first texel, zw: texels per post
+    vec4 overlay_shape;          // xy: its last texel, z: levels, w: 1 where it is lit
 } frame;

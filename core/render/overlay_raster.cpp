@@ -1,4 +1,4 @@
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 
 #include <algorithm>
 #include <array>
@@ -54,23 +54,23 @@ std::uint32_t times_opacity(std::uint32_t texel, double opacity) {
     return result;
 }
 
-std::vector<std::uint32_t> photo_page(const Drape& drape, const DrapeTexels& texels, int level,
+std::vector<std::uint32_t> photo_page(const OverlayRaster& raster, const OverlayTexels& texels, int level,
                                       glm::ivec2 page) {
     const glm::dvec2 step = double(1 << level) / texels.per_post;
-    const Array2d<std::uint32_t> rgba = drape.photo->read(
+    const Array2d<std::uint32_t> rgba = raster.photo->read(
         {.first_post = texels.first_post + glm::dvec2(page * kNormalNodes - 1) * step,
          .step = step,
          .count = glm::ivec2(kNormalPage_px)});
     std::vector<std::uint32_t> result(rgba.begin(), rgba.end());
-    if (drape.opacity < 1)
+    if (raster.opacity < 1)
         for (std::uint32_t& texel : result)
-            texel = times_opacity(texel, drape.opacity);
+            texel = times_opacity(texel, raster.opacity);
     return result;
 }
 
 }  // namespace
 
-std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
+std::uint32_t overlay_texel(double red, double green, double blue, double alpha) {
     const auto byte = [](double value) {
         return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
     };
@@ -78,13 +78,13 @@ std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
            byte(alpha) << 24;
 }
 
-DrapeTexels drape_texels(const Drape& drape, const dem::Pyramid& pyramid) {
-    DrapeTexels texels;
+OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& pyramid) {
+    OverlayTexels texels;
     texels.count = pyramid.size(0);
-    if (drape.photo) {
-        texels.first_post = drape.photo->first_post();
-        texels.per_post = drape.photo->pixels_per_post();
-        const glm::dvec2 side = drape.photo->last_post() - texels.first_post;
+    if (raster.photo) {
+        texels.first_post = raster.photo->first_post();
+        texels.per_post = raster.photo->pixels_per_post();
+        const glm::dvec2 side = raster.photo->last_post() - texels.first_post;
         texels.count = glm::ivec2(glm::min(glm::ceil(side * texels.per_post), kMostTexels)) + 1;
     }
     const int side = std::max(texels.count.x, texels.count.y) - 1;
@@ -93,21 +93,21 @@ DrapeTexels drape_texels(const Drape& drape, const dem::Pyramid& pyramid) {
     return texels;
 }
 
-std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid, int level,
                                       glm::ivec2 page) {
-    if (drape.photo) return photo_page(drape, drape_texels(drape, pyramid), level, page);
+    if (raster.photo) return photo_page(raster, overlay_texels(raster, pyramid), level, page);
     const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
     std::vector<Span> columns, rows;
     for (int i = 0; i < kNormalPage_px; ++i) {
         const glm::ivec2 post = pyramid.post(level, glm::clamp(first + i, glm::ivec2(0), last));
-        columns.push_back(span_of(post.x, level, pyramid.columns(), drape.rgba.width()));
-        rows.push_back(span_of(post.y, level, pyramid.rows(), drape.rgba.height()));
+        columns.push_back(span_of(post.x, level, pyramid.columns(), raster.rgba.width()));
+        rows.push_back(span_of(post.y, level, pyramid.rows(), raster.rgba.height()));
     }
     std::vector<std::uint32_t> texels;
     texels.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
     for (const Span& row : rows)
         for (const Span& column : columns)
-            texels.push_back(mean(drape.rgba, column, row));
+            texels.push_back(mean(raster.rgba, column, row));
     return texels;
 }
 

@@ -1,4 +1,4 @@
-#include "render/drape_pages.h"
+#include "render/overlay_pages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ constexpr double kCoarser = 1.2;
 /// Pixels are measured by depth, which is less than distance in the corners of the frame.
 constexpr double kCorner = 0.7;
 
-glm::ivec2 pages_of(const DrapeTexels& texels, int level) {
+glm::ivec2 pages_of(const OverlayTexels& texels, int level) {
     const int side = kNormalNodes << level;
     return glm::max((texels.count - 1 + side - 1) / side, glm::ivec2(1));
 }
 
-int pages_of_all_levels(const DrapeTexels& texels) {
+int pages_of_all_levels(const OverlayTexels& texels) {
     double sum = 0;
     for (int level = 0; level < texels.levels; ++level) {
         const glm::dvec2 count(pages_of(texels, level));
@@ -34,26 +34,26 @@ int pages_of_all_levels(const DrapeTexels& texels) {
 
 }  // namespace
 
-DrapePages::DrapePages(std::shared_ptr<const Drape> drape, const dem::Pyramid& pyramid,
+OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid,
                        double spacing_m, int slots)
-    : drape_(std::move(drape)), pyramid_(pyramid), texels_(drape_texels(*drape_, pyramid)) {
+    : overlay_(std::move(raster)), pyramid_(pyramid), texels_(overlay_texels(*overlay_, pyramid)) {
     texel_m_ = spacing_m / std::sqrt(texels_.per_post.x * texels_.per_post.y);
     const glm::ivec2 finest = pages_of(texels_, 0);
     table_ = PageTable(std::max(finest.x, finest.y), "overlay table");
     const auto make = [this](const TileKey& key) {
-        const std::vector<std::uint32_t> texels = drape_page(*drape_, pyramid_, key.level, key.at);
+        const std::vector<std::uint32_t> texels = overlay_page(*overlay_, pyramid_, key.level, key.at);
         std::vector<std::byte> bytes(texels.size() * sizeof(std::uint32_t));
         std::memcpy(bytes.data(), texels.data(), bytes.size());
         return bytes;
     };
     cache_ =
-        PageCache({{"drape_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear, make}},
+        PageCache({{"overlay_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear, make}},
                   std::min(slots, pages_of_all_levels(texels_)));
 }
 
 /// Adds the visible pages of a page, from coarse to fine as far as a view shows them.
 /// @param angle  of a pixel [rad]
-void DrapePages::visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
+void OverlayPages::visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
                        std::vector<TileKey>& pages) const {
     const glm::dvec2 low(key.at * (kNormalNodes << key.level));
     const glm::dvec2 first = texels_.first_post + low / texels_.per_post;
@@ -70,7 +70,7 @@ void DrapePages::visit(TileTree& tree, const LodView& view, double angle, const 
     }
 }
 
-bool DrapePages::prepare(TileTree& tree, const LodView& view, Loading loading, bool deterministic) {
+bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading, bool deterministic) {
     std::vector<TileKey> pages;
     for (double angle = view.tolerance;; angle *= kCoarser) {
         pages.clear();
@@ -92,13 +92,13 @@ bool DrapePages::prepare(TileTree& tree, const LodView& view, Loading loading, b
     return std::ranges::all_of(pages, [&](const TileKey& key) { return cache_.slot(key) >= 0; });
 }
 
-const gl::Texture* DrapePages::texture(std::string_view name) const {
-    return name == "drape_table" ? &table_.texture() : cache_.find(name);
+const gl::Texture* OverlayPages::texture(std::string_view name) const {
+    return name == "overlay_table" ? &table_.texture() : cache_.find(name);
 }
 
-void DrapePages::write(FrameBlock& block) const {
-    block.drape_texels = glm::vec4(texels_.first_post, texels_.per_post);
-    block.drape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels, drape_->lit ? 1 : 0};
+void OverlayPages::write(FrameBlock& block) const {
+    block.overlay_texels = glm::vec4(texels_.first_post, texels_.per_post);
+    block.overlay_shape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels, overlay_->lit ? 1 : 0};
 }
 
 }  // namespace relevo::render

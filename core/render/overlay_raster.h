@@ -13,7 +13,7 @@
 namespace relevo::render {
 
 /// Colours over the ground of a DEM: an overlay.
-struct Drape {
+struct OverlayRaster {
     /// 0xAABBGGRR: sRGB, premultiplied by alpha. Rows from the north. The outer rows and columns
     /// coincide with the DEM's; their number may differ. Empty with a photo.
     Array2d<std::uint32_t> rgba{};
@@ -22,22 +22,22 @@ struct Drape {
     bool lit = false;  ///< the colours are the ground's reflectance; else they are displayed as is
 };
 
-/// Where the texels of a drape's finest level lie on the DEM.
-struct DrapeTexels {
+/// Where the texels of a raster's finest level lie on the DEM.
+struct OverlayTexels {
     glm::dvec2 first_post{0};  ///< of texel (0, 0), which is a point
     glm::dvec2 per_post{1};    ///< texels per post
     glm::ivec2 count{1};
     int levels = 1;  ///< each has half as many as the one before, the first ones of both coincide
 };
-DrapeTexels drape_texels(const Drape& drape, const dem::Pyramid& pyramid);
+OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& pyramid);
 
-/// A texel of a Drape from sRGB and alpha, each 0 to 1.
-std::uint32_t drape_texel(double red, double green, double blue, double alpha);
+/// A texel of a OverlayRaster from sRGB and alpha, each 0 to 1.
+std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
-/// Colours at the nodes of a drape's page with its border, kNormalPage_px a side. Each is the mean
-/// of the texels nearest to its node. A photo's nodes are those of drape_texels(), others the DEM's
+/// Colours at the nodes of a raster's page with its border, kNormalPage_px a side. Each is the mean
+/// of the texels nearest to its node. A photo's nodes are those of overlay_texels(), others the DEM's
 /// posts.
-std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid, int level,
                                       glm::ivec2 page);
 
 }  // namespace relevo::render

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 #include "render/pages.h"
 #include "support/support.h"
 
@@ -13,17 +13,17 @@ std::uint32_t red_of(std::uint32_t texel) {
     return texel & 255;
 }
 
-/// Of a drape whose red rises by one from column to column, and green by one from row to row.
+/// Of a raster whose red rises by one from column to column, and green by one from row to row.
 class DrapePage : public testing::Test {
   protected:
-    static Drape gradient(int columns, int rows) {
-        Drape drape{Array2d<std::uint32_t>(columns, rows)};
+    static OverlayRaster gradient(int columns, int rows) {
+        OverlayRaster raster{Array2d<std::uint32_t>(columns, rows)};
         for (int row = 0; row < rows; ++row)
             for (int column = 0; column < columns; ++column)
-                drape.rgba.at(column, row) = static_cast<std::uint32_t>(column % 256) |
+                raster.rgba.at(column, row) = static_cast<std::uint32_t>(column % 256) |
                                              static_cast<std::uint32_t>(row % 256) << 8 |
                                              0xff000000u;
-        return drape;
+        return raster;
     }
     static std::uint32_t node(const std::vector<std::uint32_t>& page, int column, int row) {
         return page[static_cast<std::size_t>((row + 1) * kNormalPage_px + column + 1)];
@@ -34,7 +34,7 @@ class DrapePage : public testing::Test {
 };
 
 TEST_F(DrapePage, HasThePostsOwnColoursOnTheFinestLevel) {
-    const std::vector<std::uint32_t> page = drape_page(gradient(kSide, kSide), pyramid_, 0, {1, 2});
+    const std::vector<std::uint32_t> page = overlay_page(gradient(kSide, kSide), pyramid_, 0, {1, 2});
     for (int i : {-1, 0, 17, 80}) {
         EXPECT_EQ(red_of(node(page, i, 0)), static_cast<std::uint32_t>((256 + i) % 256));
         EXPECT_EQ(node(page, 5, i) >> 8 & 255, static_cast<std::uint32_t>((512 + i) % 256));
@@ -42,30 +42,30 @@ TEST_F(DrapePage, HasThePostsOwnColoursOnTheFinestLevel) {
 }
 
 TEST_F(DrapePage, HasMeansOfWhatANodeStandsForOnCoarserOnes) {
-    Drape drape{Array2d<std::uint32_t>(kSide, kSide, 0)};
+    OverlayRaster raster{Array2d<std::uint32_t>(kSide, kSide, 0)};
     // Columns by turns white and clear.
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; column += 2)
-            drape.rgba.at(column, row) = 0xffffffffu;
-    const std::vector<std::uint32_t> page = drape_page(drape, pyramid_, 2, {0, 0});
+            raster.rgba.at(column, row) = 0xffffffffu;
+    const std::vector<std::uint32_t> page = overlay_page(raster, pyramid_, 2, {0, 0});
     for (int i : {1, 20, 100})
         EXPECT_EQ(node(page, i, i), 0x80808080u);
 }
 
 TEST_F(DrapePage, LiesOnTheSameGroundWhateverItsOwnSize) {
     // Half as many texels, from the first post to the last.
-    Drape drape{Array2d<std::uint32_t>(kSide / 2, kSide / 2)};
+    OverlayRaster raster{Array2d<std::uint32_t>(kSide / 2, kSide / 2)};
     for (int row = 0; row < kSide / 2; ++row)
         for (int column = 0; column < kSide / 2; ++column)
-            drape.rgba.at(column, row) = drape_texel(column / 299.0, 0, 0, 1);
-    const std::vector<std::uint32_t> page = drape_page(drape, pyramid_, 0, {1, 0});
+            raster.rgba.at(column, row) = overlay_texel(column / 299.0, 0, 0, 1);
+    const std::vector<std::uint32_t> page = overlay_page(raster, pyramid_, 0, {1, 0});
     for (int i : {0, 100, 200})
         EXPECT_NEAR(red_of(node(page, i, 0)), 255 * (256 + i) / 599.0, 0.75) << i;
 }
 
 TEST_F(DrapePage, TexelsArePremultiplied) {
-    EXPECT_EQ(drape_texel(1, 0.5, 0, 0.5), 0x80004080u);
-    EXPECT_EQ(drape_texel(1, 1, 1, 0), 0u);
+    EXPECT_EQ(overlay_texel(1, 0.5, 0, 0.5), 0x80004080u);
+    EXPECT_EQ(overlay_texel(1, 1, 1, 0), 0u);
 }
 
 }  // namespace

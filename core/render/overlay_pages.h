@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gl/texture.h"
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 #include "render/frame_block.h"
 #include "render/loading.h"
 #include "render/lod.h"
@@ -14,14 +14,14 @@
 
 namespace relevo::render {
 
-/// A drape on the device: a virtual texture of its own resolution, whose tile pages are made where
-/// a view needs them. lib/drape.glsl reads it.
-class DrapePages {
+/// A raster on the device: a virtual texture of its own resolution, whose tile pages are made where
+/// a view needs them. lib/overlay.glsl reads it.
+class OverlayPages {
   public:
     /// @param pyramid    must outlive this
     /// @param spacing_m  from post to post
     /// @param slots      pages at most
-    DrapePages(std::shared_ptr<const Drape> drape, const dem::Pyramid& pyramid, double spacing_m,
+    OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid, double spacing_m,
                int slots);
 
     /// Makes the pages of a view.
@@ -33,18 +33,18 @@ class DrapePages {
     /// True if pages are being made in the background.
     bool is_making() const { return cache_.is_making(); }
 
-    /// "drape_pages", "drape_table", else null.
+    /// "overlay_pages", "overlay_table", else null.
     const gl::Texture* texture(std::string_view name) const;
-    /// Writes the drape's part of the block.
+    /// Writes the raster's part of the block.
     void write(FrameBlock& block) const;
 
   private:
     void visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
                std::vector<TileKey>& pages) const;
 
-    std::shared_ptr<const Drape> drape_;
+    std::shared_ptr<const OverlayRaster> overlay_;
     const dem::Pyramid& pyramid_;
-    DrapeTexels texels_;
+    OverlayTexels texels_;
     double texel_m_;  ///< distance of texels on the finest level
     PageTable table_;
     bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
