@@ -12,6 +12,7 @@
 //@ include lib/octahedral.glsl
 //@ include lib/moved.glsl
 //@ include lib/pages.glsl
+//@ include lib/pixel.glsl
 //@ include lib/shown.glsl
 //@ include lib/tangent.glsl
 
@@ -49,8 +50,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 what = texelFetch(gbuffer, pixel, 0);
     float depth = uintBitsToFloat(what.w);
-    vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
-               gl_FragCoord.y * frame.pixel_ray_dy.xyz;
+    vec3 ray = pixel_ray();
 
     Surface s;
     s.position_m = ray * depth;
@@ -146,7 +146,7 @@ void main() {
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);
     radiance = exposed(radiance);
 #ifdef SHOWN
-    light_out = shown(radiance, over, numbers);
+    light_out = shown(pixel_with(s.distance_m), radiance, over, numbers);
 #else
     light_out = vec4(radiance, numbers);
 #endif

@@ -246,10 +246,11 @@ class Declaration {
 
     /// Tone mapping of stored radiance. Without it the shading programs do that.
     void post() {
+        shader::ProgramRecipe recipe{
+            .vertex_main = kFullscreen, .fragment_main = "post.frag.glsl", .defines = end_defines_};
+        if (facts_.pixel_hooks) recipe.defines.push_back({"PIXEL_HOOKS", ""});
         add(Pass{.name = "post",
-                 .program = program("post", {.vertex_main = kFullscreen,
-                                             .fragment_main = "post.frag.glsl",
-                                             .defines = end_defines_}),
+                 .program = program("post", std::move(recipe)),
                  .colours = {{tone_mapped_}}});
     }
 

@@ -32,6 +32,7 @@ struct FrameFacts {
     bool wants_night = false;     ///< effects want the word `night`
     bool radiance = false;        ///< linear radiance is stored; else shading ends in colours
     bool antialias = true;        ///< silhouettes are smoothed
+    bool pixel_hooks = false;     ///< effects have hooks for all pixels: image, finish or overlay
     bool overlays = false;        ///< effects or a raster draw over the tone-mapped ground
     bool draped = false;          ///< a raster lies on the ground: Terrain::drape
     bool audited = false;         ///< the terrain pass also writes what SunSeen has

@@ -62,6 +62,8 @@ class Stitcher {
         : core_(core), input_(input) {
         facts_.radiance = !options.shown;
         facts_.antialias = options.antialias;
+        facts_.pixel_hooks =
+            answers(input, "image") || answers(input, "finish") || answers(input, "overlay");
         facts_.overlays = options.draped || answers(input, "display");
         facts_.draped = options.draped;
         facts_.audited = options.audited;

@@ -233,6 +233,11 @@ bool Stage::needs_prototype(const Hook& hook) const {
     return calls(hook) && (is_service(hook) || early_hooks_.count(hook.name) > 0);
 }
 
+const Hook* Stage::chain_after(const Hook& service) const {
+    const auto chain = std::ranges::find(hooks(), service.name, &Hook::modifies);
+    return chain == hooks().end() || providers(*chain).empty() ? nullptr : &*chain;
+}
+
 std::string Stage::head(const Hook& hook) const {
     std::string text(hook.signature);
     if (!is_service(hook)) text.insert(text.find(' ') + 1, kHookPrefix);
@@ -381,6 +386,10 @@ void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by
         if (function.substr(0, 5) == "core_") check_default(function, hook);
         need(function, name);
         calls.calls.insert(function);
+    }
+    if (const Hook* const chain = chain_after(hook)) {
+        call_hook(*chain, from, name);
+        calls.calls.insert(std::string(kHookPrefix) + std::string(chain->name));
     }
     functions_.try_emplace(name, calls);
 }

@@ -78,6 +78,8 @@ class Stage {
     std::string head(const Hook& hook) const;  ///< of the generated function
     std::vector<std::string> called_functions(
         const Hook& hook) const;  ///< functions that it calls, in order
+    /// The chain that modifies what a service returns; null if it has none, or no provider.
+    const Hook* chain_after(const Hook& service) const;
     std::vector<std::string> providers(const Hook& hook) const;  ///< ids of the plugins among them
 
   private:

@@ -251,12 +251,28 @@ class Stitcher {
         const std::string answer = signature.type == "void" ? "    " : "    return ";
 
         out.line(stage.head(hook) + " {");
+        if (const Hook* const chain = stage.chain_after(hook))
+            return write_with_chain(out, stage.called_functions(hook).front(), *chain);
         if (hook.name == "vertex")
             for (const Varying* varying : stage.varyings())
                 if (stage.owner_of(varying->name) != "core" && is_handed_on(*varying))
                     out.line(fmt::format("    {} = {};", varying->name, zero_of(varying->type)));
         for (const std::string& function : stage.called_functions(hook))
             out.line(answer + function + arguments);
+        out.line("}");
+    }
+
+    /// Body of background_radiance(): the chain gets the sky without disc and stars, and dims these
+    /// by the transmittance.
+    static void write_with_chain(TextBuilder& out, const std::string& provider, const Hook& chain) {
+        out.line(fmt::format("    vec3 radiance = {}(direction, false);", provider));
+        out.line("    vec3 transmittance = vec3(1.0);");
+        out.line(
+            fmt::format("    vec3 behind = with_disc ? {}(direction, true) - radiance : "
+                        "vec3(0.0);",
+                        provider));
+        out.line(fmt::format("    hook_{}(direction, radiance, transmittance);", chain.name));
+        out.line("    return radiance + transmittance * behind;");
         out.line("}");
     }
 
