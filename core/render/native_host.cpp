@@ -280,10 +280,10 @@ struct NativeHost::Impl : effect::ModuleServices {
         const gl::Framebuffer& framebuffer = textures.depth_framebuffer(target);
         DrawState drawing{
             .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
-            .clips_voids = drawn.terrain.has_holes(),
+            .clips_voids = drawn.terrain.has_voids(),
             .clamps_depth = true};
         // Light hits the upper side of ground first, except under voids.
-        if (!drawn.terrain.has_holes())
+        if (!drawn.terrain.has_voids())
             drawing.winds_counterclockwise = drawn.terrain.winds_counterclockwise();
         const DrawScope scope(framebuffer, drawing);
         draw_ground(drawn.terrain, [&] { drawn.terrain.draw(tiles, origin_m); });

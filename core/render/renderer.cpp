@@ -294,7 +294,7 @@ struct Renderer::Impl : FrameServices {
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
-        return probe.height_m(terrain.has_holes(), [&] {
+        return probe.height_m(terrain.has_voids(), [&] {
             programs.draw(program, below.triangles(),
                           [&] { terrain.draw(below, inputs.camera.eye_m); });
         });

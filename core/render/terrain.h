@@ -42,7 +42,7 @@ struct TerrainOptions {
     /// terrain.
     const dem::Water* water = nullptr;              ///< null: found when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
-    SkyAhead sky{};  ///< sky-view factor of the heightfield, if being computed
+    SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
 };
 
@@ -145,7 +145,7 @@ class Terrain {
     const gl::Texture* texture(std::string_view name) const;
     /// Unique in the process; changes with displacement.
     std::uint64_t serial() const { return serial_; }
-    bool has_holes() const { return pyramid_.has_holes(); }
+    bool has_voids() const { return pyramid_.has_voids(); }
     /// True if triangles are counter-clockwise as seen from above. False on grids with reversed
     /// rows.
     bool winds_counterclockwise();

@@ -115,8 +115,8 @@ void Session::Impl::compute_sky(const LoadedDem& dem,
         return std::ranges::any_of(text.stitched.textures,
                                    [](const auto& unit) { return unit.resource == "light_sky"; });
     };
-    if (!sky_ahead.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
-        sky_ahead = render::find_sky_ahead(dem.to_draw(), state.scene.exaggeration);
+    if (!sky_view.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
+        sky_view = render::compute_sky_view_async(dem.to_draw(), state.scene.exaggeration);
 }
 
 void Session::Impl::set_effects(const scene::Effects& asked) {
@@ -186,7 +186,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
-                        .sky = std::exchange(sky_ahead, {}),
+                        .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
                                                                       : render::ShadowsOn::Device},
                     dem->source.get());

@@ -42,7 +42,7 @@ struct Session::Impl {
     // In order of dependency.
     std::optional<gl::Context> context;
     render::SharedResources shared;
-    render::SkyAhead sky_ahead;  // for the first DEM
+    render::SkyViewFuture sky_view;  // for the first DEM
     RecentEffects recent;
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
