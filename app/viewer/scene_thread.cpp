@@ -76,7 +76,7 @@ struct SceneThread::Impl {
     bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
-    std::optional<std::shared_ptr<const render::Drape>> drape;  // nullopt: unchanged
+    std::optional<std::shared_ptr<const render::OverlayRaster>> overlay;  // nullopt: unchanged
     /// Frames the window has not fetched: the newest finished one, and those the device is drawing.
     std::deque<std::shared_ptr<const Picture>> pictures;
     std::optional<std::string> message;
@@ -211,7 +211,7 @@ struct SceneThread::Impl {
         std::unique_lock lock(mutex);
         while (!ends) {
             const auto is_asked = [&] {
-                return ends || has_new_wants || effects || !values.empty() || drape || all_posts;
+                return ends || has_new_wants || effects || !values.empty() || overlay || all_posts;
             };
             // Drawing sooner would slow down the tile pages that it waits for.
             const auto drawn_at = Clock::now();
@@ -227,7 +227,7 @@ struct SceneThread::Impl {
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
-            const auto new_drape = std::exchange(drape, std::nullopt);
+            const auto new_overlay = std::exchange(overlay, std::nullopt);
             auto new_posts = std::exchange(all_posts, nullptr);
             const std::uint64_t answers = wants;
             has_new_wants = false;
@@ -243,7 +243,7 @@ struct SceneThread::Impl {
             // After a failure the last frame stays until the next request.
             try {
                 attempt([&] { change(new_effects, new_values); });
-                if (new_drape) attempt([&] { session->drape(*new_drape); });
+                if (new_overlay) attempt([&] { session->set_overlay(*new_overlay); });
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;
@@ -454,8 +454,8 @@ void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
     impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
 }
 
-void SceneThread::want_drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->change([&](Impl& my) { my.drape = std::move(drape); });
+void SceneThread::want_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
+    impl_->change([&](Impl& my) { my.overlay = std::move(raster); });
 }
 
 bool SceneThread::rests() const {

@@ -40,7 +40,7 @@ class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
         : facts_(facts),
-          tone_mapped_(facts.antialias ? "colour" : "picture"),
+          tone_mapped_(facts.antialias ? "colour" : "output"),
           shaded_(facts.radiance ? "radiance" : tone_mapped_) {
         if (!facts.radiance)
             end_defines_.push_back({"SHOWN", ""});
@@ -99,7 +99,7 @@ class Declaration {
             add(Resource{.name = "colour", .format = RGBA8, .linear = true});
             add(Resource{.name = "edge_marks", .format = Stencil8});
         }
-        add(Resource{.name = "picture", .format = RGBA8, .linear = true, .output = true});
+        add(Resource{.name = "output", .format = RGBA8, .linear = true, .output = true});
     }
 
     /// Passes on the host before the first draw.
@@ -200,7 +200,7 @@ class Declaration {
                                      .fragment_main = "terrain.frag.glsl",
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
-        if (facts_.draped) recipe.defines.push_back({"DRAPED", ""});
+        if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
         Pass pass{.name = "terrain",
@@ -260,9 +260,9 @@ class Declaration {
         add(Pass{.name = "copy",
                  .kind = PassKind::Host,
                  .reads = {"colour"},
-                 .writes = {"picture"},
+                 .writes = {"output"},
                  .body = [](PassContext& frame) {
-                     frame.texture("picture").copy_from(frame.texture("colour"));
+                     frame.texture("output").copy_from(frame.texture("colour"));
                  }});
         add(Pass{.name = "edges",
                  .program = program(
@@ -271,7 +271,7 @@ class Declaration {
         add(Pass{.name = "antialias",
                  .program = program("antialias", {.vertex_main = kFullscreen,
                                                   .fragment_main = "antialias.frag.glsl"}),
-                 .colours = {{.resource = "picture", .updates = true}},
+                 .colours = {{.resource = "output", .updates = true}},
                  .stencil = Stencil{"edge_marks"}});
     }
 

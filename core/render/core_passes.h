@@ -33,7 +33,7 @@ struct FrameFacts {
     bool radiance = false;               ///< stores linear radiance; else shading writes colours
     bool antialias = true;               ///< smooths silhouettes
     bool overlays = false;               ///< effects or a raster draw over the tone-mapped ground
-    bool draped = false;                 ///< a raster lies on the ground: Terrain::drape
+    bool overlay_raster = false;         ///< the ground has an overlay: Terrain::set_overlay
     bool audited = false;                ///< the terrain pass also writes the data of SunSeen
     bool vertex_normals = false;         ///< computed per vertex, not per fragment
     bool displaced = false;              ///< effects displace the ground

@@ -62,8 +62,8 @@ class Stitcher {
         : core_(core), input_(input) {
         facts_.radiance = !options.shown;
         facts_.antialias = options.antialias;
-        facts_.overlays = options.draped || answers(input, "display");
-        facts_.draped = options.draped;
+        facts_.overlays = options.overlay_raster || answers(input, "display");
+        facts_.overlay_raster = options.overlay_raster;
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;
         facts_.displaced = answers(input, "displace");

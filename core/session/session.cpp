@@ -89,8 +89,8 @@ void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
 }
 
-void Session::drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->set_drape(std::move(drape));
+void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
+    impl_->set_overlay(std::move(raster));
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
@@ -140,7 +140,7 @@ void Session::draw_alone() {
 
 image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
-        [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
+        [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
     impl_->stamp_notes = add_stamps(*this, legends(), picture);
     return picture;
@@ -153,7 +153,7 @@ image::ImageF Session::radiance() const {
 }
 
 const gl::Texture& Session::texture() const {
-    return impl_->drawn->renderer().picture();
+    return impl_->drawn->renderer().output();
 }
 
 const gl::Texture& Session::depth() const {

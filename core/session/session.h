@@ -128,7 +128,7 @@ class Session {
     void resize(int width_px, int height_px);
     /// Draws an overlay on the ground; null: none. The first overlay requires other shader
     /// programs.
-    void drape(std::shared_ptr<const render::Drape> drape);
+    void set_overlay(std::shared_ptr<const render::OverlayRaster> raster);
     /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
     /// Options::compared.

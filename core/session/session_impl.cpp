@@ -77,7 +77,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
-    request.draped = is_draped();
+    request.overlay_raster = has_overlay_raster();
     request.overlay_has_time = overlay_time.has_value();
     return request;
 }
@@ -92,7 +92,7 @@ render::RendererOptions Session::Impl::renderer_options() {
     return {.width_px = state.scene.width_px,
             .height_px = state.scene.height_px,
             .radiance = options.radiance,
-            .draped = is_draped(),
+            .overlay_raster = has_overlay_raster(),
             .outside = !state.scene.view.eye,
             .audited = options.audited,
             .shared = &shared};
@@ -192,9 +192,9 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                     dem->source.get());
     if (state.scene.overlay) {
         overlay = read_overlay(*state.scene.overlay, terrain->grid());
-        drape = overlay->drape;
+        overlay_raster = overlay->raster;
     }
-    terrain->drape(drape);
+    terrain->set_overlay(overlay_raster);
     stages.emplace_back("upload", milliseconds_since(began));
     state.take_shape(/*other=*/true);
 }
@@ -208,16 +208,16 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     if (request(effects).ground != drawn->request().ground) set_effects(effects);
 }
 
-void Session::Impl::set_drape(std::shared_ptr<const render::Drape> wanted) {
+void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted) {
     context->make_current();
-    std::swap(drape, wanted);
-    terrain->drape(drape);
+    std::swap(overlay_raster, wanted);
+    terrain->set_overlay(overlay_raster);
     try {
-        const EffectsRequest with_drape = request(drawn->request().effects);
-        if (with_drape != drawn->request()) switch_to(with_drape);
+        const EffectsRequest with_overlay = request(drawn->request().effects);
+        if (with_overlay != drawn->request()) switch_to(with_overlay);
     } catch (...) {
-        std::swap(drape, wanted);
-        terrain->drape(drape);
+        std::swap(overlay_raster, wanted);
+        terrain->set_overlay(overlay_raster);
         throw;
     }
 }

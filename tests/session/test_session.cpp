@@ -10,7 +10,7 @@
 
 #include "base/log.h"
 #include "base/units.h"
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 #include "session/session.h"
 #include "session/words.h"
 #include "sun/time.h"
@@ -121,8 +121,8 @@ TEST(Session, AToggleThereAndBackLinksNothing) {
     Session session(scene, {.device = "software"}, files);
     scene::Effects fewer;
     fewer.switches.disable = {"haze", "bump"};
-    const auto colours =
-        std::make_shared<render::Drape>(render::Drape{Array2d<std::uint32_t>(2, 2, 0x80ff0000u)});
+    const auto colours = std::make_shared<render::OverlayRaster>(
+        render::OverlayRaster{Array2d<std::uint32_t>(2, 2, 0x80ff0000u)});
     std::vector<image::Image8> pictures;
     int linked = 0;
     for (const bool again : {false, true}) {
@@ -130,7 +130,7 @@ TEST(Session, AToggleThereAndBackLinksNothing) {
         for (const bool overlay : {false, true})
             for (const bool all : {true, false}) {
                 session.set_effects(all ? scene::Effects{} : fewer);
-                session.drape(overlay ? colours : nullptr);
+                session.set_overlay(overlay ? colours : nullptr);
                 session.draw_alone();
                 pictures.push_back(session.picture());
                 EXPECT_TRUE(!again || pictures.back().values == pictures[i].values) << i;
