@@ -176,7 +176,7 @@ struct SceneThread::Impl {
         if (session->scene().overlay) legend = session->legends().front();
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
                                                session->outline(), session->heights_to_aim_at(),
-                                               session->moment(), std::move(legend)});
+                                               session->time(), std::move(legend)});
     }
 
     /// Reads the complete DEM in the background, after the first frame of a preview.
@@ -313,8 +313,8 @@ struct SceneThread::Impl {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view, now.keep_above_m);
-        if (now.utc && *now.utc != session->moment()) {
-            session->set_moment(*now.utc);
+        if (now.utc && *now.utc != session->time()) {
+            session->set_time(*now.utc);
             // Core's lighting is always current.
             shadows_lag = !session->effects().loaded.modules.empty();
         }
@@ -354,7 +354,7 @@ struct SceneThread::Impl {
             copy(*made);
         made->camera = session->camera();
         made->aim_m = session->heights_to_aim_at();
-        made->utc = session->moment();
+        made->utc = session->time();
         made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;

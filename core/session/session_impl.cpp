@@ -37,8 +37,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
         overlay_time = time_of(*scene.overlay);
     }
     std::optional<sun::ParsedTime> time;
-    const bool timed = !scene.moment.time.empty();
-    if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
+    const bool timed = !scene.time.at.empty();
+    if (timed && !needs_dem(scene.time)) time = parse(scene.time);
     // Deferred to get() if no thread can be created.
     auto loading = std::async(std::launch::async | std::launch::deferred,
                               [this] { return options.dem ? options.dem : load_own(); });
@@ -51,7 +51,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     compile(*drawn, loaded.get());
     stages.emplace_back("compile", milliseconds_since(began));
     stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
-    if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
+    if (timed && !time) time = parse_over(scene.time, *loaded->source, loaded->field);
     upload(loaded);
     look(scene.view);
     warn_of_eye();
@@ -59,8 +59,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
-    const bool timed = !state.scene.moment.time.empty();
-    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.moment)));
+    const bool timed = !state.scene.time.at.empty();
+    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.time)));
 }
 
 void Session::Impl::open_device(FilesInUse& files) {
@@ -169,7 +169,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
         state.take_shape(other_shape);
     }
     scene.stamps = next.stamps;
-    scene.moment = next.moment;
+    scene.time = next.time;
     state.set_time(utc);
     look(next.view);
     warn_of_eye();
@@ -203,7 +203,7 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     context->make_current();
     upload(dem);
     look(given.view);
-    state.set_time(given.moment.time.empty() ? state.default_time() : state.utc());
+    state.set_time(given.time.at.empty() ? state.default_time() : state.utc());
     const scene::Effects effects = drawn->request().effects;
     if (request(effects).ground != drawn->request().ground) set_effects(effects);
 }

@@ -88,7 +88,7 @@ TEST(Overlay, UsualRampsAreOfWhatTheBandSaysItIs) {
 double off_the_mark(const glm::ivec2& at, int size, double above_m) {
     scene::Scene scene;
     scene.dems = {jacksboro()};
-    scene.moment.time = "2026-06-21T16:00Z";
+    scene.time.at = "2026-06-21T16:00Z";
     scene.effects.switches.only = std::vector<std::string>{};
     scene.width_px = 320;
     scene.height_px = 256;
