@@ -4,7 +4,7 @@
 //!           with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
-//@ include lib/drape.glsl
+//@ include lib/overlay.glsl
 //@ include lib/exposed.glsl
 //@ include lib/filtered.glsl
 //@ include lib/finite.glsl
@@ -138,8 +138,8 @@ void main() {
     hook_atmosphere(s, view, radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
-#ifdef DRAPED
-    over += (1.0 - over.a) * draped(uintBitsToFloat(what.xy), length(frame.pixel_ray_dx.xyz) * depth *
+#ifdef OVERLAY_RASTER
+    over += (1.0 - over.a) * overlay_colour(uintBitsToFloat(what.xy), length(frame.pixel_ray_dx.xyz) * depth *
                                                                   frame.normal_texels_per_m);
 #endif
     // What is stored may be clamped to a number.

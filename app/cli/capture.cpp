@@ -106,7 +106,7 @@ class Timings {
         const std::clock_t processor_began = std::clock();
         for (int i = 0; i < repeat; ++i) {
             const auto began = Clock::now();
-            if (step_s > 0) session.set_moment(session.moment() + step_s);
+            if (step_s > 0) session.set_time(session.time() + step_s);
             session.draw_alone();
             frames_ms.push_back(milliseconds_since(began));
         }
@@ -151,7 +151,7 @@ std::string local_time(const session::Session& session) {
 
 /// What the program chose because the command line does not say it, in one line.
 void report_chosen(const session::Session& session) {
-    const bool time = !session.moment_reason().empty(), view = !session.view_reason().empty();
+    const bool time = !session.time_reason().empty(), view = !session.view_reason().empty();
     if (!time && !view) return;
     const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
     std::string text = "chosen: " + (time ? local_time(session) : "");
@@ -165,9 +165,9 @@ void report_chosen(const session::Session& session) {
 
 /// Place, time, sun and the assumptions about the ground.
 void report_scene(const session::Session& session) {
-    log::debug(fmt::format("{}, {}: sun at {}", session.place_text(), sun::to_iso(session.moment()),
+    log::debug(fmt::format("{}, {}: sun at {}", session.place_text(), sun::to_iso(session.time()),
                            session.sun_text()));
-    for (const std::string& reason : {session.moment_reason(), session.view_reason()})
+    for (const std::string& reason : {session.time_reason(), session.view_reason()})
         if (!reason.empty()) log::debug(reason);
     if (const std::string climate = session.climate_text(); !climate.empty())
         log::debug(

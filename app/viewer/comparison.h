@@ -18,7 +18,7 @@ class Comparison {
     /// @param opened   of `scene`; its DEM is not read again
     /// @param overlay  colours on the ground; null: none
     void start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
-               std::shared_ptr<const render::Drape> overlay);
+               std::shared_ptr<const render::OverlayRaster> overlay);
     void stop();
     /// The scene's thread; null: there is no comparison.
     SceneThread* thread() const { return thread_.get(); }

@@ -25,7 +25,7 @@ void play(State& state, double passed_s) {
 }  // namespace
 
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
-    : device_(device, presentation_of_environment()), zone_(scene.moment.zone) {
+    : device_(device, presentation_of_environment()), zone_(scene.time.zone) {
     state_.document.scene = scene;
     if (scene.overlay) state_.document.overlay = {OverlayKind::File, scene.overlay->opacity};
     Window::check_display();
@@ -183,7 +183,7 @@ void MainWindow::hand_over_scene() {
     if (overlay_->update(opened, thread)) pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())
         comparison_->start(whole_scene(), opened, wanted_now(),
-                           state_.overlay ? state_.overlay->overlay.drape : nullptr);
+                           state_.overlay ? state_.overlay->overlay.raster : nullptr);
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     if (takes_picture_ && is_image_complete()) take_picture();
 }

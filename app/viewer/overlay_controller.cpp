@@ -84,7 +84,7 @@ bool OverlayController::update(const Opened& opened, SceneThread& thread) {
     // Keeps the last overlay until there is an answer to another request.
     if (requested_ ? answer && answer != state_.overlay : state_.overlay != nullptr) {
         state_.overlay = requested_ ? answer : nullptr;
-        thread.want_drape(state_.overlay ? state_.overlay->overlay.drape : nullptr);
+        thread.want_overlay(state_.overlay ? state_.overlay->overlay.raster : nullptr);
         has_changed = true;
     }
     state_.overlay_progress.reset();

@@ -76,7 +76,7 @@ struct SceneThread::Impl {
     bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
-    std::optional<std::shared_ptr<const render::Drape>> drape;  // nullopt: unchanged
+    std::optional<std::shared_ptr<const render::OverlayRaster>> overlay;  // nullopt: unchanged
     /// Frames the window has not fetched: the newest finished one, and those the device is drawing.
     std::deque<std::shared_ptr<const Picture>> pictures;
     std::optional<std::string> message;
@@ -176,7 +176,7 @@ struct SceneThread::Impl {
         if (session->scene().overlay) legend = session->legends().front();
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
                                                session->outline(), session->heights_to_aim_at(),
-                                               session->moment(), std::move(legend)});
+                                               session->time(), std::move(legend)});
     }
 
     /// Reads the complete DEM in the background, after the first frame of a preview.
@@ -211,7 +211,7 @@ struct SceneThread::Impl {
         std::unique_lock lock(mutex);
         while (!ends) {
             const auto is_asked = [&] {
-                return ends || has_new_wants || effects || !values.empty() || drape || all_posts;
+                return ends || has_new_wants || effects || !values.empty() || overlay || all_posts;
             };
             // Drawing sooner would slow down the tile pages that it waits for.
             const auto drawn_at = Clock::now();
@@ -227,7 +227,7 @@ struct SceneThread::Impl {
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
-            const auto new_drape = std::exchange(drape, std::nullopt);
+            const auto new_overlay = std::exchange(overlay, std::nullopt);
             auto new_posts = std::exchange(all_posts, nullptr);
             const std::uint64_t answers = wants;
             has_new_wants = false;
@@ -243,7 +243,7 @@ struct SceneThread::Impl {
             // After a failure the last frame stays until the next request.
             try {
                 attempt([&] { change(new_effects, new_values); });
-                if (new_drape) attempt([&] { session->drape(*new_drape); });
+                if (new_overlay) attempt([&] { session->set_overlay(*new_overlay); });
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;
@@ -313,8 +313,8 @@ struct SceneThread::Impl {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view, now.keep_above_m);
-        if (now.utc && *now.utc != session->moment()) {
-            session->set_moment(*now.utc);
+        if (now.utc && *now.utc != session->time()) {
+            session->set_time(*now.utc);
             // Core's lighting is always current.
             shadows_lag = !session->effects().loaded.modules.empty();
         }
@@ -354,7 +354,7 @@ struct SceneThread::Impl {
             copy(*made);
         made->camera = session->camera();
         made->aim_m = session->heights_to_aim_at();
-        made->utc = session->moment();
+        made->utc = session->time();
         made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;
@@ -454,8 +454,8 @@ void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
     impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
 }
 
-void SceneThread::want_drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->change([&](Impl& my) { my.drape = std::move(drape); });
+void SceneThread::want_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
+    impl_->change([&](Impl& my) { my.overlay = std::move(raster); });
 }
 
 bool SceneThread::rests() const {

@@ -72,7 +72,7 @@ class SceneThread {
     void want_dem(std::shared_ptr<const session::LoadedDem> dem);
 
     /// Sets the overlay; null: none.
-    void want_drape(std::shared_ptr<const render::Drape> drape);
+    void want_overlay(std::shared_ptr<const render::OverlayRaster> raster);
 
     /// True if there is nothing left to draw.
     bool rests() const;

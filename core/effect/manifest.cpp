@@ -19,14 +19,14 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 50> kReserved = {
-    "all",    "antialias", "backdrop", "background", "camera",  "climate", "colour", "copy",
-    "core",   "data",      "depth",    "drape",      "east",    "edges",   "floor",  "footprint",
-    "frame",  "gbuffer",   "geometry", "gl",         "ground",  "height",  "hook",   "light",
-    "load",   "net",       "none",     "normal",     "overlay", "page",    "pixel",  "place",
-    "post",   "scene",     "screen",   "select",     "side",    "slope",   "srgb",   "steps",
-    "store",  "stored",    "sun",      "surface",    "tangent", "terrain", "up",     "varyings",
-    "vertex", "water"};
+constexpr std::array<std::string_view, 49> kReserved = {
+    "all",       "antialias", "backdrop", "background", "camera",   "climate", "colour",
+    "copy",      "core",      "data",     "depth",      "east",     "edges",   "floor",
+    "footprint", "frame",     "gbuffer",  "geometry",   "gl",       "ground",  "height",
+    "hook",      "light",     "load",     "net",        "none",     "normal",  "overlay",
+    "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
+    "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
+    "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
 
 // Capabilities that core provides itself: render/core_passes.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};

@@ -145,7 +145,7 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
                                  {(*clear)[0], (*clear)[1], (*clear)[2], (*clear)[3]});
     const DrawScope scope(*target, {.depth = pass.depth,
                                     .stencil = pass.stencil,
-                                    .clips_voids = pass.clips_voids && frame.terrain.has_holes()});
+                                    .clips_voids = pass.clips_voids && frame.terrain.has_voids()});
     draw(pass, program, *target, frame);
 }
 

@@ -64,8 +64,8 @@ class Stitcher {
         facts_.antialias = options.antialias;
         facts_.pixel_hooks =
             answers(input, "image") || answers(input, "finish") || answers(input, "overlay");
-        facts_.overlays = options.draped || answers(input, "display");
-        facts_.draped = options.draped;
+        facts_.overlays = options.overlay_raster || answers(input, "display");
+        facts_.overlay_raster = options.overlay_raster;
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;
         facts_.displaced = answers(input, "displace");

@@ -32,11 +32,11 @@ int count_non_finite(std::span<const std::uint8_t> rgba) {
     return count;
 }
 
-image::Image8 read_picture(const gl::Texture& picture, int* non_finite) {
-    std::vector<std::uint8_t> texels(4 * texels_of(picture));
-    picture.read(0, std::as_writable_bytes(std::span(texels)));
+image::Image8 read_output(const gl::Texture& output, int* non_finite) {
+    std::vector<std::uint8_t> texels(4 * texels_of(output));
+    output.read(0, std::as_writable_bytes(std::span(texels)));
     if (non_finite) *non_finite = count_non_finite(texels);
-    return image::from_device(picture.extent().width, picture.extent().height, texels);
+    return image::from_device(output.extent().width, output.extent().height, texels);
 }
 
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite) {

@@ -25,9 +25,9 @@ struct SunSeen {
 /// alpha below 1.
 int count_non_finite(std::span<const std::uint8_t> rgba);
 
-/// RGB, rows from the top.
+/// Display-referred colours: RGB, rows from the top.
 /// @param non_finite  if not null, receives count_non_finite()
-image::Image8 read_picture(const gl::Texture& picture, int* non_finite);
+image::Image8 read_output(const gl::Texture& output, int* non_finite);
 /// Linear radiance, RGB, rows from the top. @param exposure  factor in the stored values
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite);
 /// Depth along the optical axis [m] of a stored depth.

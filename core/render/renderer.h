@@ -28,8 +28,8 @@ struct RendererOptions {
     /// Stores linear radiance for read_radiance(). Otherwise shading writes display-referred
     /// colours directly, which saves a pass.
     bool radiance = true;
-    /// Draws an overlay: Terrain::drape. Not with normals per vertex.
-    bool draped = false;
+    /// Draws an overlay: Terrain::set_overlay. Not with normals per vertex.
+    bool overlay_raster = false;
     /// Whether the first frame is probably seen from outside the DEM. Programs of the other graph
     /// are linked when needed.
     bool outside = false;
@@ -99,7 +99,7 @@ class Renderer {
     /// targets again.
     void release_targets();
     /// The last frame on the device: RGBA8, rows from the bottom.
-    const gl::Texture& picture() const;
+    const gl::Texture& output() const;
     /// Depth of the last frame on the device: Depth32F, converted to metres by distance_m().
     const gl::Texture& depth() const;
 
@@ -125,7 +125,7 @@ class Renderer {
     bool is_watched() const;
     /// The last frame as RGB, rows from the top.
     /// @param non_finite  if not null, receives count_non_finite()
-    image::Image8 read_picture(int* non_finite = nullptr) const;
+    image::Image8 read_output(int* non_finite = nullptr) const;
     /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.
     image::ImageF read_radiance(int* non_finite = nullptr) const;
 

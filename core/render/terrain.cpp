@@ -121,21 +121,22 @@ std::vector<std::byte> Terrain::make_normals(const TileKey& key) const {
     return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
 }
 
-void Terrain::clear_surface() {
+void Terrain::update_surface_layers() {
+    if (surface_.find("normal_pages")) return;
     std::vector<PageLayer> layers{{"normal_pages", gl::Format::RG16Snorm, kNormalPage_px,
                                    gl::Filter::Linear,
                                    [this](const TileKey& key) { return make_normals(key); }}};
-    if (keeps_surface_)
+    if (has_surface_pages_)
         layers.push_back({"surface_pages", gl::Format::R32F, kNormalPage_px, gl::Filter::Nearest,
                           [this](const TileKey& key) {
                               return bytes_of(surface_page(pyramid_, key.level, key.at));
                           }});
-    if (drape_)
-        layers.push_back({"drape_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
-                          [this, drape = drape_](const TileKey& key) {
-                              return bytes_of(drape_page(*drape, pyramid_, key.level, key.at));
+    if (overlay_)
+        layers.push_back({"overlay_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
+                          [this, raster = overlay_](const TileKey& key) {
+                              return bytes_of(overlay_page(*raster, pyramid_, key.level, key.at));
                           }});
-    if (keeps_water_)
+    if (has_water_pages_)
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
                           [this](const TileKey& key) {
                               return bytes_of(water_->page(pyramid_, key.level, key.at));
@@ -143,24 +144,24 @@ void Terrain::clear_surface() {
     surface_ = PageCache(std::move(layers), normal_layers_);
 }
 
-void Terrain::drape(std::shared_ptr<const Drape> drape) {
-    if (drape == drape_) return;
-    drape_ = std::move(drape);
-    surface_ = PageCache();  // recreated for the next frame with all its layers
+void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
+    if (raster == overlay_) return;
+    overlay_ = std::move(raster);
+    surface_ = PageCache();  // update_surface_layers() creates it for the next frame
 }
 
-void Terrain::keep_water() {
-    if (keeps_water_) return;
-    keeps_water_ = true;
+void Terrain::require_water_pages() {
+    if (has_water_pages_) return;
+    has_water_pages_ = true;
     if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
     water_.emplace(*drawn_m_, options_.water ? *options_.water : *own_water_, options_.filled,
                    reduction_);
     surface_ = PageCache();
 }
 
-void Terrain::keep_surface() {
-    if (keeps_surface_) return;
-    keeps_surface_ = true;
+void Terrain::require_surface_pages() {
+    if (has_surface_pages_) return;
+    has_surface_pages_ = true;
     surface_ = PageCache();
 }
 
@@ -169,7 +170,7 @@ const climate::ClimateMap& Terrain::climate_map() {
     return *climate_map_;
 }
 
-const ClimateVolume& Terrain::keep_climate(int day) {
+const ClimateVolume& Terrain::update_climate(int day) {
     if (!climate_) {
         const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
         climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m);
@@ -276,7 +277,7 @@ TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_p
     complete_ = true;
     TileSelection selection =
         loading == Loading::Background ? select_in_background(view) : select(view);
-    if (!surface_.find("normal_pages")) clear_surface();
+    update_surface_layers();
     prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading,
                     deterministic);
     return selection;

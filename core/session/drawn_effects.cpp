@@ -13,7 +13,7 @@ namespace relevo::session {
 bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
     return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
            effects.plugin_path == other.effects.plugin_path && compared == other.compared &&
-           ground == other.ground && draped == other.draped &&
+           ground == other.ground && overlay_raster == other.overlay_raster &&
            overlay_has_time == other.overlay_has_time;
 }
 

@@ -19,7 +19,7 @@ struct EffectsRequest {
     scene::Effects effects;
     std::vector<std::string> compared{};  ///< effects to compare, as in Options
     effect::GroundWords ground{};         ///< facts about the DEM; empty while it is unknown
-    bool draped = false;                  ///< an overlay covers the ground
+    bool overlay_raster = false;          ///< an overlay covers the ground
     /// The overlay holds sunlight of its own time: cast shadows are off unless enabled by id.
     bool overlay_has_time = false;
 

@@ -68,18 +68,18 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool
 }  // namespace
 
 Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity) {
-    auto drape = std::make_shared<render::Drape>();
-    drape->rgba = Array2d<std::uint32_t>(values.width(), values.height());
+    auto raster = std::make_shared<render::OverlayRaster>();
+    raster->rgba = Array2d<std::uint32_t>(values.width(), values.height());
     parallel_for(0, values.height(), 16, [&](int first, int end) {
         for (int row = first; row < end; ++row)
             for (int column = 0; column < values.width(); ++column) {
                 const chart::Color color = legend.ramp.at(double{values.at(column, row)});
-                drape->rgba.at(column, row) = render::drape_texel(
+                raster->rgba.at(column, row) = render::overlay_texel(
                     (color.rgb >> 16 & 255) / 255.0, (color.rgb >> 8 & 255) / 255.0,
                     (color.rgb & 255) / 255.0, color.opacity * opacity);
             }
     });
-    return {std::move(drape), std::move(legend)};
+    return {std::move(raster), std::move(legend)};
 }
 
 chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,

@@ -8,7 +8,7 @@
 #include "chart/legend.h"
 #include "dem/grid.h"
 #include "image/image.h"
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 #include "scene/scene.h"
 #include "session/overlay_time.h"
 
@@ -16,7 +16,7 @@
 namespace relevo::session {
 
 struct Overlay {
-    std::shared_ptr<const render::Drape> drape;
+    std::shared_ptr<const render::OverlayRaster> raster;
     chart::Legend legend;
     std::optional<OverlayTime> time{};  ///< set if it shows sunlight
     bool has_given_title = false;

@@ -47,7 +47,7 @@ void SceneState::set_time(sun::Instant utc) {
 }
 
 sun::Instant SceneState::default_time() {
-    const scene::DefaultMoment chosen = day_->moment(scene::side_of_deg(inputs.camera));
+    const scene::DefaultTime chosen = day_->time(scene::side_of_deg(inputs.camera));
     time_reason_ = chosen.reason();
     return chosen.utc;
 }

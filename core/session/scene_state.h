@@ -8,7 +8,7 @@
 
 #include "render/frame_block.h"
 #include "render/ground.h"
-#include "scene/moment.h"
+#include "scene/default_time.h"
 #include "scene/scene.h"
 #include "session/session.h"
 #include "sun/position.h"

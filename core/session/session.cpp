@@ -40,17 +40,17 @@ scene::GroundHeight Session::heights_to_aim_at() const {
     return session::heights_to_aim_at(impl_->state.dem(), impl_->drawn->renderer().displacement());
 }
 
-void Session::set_moment(sun::Instant utc) {
+void Session::set_time(sun::Instant utc) {
     impl_->state.set_time(utc);
-    impl_->state.scene.moment.time = sun::exact_iso(utc);
-    impl_->state.scene.moment.date.clear();
+    impl_->state.scene.time.at = sun::exact_iso(utc);
+    impl_->state.scene.time.date.clear();
 }
 
 void Session::take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
     impl_->take(dem, given);
 }
 
-sun::Instant Session::moment() const {
+sun::Instant Session::time() const {
     return impl_->state.utc();
 }
 
@@ -89,8 +89,8 @@ void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
 }
 
-void Session::drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->set_drape(std::move(drape));
+void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
+    impl_->set_overlay(std::move(raster));
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
@@ -103,7 +103,7 @@ std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
     if (impl_->overlay)
         all.insert(all.begin(),
-                   dated_legend(*impl_->overlay, scene().moment.zone, ground().frame.origin()));
+                   dated_legend(*impl_->overlay, scene().time.zone, ground().frame.origin()));
     return all;
 }
 
@@ -140,7 +140,7 @@ void Session::draw_alone() {
 
 image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
-        [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
+        [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
     impl_->stamp_notes = add_stamps(*this, legends(), picture);
     return picture;
@@ -153,7 +153,7 @@ image::ImageF Session::radiance() const {
 }
 
 const gl::Texture& Session::texture() const {
-    return impl_->drawn->renderer().picture();
+    return impl_->drawn->renderer().output();
 }
 
 const gl::Texture& Session::depth() const {
@@ -213,7 +213,7 @@ std::string Session::place_text() const {
 }
 
 std::string Session::clock_text() const {
-    return session::clock_text(moment(), scene().moment.zone, ground().frame.origin());
+    return session::clock_text(time(), scene().time.zone, ground().frame.origin());
 }
 
 std::string Session::sun_text() const {
@@ -224,7 +224,7 @@ std::string Session::view_reason() const {
     return impl_->state.view_reason();
 }
 
-const std::string& Session::moment_reason() const {
+const std::string& Session::time_reason() const {
     return impl_->state.time_reason();
 }
 
@@ -232,7 +232,7 @@ std::string Session::climate_text() const {
     if (!impl_->drawn->renderer().reads_climate()) return {};
     impl_->context->make_current();
     const ClimateReport report =
-        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), moment());
+        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), time());
     return session::climate_text(report) + "; " + ground_text(report);
 }
 

@@ -110,7 +110,7 @@ class Session {
     /// keeps the DEM alive.
     scene::GroundHeight heights_to_aim_at() const;
     /// Sets the time, and with it the sun.
-    void set_moment(sun::Instant utc);
+    void set_time(sun::Instant utc);
     /// Shows another scene of the same DEM and reuses what both share. The resulting frames do not
     /// depend on earlier ones: they are equal byte by byte.
     /// @param utc  the scene's time
@@ -128,7 +128,7 @@ class Session {
     void resize(int width_px, int height_px);
     /// Draws an overlay on the ground; null: none. The first overlay requires other shader
     /// programs.
-    void drape(std::shared_ptr<const render::Drape> drape);
+    void set_overlay(std::shared_ptr<const render::OverlayRaster> raster);
     /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
     /// Options::compared.
@@ -148,7 +148,7 @@ class Session {
     /// @throws Error as those that open; the session is then unusable
     void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given);
 
-    sun::Instant moment() const;
+    sun::Instant time() const;
 
     /// Draws a complete frame, waiting for its terrain.
     /// @param times  if not null, receives the duration of each pass
@@ -204,8 +204,8 @@ class Session {
 
     /// Reason for the default view angles; empty if all were given.
     std::string view_reason() const;
-    /// Reason for the default time, as scene::DefaultMoment::reason(); empty if one was given.
-    const std::string& moment_reason() const;
+    /// Reason for the default time, as scene::DefaultTime::reason(); empty if one was given.
+    const std::string& time_reason() const;
     /// climate_text() and ground_text() at the DEM's centre and middle height; empty if no active
     /// effect depends on climate.
     std::string climate_text() const;

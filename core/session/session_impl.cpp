@@ -37,8 +37,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
         overlay_time = time_of(*scene.overlay);
     }
     std::optional<sun::ParsedTime> time;
-    const bool timed = !scene.moment.time.empty();
-    if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
+    const bool timed = !scene.time.at.empty();
+    if (timed && !needs_dem(scene.time)) time = parse(scene.time);
     // Deferred to get() if no thread can be created.
     auto loading = std::async(std::launch::async | std::launch::deferred,
                               [this] { return options.dem ? options.dem : load_own(); });
@@ -51,7 +51,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     compile(*drawn, loaded.get());
     stages.emplace_back("compile", milliseconds_since(began));
     stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
-    if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
+    if (timed && !time) time = parse_over(scene.time, *loaded->source, loaded->field);
     upload(loaded);
     look(scene.view);
     warn_of_eye();
@@ -59,8 +59,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
-    const bool timed = !state.scene.moment.time.empty();
-    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.moment)));
+    const bool timed = !state.scene.time.at.empty();
+    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.time)));
 }
 
 void Session::Impl::open_device(FilesInUse& files) {
@@ -77,7 +77,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
-    request.draped = is_draped();
+    request.overlay_raster = has_overlay_raster();
     request.overlay_has_time = overlay_time.has_value();
     return request;
 }
@@ -92,7 +92,7 @@ render::RendererOptions Session::Impl::renderer_options() {
     return {.width_px = state.scene.width_px,
             .height_px = state.scene.height_px,
             .radiance = options.radiance,
-            .draped = is_draped(),
+            .overlay_raster = has_overlay_raster(),
             .outside = !state.scene.view.eye,
             .audited = options.audited,
             .shared = &shared};
@@ -115,8 +115,8 @@ void Session::Impl::compute_sky(const LoadedDem& dem,
         return std::ranges::any_of(text.stitched.textures,
                                    [](const auto& unit) { return unit.resource == "light_sky"; });
     };
-    if (!sky_ahead.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
-        sky_ahead = render::find_sky_ahead(dem.to_draw(), state.scene.exaggeration);
+    if (!sky_view.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
+        sky_view = render::compute_sky_view_async(dem.to_draw(), state.scene.exaggeration);
 }
 
 void Session::Impl::set_effects(const scene::Effects& asked) {
@@ -169,7 +169,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
         state.take_shape(other_shape);
     }
     scene.stamps = next.stamps;
-    scene.moment = next.moment;
+    scene.time = next.time;
     state.set_time(utc);
     look(next.view);
     warn_of_eye();
@@ -186,15 +186,15 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
-                        .sky = std::exchange(sky_ahead, {}),
+                        .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
                                                                       : render::ShadowsOn::Device},
                     dem->source.get());
     if (state.scene.overlay) {
         overlay = read_overlay(*state.scene.overlay, terrain->grid());
-        drape = overlay->drape;
+        overlay_raster = overlay->raster;
     }
-    terrain->drape(drape);
+    terrain->set_overlay(overlay_raster);
     stages.emplace_back("upload", milliseconds_since(began));
     state.take_shape(/*other=*/true);
 }
@@ -203,21 +203,21 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     context->make_current();
     upload(dem);
     look(given.view);
-    state.set_time(given.moment.time.empty() ? state.default_time() : state.utc());
+    state.set_time(given.time.at.empty() ? state.default_time() : state.utc());
     const scene::Effects effects = drawn->request().effects;
     if (request(effects).ground != drawn->request().ground) set_effects(effects);
 }
 
-void Session::Impl::set_drape(std::shared_ptr<const render::Drape> wanted) {
+void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted) {
     context->make_current();
-    std::swap(drape, wanted);
-    terrain->drape(drape);
+    std::swap(overlay_raster, wanted);
+    terrain->set_overlay(overlay_raster);
     try {
-        const EffectsRequest with_drape = request(drawn->request().effects);
-        if (with_drape != drawn->request()) switch_to(with_drape);
+        const EffectsRequest with_overlay = request(drawn->request().effects);
+        if (with_overlay != drawn->request()) switch_to(with_overlay);
     } catch (...) {
-        std::swap(drape, wanted);
-        terrain->drape(drape);
+        std::swap(overlay_raster, wanted);
+        terrain->set_overlay(overlay_raster);
         throw;
     }
 }

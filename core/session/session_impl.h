@@ -42,12 +42,12 @@ struct Session::Impl {
     // In order of dependency.
     std::optional<gl::Context> context;
     render::SharedResources shared;
-    render::SkyAhead sky_ahead;  // for the first DEM
+    render::SkyViewFuture sky_view;  // for the first DEM
     RecentEffects recent;
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
 
-    std::shared_ptr<const render::Drape> drape;
+    std::shared_ptr<const render::OverlayRaster> overlay_raster;
     std::optional<Overlay> overlay;  // of the scene
     std::optional<OverlayTime> overlay_time;
     std::vector<std::string> stamp_notes;
@@ -57,7 +57,7 @@ struct Session::Impl {
     std::shared_ptr<const LoadedDem> load_own() const;
     void open_device(FilesInUse& files);
     EffectsRequest request(const scene::Effects& effects) const;
-    bool is_draped() const { return drape || (state.scene.overlay && !terrain); }
+    bool has_overlay_raster() const { return overlay_raster || (state.scene.overlay && !terrain); }
     /// Copies the drawn effects into the scene.
     void take_effects();
     render::RendererOptions renderer_options();
@@ -72,7 +72,7 @@ struct Session::Impl {
     void show(const scene::Scene& next, sun::Instant utc);
     void upload(const std::shared_ptr<const LoadedDem>& dem);
     void take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given);
-    void set_drape(std::shared_ptr<const render::Drape> wanted);
+    void set_overlay(std::shared_ptr<const render::OverlayRaster> wanted);
     void look(const scene::View& view);
     DrawnShape shape();
     std::optional<double> drawn_height_m(const scene::Camera& camera);

@@ -37,10 +37,10 @@ const std::map<std::string, render::ProgramOptions> kOptions = {
     {"picture", {.shown = true, .natives = kNatives}},
     {"picture of a software device", {.shown = true, .software = true, .natives = kNatives}},
     {"radiance", {.natives = kNatives}},
-    {"radiance and overlay", {.draped = true, .natives = kNatives}},
-    {"overlay", {.draped = true, .shown = true, .natives = kNatives}},
+    {"radiance and overlay", {.overlay_raster = true, .natives = kNatives}},
+    {"overlay", {.overlay_raster = true, .shown = true, .natives = kNatives}},
     {"audit", {.shown = true, .audited = true, .natives = kNatives}},
-    {"audit of radiance and overlay", {.draped = true, .audited = true}},
+    {"audit of radiance and overlay", {.overlay_raster = true, .audited = true}},
     {"vertex normals", {.vertex_normals = true, .shown = true, .natives = kNatives}},
     {"radiance, vertex normals", {.vertex_normals = true}},
 };

@@ -45,7 +45,7 @@ class PictureHooks : public testing::TestWithParam<bool> {
                                           .radiance = GetParam()});
         renderer.render_frame(terrain_, ground_, frame());
         context_.check_errors();
-        Drawn drawn{renderer.read_picture(), {}};
+        Drawn drawn{renderer.read_output(), {}};
         renderer.read_depths(drawn.depths_m);
         return drawn;
     }
@@ -193,7 +193,7 @@ TEST_P(PictureHooks, WhatIsNoNumberIsCounted) {
                                       .radiance = GetParam()});
     renderer.render_frame(terrain_, ground_, frame());
     int count = 0;
-    renderer.read_picture(&count);
+    renderer.read_output(&count);
     EXPECT_EQ(count, 10 * kHeight_px);
 }
 

@@ -31,7 +31,7 @@ float depth_ahead_m(Session& session, const scene::View& view, Taken taken = Tak
     if (taken == Taken::InJob) {
         scene::Scene next = session.scene();
         next.view = view;
-        session.show(next, session.moment());
+        session.show(next, session.time());
     } else {
         session.look(view);
     }
@@ -101,7 +101,7 @@ int expect_all_to_stand(const std::string& name, const scene::Scene& scene, int 
 scene::Scene scene_of(const std::filesystem::path& dem) {
     scene::Scene scene;
     scene.dems = {dem.string()};
-    scene.moment.time = "2026-06-21T12:00Z";
+    scene.time.at = "2026-06-21T12:00Z";
     scene.width_px = scene.height_px = kSide_px;
     scene.effects.switches.only = std::vector<std::string>{};
     if (dem.extension() == ".asc") scene.dem.crs = "EPSG:32633";

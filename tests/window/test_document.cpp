@@ -108,7 +108,7 @@ TEST(Command, IsQuotedForAShell) {
     scene.view.heading_deg = 12.5;
     scene.view.pitch_deg = -3;
     scene.view.fov_y_rad = radians(40.0);
-    scene.moment.time = "2026-06-21T18:30:00+02:00";
+    scene.time.at = "2026-06-21T18:30:00+02:00";
     scene.effects.switches.disable = {"haze"};
     scene.effects.settings = {{"sea.colour", "0,0.1,0.2"}};
     EXPECT_EQ(capture_command(scene, "picture.png"),

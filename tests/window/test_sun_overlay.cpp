@@ -81,7 +81,7 @@ TEST(SunOverlay, HasTheFiguresOfTheCommandLine) {
         int others = 0;
         for (std::size_t i = 0; i < band.values.size(); ++i) {
             ASSERT_NEAR(shown->raster->values.data()[i], band.values.data()[i], 1e-4) << verb;
-            others += shown->overlay.drape->rgba.data()[i] != read.drape->rgba.data()[i];
+            others += shown->overlay.raster->rgba.data()[i] != read.raster->rgba.data()[i];
         }
         EXPECT_LT(others, 1e-3 * static_cast<double>(band.values.size())) << verb;
         // A point that is looked at has the nearest post's.
@@ -169,7 +169,7 @@ TEST(SunOverlay, IsCoarseFirstAndGivenUpForWhatIsWantedThen) {
     faint.opacity = 0.5;
     work.want(faint);
     EXPECT_EQ(end_of(work)->raster, last->raster);
-    EXPECT_EQ(work.answer()->overlay.drape->rgba.at(400, 300) >> 24, 128u);
+    EXPECT_EQ(work.answer()->overlay.raster->rgba.at(400, 300) >> 24, 128u);
     // Closed amidst of it.
     work.want(year);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -215,7 +215,7 @@ TEST(SunOverlay, SaysWhyThereIsNone) {
     wanted.file = scene::Overlay{.file = "/no/such.tif"};
     work.want(wanted);
     EXPECT_THAT(end_of(work)->error, testing::HasSubstr("/no/such.tif"));
-    EXPECT_EQ(work.answer()->overlay.drape, nullptr);
+    EXPECT_EQ(work.answer()->overlay.raster, nullptr);
 }
 
 }  // namespace

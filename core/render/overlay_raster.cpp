@@ -1,4 +1,4 @@
-#include "render/drape.h"
+#include "render/overlay_raster.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ std::uint32_t mean(const Array2d<std::uint32_t>& rgba, const Span& columns, cons
 
 }  // namespace
 
-std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
+std::uint32_t overlay_texel(double red, double green, double blue, double alpha) {
     const auto byte = [](double value) {
         return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
     };
@@ -53,20 +53,20 @@ std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
            byte(alpha) << 24;
 }
 
-std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
-                                      glm::ivec2 page) {
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                        int level, glm::ivec2 page) {
     const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
     std::vector<Span> columns, rows;
     for (int i = 0; i < kNormalPage_px; ++i) {
         const glm::ivec2 post = pyramid.post(level, glm::clamp(first + i, glm::ivec2(0), last));
-        columns.push_back(span_of(post.x, level, pyramid.columns(), drape.rgba.width()));
-        rows.push_back(span_of(post.y, level, pyramid.rows(), drape.rgba.height()));
+        columns.push_back(span_of(post.x, level, pyramid.columns(), raster.rgba.width()));
+        rows.push_back(span_of(post.y, level, pyramid.rows(), raster.rgba.height()));
     }
     std::vector<std::uint32_t> texels;
     texels.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
     for (const Span& row : rows)
         for (const Span& column : columns)
-            texels.push_back(mean(drape.rgba, column, row));
+            texels.push_back(mean(raster.rgba, column, row));
     return texels;
 }
 

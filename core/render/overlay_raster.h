@@ -10,19 +10,19 @@
 
 namespace relevo::render {
 
-/// Unlit colours over the ground of a DEM: an overlay.
-struct Drape {
+/// Unlit colours over the ground of a DEM.
+struct OverlayRaster {
     /// 0xAABBGGRR: sRGB, premultiplied by alpha. Rows from the north. The outer rows and columns
     /// coincide with the DEM's; their number may differ.
     Array2d<std::uint32_t> rgba;
 };
 
-/// A texel of a Drape from sRGB and alpha, each 0 to 1.
-std::uint32_t drape_texel(double red, double green, double blue, double alpha);
+/// A texel of an OverlayRaster from sRGB and alpha, each 0 to 1.
+std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
 /// Colours at the nodes of a normal tile page with its border, kNormalPage_px a side. Each is the
 /// mean of the texels nearest to its node.
-std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
-                                      glm::ivec2 page);
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                        int level, glm::ivec2 page);
 
 }  // namespace relevo::render
