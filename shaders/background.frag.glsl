@@ -9,7 +9,7 @@
 layout(location = 0) out vec4 light_out;
 
 void main() {
-    vec3 radiance = background_radiance(normalize(pixel_ray()), true);
+    vec3 radiance = background_radiance(normalize(pixel_ray_at(gl_FragCoord.xy)), true);
     float numbers = finite(vec4(radiance, 0.0));
     radiance = exposed(radiance);
 #ifdef SHOWN

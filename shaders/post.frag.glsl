@@ -20,7 +20,7 @@ void main() {
     float distance_m = kSky_m;
 #ifdef PIXEL_HOOKS
     float depth_m = screen_depth(depth, pixel);
-    if (depth_m < kSky_m) distance_m = depth_m * length(pixel_ray());
+    if (depth_m < kSky_m) distance_m = depth_m * length(pixel_ray_at(gl_FragCoord.xy));
 #endif
     vec4 light = texelFetch(radiance, pixel, 0);
     colour_out = shown(pixel_with(distance_m), light.rgb, over, light.a);

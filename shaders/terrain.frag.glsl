@@ -50,7 +50,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 what = texelFetch(gbuffer, pixel, 0);
     float depth = uintBitsToFloat(what.w);
-    vec3 ray = pixel_ray();
+    vec3 ray = pixel_ray_at(gl_FragCoord.xy);
 
     Surface s;
     s.position_m = ray * depth;

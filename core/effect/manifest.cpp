@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,6 +28,17 @@ constexpr std::array<std::string_view, 49> kReserved = {
     "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
     "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
     "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
+
+constexpr int kMaxPassSide = 4096;
+constexpr double kMinPassScale = 1.0 / 64;
+constexpr std::array<std::pair<PixelFormat, std::string_view>, 7> kPassFormats = {
+    std::pair(PixelFormat::RGBA16F, "rgba16f"),
+    {PixelFormat::RGBA32F, "rgba32f"},
+    {PixelFormat::RG16F, "rg16f"},
+    {PixelFormat::RG32F, "rg32f"},
+    {PixelFormat::R16F, "r16f"},
+    {PixelFormat::R32F, "r32f"},
+    {PixelFormat::RGBA8, "rgba8"}};
 
 // Capabilities that core provides itself: render/core_passes.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
@@ -125,6 +137,7 @@ class ManifestReader {
                                     manifest_.module));
         glsl(object);
         textures(object);
+        passes(object);
         texts(object);
         displaces(object);
         invents(object);
@@ -219,6 +232,59 @@ class ManifestReader {
         spec.mipmaps = object.boolean("mipmaps", true);
         object.finish();
         return spec;
+    }
+
+    void passes(json::ObjectReader& object) {
+        named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
+            manifest_.passes.push_back(pass(name, value));
+        });
+    }
+
+    /// A fraction of the frame's size, or a fixed size.
+    void pass_size(json::ObjectReader& object, shader::PluginPass& pass) {
+        if (object.has("width") || object.has("height")) {
+            if (object.has("scale"))
+                object.fail(object.line_of("scale"), "scale",
+                            "expected a scale of the frame's size, or width and height, not both");
+            object.need("width");
+            object.need("height");
+            pass.scale = 0;
+            pass.width = static_cast<int>(object.number("width", 1, 1, kMaxPassSide, true));
+            pass.height = static_cast<int>(object.number("height", 1, 1, kMaxPassSide, true));
+            return;
+        }
+        pass.scale = object.number("scale", 1, kMinPassScale, 1, false);
+        int exponent = 0;
+        if (std::frexp(pass.scale, &exponent) != 0.5)
+            object.fail(object.line_of("scale"), "scale",
+                        fmt::format("expected 1, 0.5, 0.25 or another half of these down to {} but "
+                                    "got {}",
+                                    kMinPassScale, pass.scale));
+    }
+
+    shader::PluginPass pass(const std::string& name, const json::Value& value) {
+        using When = shader::PluginPass::When;
+        json::ObjectReader object(kWho, manifest_.file.string(), "passes." + name, value);
+        shader::PluginPass pass{.name = name,
+                                .resource = manifest_.id + '.' + name,
+                                .function = manifest_.id + "_pass_" + name,
+                                .line = value.line};
+        std::vector<std::string> formats;
+        for (const auto& [format, word] : kPassFormats)
+            formats.emplace_back(word);
+        pass.format =
+            kPassFormats[static_cast<std::size_t>(object.choice("format", formats, 0))].first;
+        pass.linear = object.choice("filter", {"linear", "nearest"}, 0) == 0;
+        pass_size(object, pass);
+        pass.when = static_cast<When>(object.choice("when", {"frame", "sun", "changed", "dem"}, 0));
+        for (const std::string& word : words(object, "parameters"))
+            pass.parameters.push_back(manifest_.id + '.' + word);
+        if ((pass.when == When::Changed) == pass.parameters.empty())
+            object.fail(object.line_of("parameters"), "parameters",
+                        "expected the parameters that change it with \"when\": \"changed\", "
+                        "and only then");
+        object.finish();
+        return pass;
     }
 
     std::filesystem::path data_file(const json::ObjectReader& object, const std::string& key,

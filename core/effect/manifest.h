@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shader/param_store.h"
+#include "shader/plugin_pass.h"
 
 namespace relevo::effect {
 
@@ -79,6 +80,7 @@ struct Manifest {
 
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
+    std::vector<shader::PluginPass> passes;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty

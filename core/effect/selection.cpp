@@ -363,6 +363,13 @@ std::vector<const shader::Snippet*> Selection::snippets() const {
     return result;
 }
 
+std::vector<shader::PluginPass> Selection::passes() const {
+    std::vector<shader::PluginPass> result;
+    for (const Effect* effect : effects)
+        result.insert(result.end(), effect->manifest.passes.begin(), effect->manifest.passes.end());
+    return result;
+}
+
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable,
                  const GroundWords& ground) {

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "render/pass_context.h"
+#include "render/pass_texts.h"
 #include "shader/stored_varyings.h"
 
 namespace relevo::render {
@@ -36,6 +37,19 @@ void update_light(PassContext& frame, bool with_walls) {
     light.describe(frame.block);
 }
 
+When when_of(shader::PluginPass::When when) {
+    switch (when) {
+        case shader::PluginPass::When::Sun:
+            return When::Sun;
+        case shader::PluginPass::When::Changed:
+            return When::Parameters;
+        case shader::PluginPass::When::Dem:
+            return When::Dem;
+        default:
+            return When::Frame;
+    }
+}
+
 class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
@@ -53,6 +67,8 @@ class Declaration {
         prepare();
         natives();
         geometry();
+        for (const shader::PluginPass& pass : facts_.plugin_passes)
+            plugin_pass(pass);
         terrain();
         if (facts_.outside) side();
         background();
@@ -175,6 +191,23 @@ class Declaration {
         if (facts_.varying_targets > 0) pass.colours.push_back({shader::StoredVaryings::kTexture});
         if (facts_.height_steps) pass.colours.push_back({kHeightStepsTexture});
         add(std::move(pass));
+    }
+
+    void plugin_pass(const shader::PluginPass& pass) {
+        const When when = when_of(pass.when);
+        add(Resource{.name = pass.resource,
+                     .format = pass.format,
+                     .size = {.share = pass.scale, .width = pass.width, .height = pass.height},
+                     // A texture that is not computed in every frame has to last.
+                     .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
+                     .linear = pass.linear});
+        add(Pass{
+            .name = pass.resource,
+            .when = when,
+            .parameters = pass.parameters,
+            .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
+                                                       .fragment_main = PassTexts::name_of(pass)}),
+            .colours = {{pass.resource}}});
     }
 
     void ground_defines(shader::ProgramRecipe& recipe) const {

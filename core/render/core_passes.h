@@ -42,6 +42,7 @@ struct FrameFacts {
     bool height_steps = false;           ///< hooks read height_dx_m or height_dy_m
     int varying_targets = 0;             ///< layers of stored varyings (shader::Stitched)
     std::vector<std::string> natives{};  ///< ids of native effects, in their order
+    std::vector<shader::PluginPass> plugin_passes{};
 };
 
 /// A program of core before stitching.

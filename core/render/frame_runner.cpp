@@ -192,7 +192,7 @@ void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target
 void FrameRunner::use(const std::string& program, const Terrain& terrain) {
     programs_.link(program).use();
     for (const shader::TextureUnit& unit : programs_.text(program).stitched.textures) {
-        const gl::Texture* texture = targets_.texture(unit.resource);
+        const gl::Texture* texture = targets_.texture(Version::of(unit.resource).resource);
         if (!texture) texture = provider_(unit, terrain);
         if (!texture)
             failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,

@@ -7,13 +7,8 @@ vec3 pixel_ray_at(in vec2 at_px) {
     return frame.pixel_ray.xyz + at_px.x * frame.pixel_ray_dx.xyz + at_px.y * frame.pixel_ray_dy.xyz;
 }
 
-/// The ray through the centre of this pixel.
-vec3 pixel_ray() {
-    return pixel_ray_at(gl_FragCoord.xy);
-}
-
 /// This pixel. @param distance_m  from the eye to what it shows, or kSky_m
 Pixel pixel_with(in float distance_m) {
-    return Pixel(gl_FragCoord.xy, gl_FragCoord.xy * frame.viewport.zw, normalize(pixel_ray()),
+    return Pixel(gl_FragCoord.xy, gl_FragCoord.xy * frame.viewport.zw, normalize(pixel_ray_at(gl_FragCoord.xy)),
                  distance_m);
 }

@@ -235,6 +235,19 @@ TEST(Standing, ZoomComesNearerToWhatIsInTheMiddleOfTheBundledDem) {
     EXPECT_NEAR(eye.height_m - session.dem()->height_m(eye), scene::kClearance_m, 1);
 }
 
+TEST(Standing, ASessionMayBeginFarAboveTheGround) {
+    scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
+    const geo::Geodetic place{radians(36.35), radians(-84.24), 3000};
+    scene.view.eye = scene::Standpoint{place, /*above_ground=*/true};
+    scene.view.pitch_deg = -90;
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    std::vector<float> depths_m;
+    session.read_depths(depths_m);
+    EXPECT_NEAR(depths_m[depths_m.size() / 2], 3000, 20);
+}
+
 TEST(Standing, NoEyeIsUnderTheDrawnGroundOfRealDems) {
     SKIP_WITHOUT_TEST_DATA(data);
     for (const char* const name :
