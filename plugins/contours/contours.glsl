@@ -18,7 +18,7 @@ const float contours_close_px = 7.0;    // ... and begin to fade
 float contours_round(in float wanted_m) {
     float power = pow(10.0, floor(log2(wanted_m) / 3.3219281));
     float first = wanted_m / power;
-    return power * (first < 1.5 ? 1.0 : first < 3.5 ? 2.0 : first < 7.5 ? 5.0 : 10.0);
+    return power * (first < 1.414 ? 1.0 : first < 3.162 ? 2.0 : first < 7.071 ? 5.0 : 10.0);
 }
 
 float contours_interval() {

@@ -21,7 +21,8 @@ const float occlusion_widest_px = 96.0;  // of the radius in the picture
 /// How much a point hides of the sky of another one. @param towards  from that one [m]
 float occlusion_by(in vec3 towards, in vec3 normal) {
     float distance_m = length(towards);
-    float near = max(1.0 - distance_m / occlusion_radius_m, 0.0);
+    float share = distance_m / occlusion_radius_m;
+    float near = max(1.0 - share * share, 0.0);
     return near * max(dot(towards, normal) / max(distance_m, 1e-3) - occlusion_bias, 0.0);
 }
 

@@ -15,10 +15,12 @@ vec3 screen_position(in sampler2D depths, in ivec2 pixel) {
     return pixel_ray_at(vec2(pixel) + 0.5) * screen_depth(depths, pixel);
 }
 
-/// The shorter of two steps to neighbouring pixels, both in the same sense.
+/// The shorter of two steps to neighbouring pixels, both in the same sense. One is 0 at the picture's
+/// edge.
 vec3 screen_step(in vec3 before, in vec3 here, in vec3 after) {
     vec3 back = here - before, on = after - here;
-    return dot(back, back) < dot(on, on) ? back : on;
+    float back2 = dot(back, back), on2 = dot(on, on);
+    return on2 == 0.0 || (back2 > 0.0 && back2 < on2) ? back : on;
 }
 
 /// Unit normal of the drawn surface towards the eye, from the nearer neighbours of each pixel; towards
