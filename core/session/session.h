@@ -76,6 +76,9 @@ struct Options {
     bool radiance = false;  ///< keep linear radiance, for Session::radiance()
     /// Keep the data that Session::read_sun_seen() reads.
     bool audited = false;
+    /// Effects that the scene switches on by name may lack what they require: they are off, with a
+    /// notice. Otherwise that is an error.
+    bool allow_unmet = false;
     /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
     /// Called with the shader sources before they are compiled.

@@ -76,6 +76,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
+    request.allow_unmet = options.allow_unmet;
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
     request.overlay_has_time = overlay_time.has_value();
