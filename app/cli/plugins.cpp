@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "cli/commands.h"
+#include "cli/plugin_tools.h"
 #include "cli/shared.h"
 #include "effect/registry.h"
 
@@ -138,6 +139,7 @@ void add_plugins(CLI::App& app) {
         info(arguments->registry().effect(arguments->id, "plugins"), arguments->json);
     });
     list_verb.callback([] {});
+    add_plugin_tools(verb, arguments->plugin_path);
     verb.callback([arguments, &verb, &list_verb] {
         if (verb.get_subcommands().empty() || list_verb.count() > 0)
             list(arguments->registry(), arguments->json);

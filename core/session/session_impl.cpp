@@ -252,10 +252,13 @@ void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
     drawn->render(*terrain, state.ground(), frame, times);
 }
 
+FaultyPicture Session::Impl::faulty(const ActiveEffects& shown, int count) {
+    return {state.scene.effects, shown,        *context, renderer_options(), *terrain,
+            state.ground(),      state.inputs, count};
+}
+
 void Session::Impl::check_numbers(int count, const ActiveEffects& shown) {
-    if (count > 0)
-        report_non_finite({state.scene.effects, shown, *context, renderer_options(), *terrain,
-                           state.ground(), state.inputs, count});
+    if (count > 0) report_non_finite(faulty(shown, count));
 }
 
 }  // namespace relevo::session
