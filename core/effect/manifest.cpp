@@ -128,6 +128,7 @@ class ManifestReader {
         texts(object);
         displaces(object);
         invents(object);
+        object.string("$schema", "");  // which editors look for
         object.finish();
         return std::move(manifest_);
     }
@@ -305,7 +306,6 @@ std::span<const std::string_view> ground_words() {
     return kGroundWords;
 }
 
-Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
 bool is_core_word(std::string_view word) {
     return contains(kCoreWords, word);
 }
@@ -319,6 +319,7 @@ std::string fault_of_id(std::string_view text) {
     return {};
 }
 
+Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
     return ManifestReader(folder, data_dir).run();
 }
 
