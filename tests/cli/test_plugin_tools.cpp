@@ -1,5 +1,8 @@
 // The tools for authors of plugins: where plugins are found, and what relevo plugins does.
+#include <chrono>
 #include <fstream>
+#include <future>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -199,6 +202,36 @@ TEST_F(PluginTools, TheGoldenTestComparesPictures) {
                                         "picture is dust/found.png, --update replaces "
                                         "golden.png\n"));
     EXPECT_TRUE(fs::exists(path("dust/found.png")));
+}
+
+// ---- watch
+
+TEST_F(PluginTools, WatchingWritesThePictureAgainAfterAChange) {
+    ASSERT_EQ(relevo({"plugins", "new", "dust", "--into", path("")}).status, 0);
+    const std::string program = (build_dir() / "bin/relevo").string();
+    auto watching = std::async(std::launch::async, [&] {
+        return run("/usr/bin/timeout",
+                   {"-s", "INT", "60", program, "capture", bundled_dem(), "-o", path("a.png"),
+                    "--size", "64x48", "--device", "software", "--only", "dust", "--plugin-path",
+                    path("dust"), "--watch"});
+    });
+    const auto wait_for = [&](const auto& condition) {
+        for (int i = 0; i < 250 && !condition(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return condition();
+    };
+    ASSERT_TRUE(wait_for([&] { return fs::exists(path("a.png")); }));
+    const auto first = fs::last_write_time(path("a.png"));
+    const std::string glsl = read_text(path("dust/dust.glsl"), "test");
+    write("dust/dust.glsl", "void dust_on_material(inout Surface s) {\n");  // a mistake
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    write("dust/dust.glsl", glsl + "\n");
+    EXPECT_TRUE(wait_for([&] {
+        std::error_code ignored;
+        return fs::last_write_time(path("a.png"), ignored) > first;
+    }));
+    const Result result = watching.get();
+    EXPECT_THAT(relative(result.err), HasSubstr("shader: dust/dust.glsl:1: "));
 }
 
 }  // namespace
