@@ -234,5 +234,18 @@ TEST_F(PluginTools, WatchingWritesThePictureAgainAfterAChange) {
     EXPECT_THAT(relative(result.err), HasSubstr("shader: dust/dust.glsl:1: "));
 }
 
+// ---- set
+
+TEST_F(PluginTools, SeveralValuesOfOneSetAreExplained) {
+    const Result run = capture({"--set", "haze.density=0.1", "haze.blue=0.2"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err,
+              "relevo: error: --set: haze.blue=0.2: --set takes one value; write --set "
+              "haze.density=0.1 --set haze.blue=0.2\n");
+    EXPECT_EQ(capture({"--set", "haze.densty=0.1"}).err,
+              "relevo: error: parameter: haze.densty: no such parameter; did you mean "
+              "haze.density?\n");
+}
+
 }  // namespace
 }  // namespace relevo::test
