@@ -19,9 +19,6 @@ namespace {
 /// Functions that need the derivatives of their arguments over the image.
 constexpr std::array<std::string_view, 8> kDerivatives = {
     "dFdx", "dFdy", "fwidth", "dFdxFine", "dFdyFine", "fwidthFine", "texture", "textureOffset"};
-/// Hooks of passes over the whole image, in which neighbours are one surface.
-constexpr std::array<std::string_view, 4> kWholeImage = {"backdrop", "tonemap",
-                                                         "background_radiance", "side"};
 
 class Linter {
   public:
@@ -146,8 +143,7 @@ class Linter {
     void check_derivatives() {
         const std::set<std::string> reached =
             reached_from(hook_functions([](const shader::HookFunction& function) {
-                return function.hook->stage == shader::HookStage::Fragment &&
-                       !contains(kWholeImage, function.hook->name);
+                return function.hook->signature.find("Surface") != std::string_view::npos;
             }));
         for (const shader::Snippet& snippet : effect_.snippets)
             for (const shader::Item& item : snippet.source.items)

@@ -44,7 +44,7 @@ TEST(Loops, OthersAreOpen) {
           "for (float f = 0.0; f < 10.0; f += 0.0) {}", "for (int i = 0; i < 8; --i) {}",
           "for (int i = 0; i >= 0; i = (i + 1) % 1000) {}", "for (int i = 8; i > 0; ++i) {}",
           "for (float f = 0.0; f < 10.0; f += 1e-6) {}", "for (int i = 1; i < 8; i *= 1) {}",
-          "for (int i = -20000; i < 8; ++i) {}"})
+          "for (int i = -20000; i < 8; ++i) {}", "for (int i = 0; i < 8; i -= 1) {}"})
         EXPECT_THAT(loops(loop), ElementsAre(6)) << loop;
 }
 
