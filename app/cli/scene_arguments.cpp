@@ -80,6 +80,7 @@ scene::Scene SceneArguments::scene() const {
 }
 
 void SceneArguments::apply_to(scene::Scene& result) const {
+    effects.check_files(dem.paths);
     dem.apply_to(result);
     if (time.given()) result.time = time.spec();
     if (refraction.given()) result.refraction = refraction.name();

@@ -124,6 +124,7 @@ struct SceneThread::Impl {
                 return std::move(context);
             };
             options.allow_preview = true;
+            options.allow_unmet = true;  // the panel shows what an effect lacks
             reads_all_posts = !dem;
             options.dem = std::move(dem);
             FilesInUse files;

@@ -141,6 +141,7 @@ class ManifestReader {
         texts(object);
         displaces(object);
         invents(object);
+        object.string("$schema", "");  // which editors look for
         object.finish();
         return std::move(manifest_);
     }
@@ -148,14 +149,8 @@ class ManifestReader {
   private:
     void identity(json::ObjectReader& object) {
         manifest_.id = object.string("id");
-        if (!is_id(manifest_.id))
-            object.fail(
-                object.line_of("id"), "id",
-                fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
-                            manifest_.id));
-        if (contains(kReserved, manifest_.id))
-            object.fail(object.line_of("id"), "id",
-                        fmt::format("{} is a word of core's; choose another", manifest_.id));
+        if (const std::string fault = fault_of_id(manifest_.id); !fault.empty())
+            object.fail(object.line_of("id"), "id", fault);
         manifest_.name = object.string("name");
         manifest_.description = object.string("description", "");
         manifest_.version = object.string("version");
@@ -375,6 +370,19 @@ class ManifestReader {
 
 std::span<const std::string_view> ground_words() {
     return kGroundWords;
+}
+
+bool is_core_word(std::string_view word) {
+    return contains(kCoreWords, word);
+}
+
+std::string fault_of_id(std::string_view text) {
+    if (!is_id(text))
+        return fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
+                           text);
+    if (contains(kReserved, text))
+        return fmt::format("{} is a word of core's; choose another", text);
+    return {};
 }
 
 Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {

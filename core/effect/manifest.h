@@ -94,6 +94,12 @@ struct Manifest {
 /// and marked; "covered_voids", voids too wide to be filled as ground.
 std::span<const std::string_view> ground_words();
 
+/// Whether core itself provides a capability word, for some of its programs.
+bool is_core_word(std::string_view word);
+
+/// Why a text cannot be the id of a plugin; empty if it can.
+std::string fault_of_id(std::string_view text);
+
 /// Reads `folder/plugin.json`.
 /// @param data_dir  where `data:ground/rock.png` is: `share_dir() / "data"`
 /// @throws Error (BadInput) `plugin: folder/plugin.json:line: ...`

@@ -9,6 +9,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/text.h"
 
 namespace relevo::effect {
 namespace {
@@ -55,6 +56,7 @@ class Selector {
         selection.capabilities.assign(words.begin(), words.end());
         selection.notices = std::move(notices_);
         selection.warnings = std::move(warnings_);
+        selection.refused = std::move(refused_);
         return selection;
     }
 
@@ -186,26 +188,52 @@ class Selector {
         }
         const std::string reason =
             fmt::format("it requires {}, {}", word,
-                        offers.empty() ? "which no plugin here provides"
+                        offers.empty() ? "which no plugin here provides" + suggestion(word)
                                        : fmt::format("{}", fmt::join(offers, "; ")));
         if (needs_broken) {
             broken_.insert(id);
             warn_off(id, reason);
         } else {
             notices_.push_back(fmt::format("{} is off: {}", id, reason));
+            refuse_named(id, reason, word);
         }
+        reasons_[id] = reason;
         on_.erase(id);
         asked_.erase(id);
         unmet_.insert(id);
     }
 
+    /// "; did you mean materials?" for a word that is nearly one that a plugin provides.
+    std::string suggestion(const std::string& word) const {
+        const std::optional<std::string> near = nearest(word, registry_.provided_words());
+        return near ? fmt::format("; did you mean {}?", *near) : "";
+    }
+
+    /// The option of the command line that switches an effect on by name; empty: none.
+    std::string_view named_by(const std::string& id) const {
+        if (command_line_.only && contains(*command_line_.only, id)) return "--only";
+        return contains(command_line_.enable, id) ? "--enable" : "";
+    }
+
+    std::string refusal(const std::string& id, const std::string& reason) const {
+        return fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho, id,
+                           reason, named_by(id));
+    }
+
+    void refuse_named(const std::string& id, const std::string& reason, const std::string& word) {
+        if (named_by(id).empty()) return;
+        // A provider that is off has a reason itself.
+        std::string whole = reason;
+        for (const Effect* provider : providers(word))
+            if (const auto why = reasons_.find(provider->id()); why != reasons_.end())
+                whole += fmt::format(" ({})", why->second);
+        refused_.push_back(refusal(id, whole));
+    }
+
     /// Warns that an effect is off because something is broken.
     /// @throws Error if the command line asks for that effect by name
     void warn_off(const std::string& id, const std::string& reason) {
-        const bool only = command_line_.only && contains(*command_line_.only, id);
-        if (only || contains(command_line_.enable, id))
-            bad_input(fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho,
-                                  id, reason, only ? "--only" : "--enable"));
+        if (!named_by(id).empty()) bad_input(refusal(id, reason));
         warnings_.push_back(
             fmt::format("{} is off: {}; --disable {} silences this", id, reason, id));
     }
@@ -335,7 +363,8 @@ class Selector {
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
     std::set<std::string> broken_;    // of those, unusable ones and those that require them
-    std::vector<std::string> notices_, warnings_;
+    std::map<std::string, std::string> reasons_;  // of those that lack a requirement
+    std::vector<std::string> notices_, warnings_, refused_;
 };
 
 /// The value to set. A relative path is relative to the folder of the file that sets it.

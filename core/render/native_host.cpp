@@ -24,7 +24,7 @@
 #include "gl/vertex_array.h"
 #include "render/draw_scope.h"
 #include "render/native_textures.h"
-#include "shader/driver_log.h"
+#include "shader/driver_hints.h"
 #include "shader/tokenizer.h"
 
 namespace relevo::render {
@@ -186,8 +186,9 @@ struct NativeHost::Impl : effect::ModuleServices {
             shader::LineMap lines(2);  // lines of the preamble
             for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
-            failed(fmt::format("{}: the driver refuses it\n{}", file,
-                               shader::parse_driver_log(failure.log, lines).text()));
+            failed(fmt::format(
+                "{}: the driver refuses it\n{}", file,
+                shader::brief_text(shader::parse_driver_log(failure.log, lines), {own, {}, {}})));
         }
         std::vector<gl::Program::Sampler> samplers = program->samplers();
         programs.emplace(id, OwnProgram{std::move(*program), std::move(samplers)});

@@ -13,7 +13,7 @@
 #include "base/text.h"
 #include "render/graph/plan.h"
 #include "render/pass_texts.h"
-#include "shader/driver_log.h"
+#include "shader/driver_hints.h"
 
 namespace relevo::render {
 
@@ -279,8 +279,10 @@ gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text
                         : failure.stage == gl::Program::Failure::Stage::Fragment ? "fragment side"
                                                                                  : "link";
     const shader::DriverLog log = shader::parse_driver_log(failure.log, stage.lines);
-    failed(fmt::format("render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
-                       log.text(), remedy(text.stitched, log.blamed())));
+    failed(fmt::format(
+        "render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
+        shader::brief_text(log, {stage.text, text.stitched.names, text.stitched.values}),
+        remedy(text.stitched, log.blamed())));
 }
 
 }  // namespace relevo::render

@@ -32,6 +32,20 @@ int count_non_finite(std::span<const std::uint8_t> rgba) {
     return count;
 }
 
+NonFinite find_non_finite(const gl::Texture& output) {
+    std::vector<std::uint8_t> texels(4 * texels_of(output));
+    output.read(0, std::as_writable_bytes(std::span(texels)));
+    NonFinite found{count_non_finite(texels), {}};
+    const int width = output.extent().width, height = output.extent().height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (texels[4 * static_cast<std::size_t>((height - 1 - y) * width + x) + 3] != 255) {
+                found.first = {x, y};
+                return found;
+            }
+    return found;
+}
+
 image::Image8 read_output(const gl::Texture& output, int* non_finite) {
     std::vector<std::uint8_t> texels(4 * texels_of(output));
     output.read(0, std::as_writable_bytes(std::span(texels)));

@@ -25,6 +25,13 @@ struct SunSeen {
 /// alpha below 1.
 int count_non_finite(std::span<const std::uint8_t> rgba);
 
+/// Pixels of a frame that are NaN or infinite.
+struct NonFinite {
+    int count = 0;
+    glm::ivec2 first{0};  ///< column and row, rows from the top
+};
+NonFinite find_non_finite(const gl::Texture& output);
+
 /// Display-referred colours: RGB, rows from the top.
 /// @param non_finite  if not null, receives count_non_finite()
 image::Image8 read_output(const gl::Texture& output, int* non_finite);

@@ -440,6 +440,10 @@ image::Image8 Renderer::read_output(int* non_finite) const {
     return render::read_output(output(), non_finite);
 }
 
+NonFinite Renderer::non_finite() const {
+    return find_non_finite(output());
+}
+
 image::ImageF Renderer::read_radiance(int* non_finite) const {
     assert(impl_->options.radiance);
     return render::read_radiance(impl_->runner.texture("radiance"), impl_->exposure, non_finite);

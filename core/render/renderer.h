@@ -126,6 +126,8 @@ class Renderer {
     /// The last frame as RGB, rows from the top.
     /// @param non_finite  if not null, receives count_non_finite()
     image::Image8 read_output(int* non_finite = nullptr) const;
+    /// Pixels of the last frame that are NaN or infinite.
+    NonFinite non_finite() const;
     /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.
     image::ImageF read_radiance(int* non_finite = nullptr) const;
 

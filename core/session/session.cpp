@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "session/climate_words.h"
 #include "session/colour_legends.h"
+#include "session/non_finite.h"
 #include "session/session_impl.h"
 #include "session/stamps.h"
 #include "session/standing.h"
@@ -113,6 +114,16 @@ const std::vector<std::string>& Session::compared() const {
 
 const std::optional<OverlayTime>& Session::overlay_time() const {
     return impl_->overlay_time;
+}
+
+render::NonFinite Session::non_finite() const {
+    impl_->context->make_current();
+    return impl_->drawn->renderer().non_finite();
+}
+
+std::optional<NonFiniteCause> Session::non_finite_cause(const std::string& id) const {
+    impl_->context->make_current();
+    return find_cause(impl_->faulty(impl_->drawn->effects(), non_finite().count), id);
 }
 
 const std::vector<std::string>& Session::stamp_notes() const {

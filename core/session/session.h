@@ -76,6 +76,9 @@ struct Options {
     bool radiance = false;  ///< keep linear radiance, for Session::radiance()
     /// Keep the data that Session::read_sun_seen() reads.
     bool audited = false;
+    /// Effects that the scene switches on by name may lack what they require: they are off, with a
+    /// notice. Otherwise that is an error.
+    bool allow_unmet = false;
     /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
     /// Called with the shader sources before they are compiled.
@@ -83,6 +86,7 @@ struct Options {
 };
 
 struct ActiveEffects;
+struct NonFiniteCause;
 
 /// Durations of stages [ms]: "device", "compile", "load", "upload". "load" runs concurrently with
 /// the first two.
@@ -165,6 +169,11 @@ class Session {
     /// The last frame with the scene's stamps; both halves of a comparison.
     /// @throws Error (Failed) if pixels are not finite, naming the effect at fault
     image::Image8 picture() const;
+    /// Pixels of the last frame that are NaN or infinite.
+    render::NonFinite non_finite() const;
+    /// Which hook of an active effect makes pixels of the last frame NaN or infinite, by drawing it
+    /// without each hook; nullopt if none does. Slow.
+    std::optional<NonFiniteCause> non_finite_cause(const std::string& id) const;
     /// Sentences on stamps that the last picture() omitted.
     const std::vector<std::string>& stamp_notes() const;
     /// As picture(), as linear radiance without stamps. Requires Options::radiance.

@@ -76,6 +76,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
+    request.allow_unmet = options.allow_unmet;
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
     request.overlay_has_time = overlay_time.has_value();
@@ -251,10 +252,13 @@ void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
     drawn->render(*terrain, state.ground(), frame, times);
 }
 
+FaultyPicture Session::Impl::faulty(const ActiveEffects& shown, int count) {
+    return {state.scene.effects, shown,        *context, renderer_options(), *terrain,
+            state.ground(),      state.inputs, count};
+}
+
 void Session::Impl::check_numbers(int count, const ActiveEffects& shown) {
-    if (count > 0)
-        report_non_finite({state.scene.effects, shown, *context, renderer_options(), *terrain,
-                           state.ground(), state.inputs, count});
+    if (count > 0) report_non_finite(faulty(shown, count));
 }
 
 }  // namespace relevo::session

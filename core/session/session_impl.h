@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "render/terrain.h"
 #include "session/drawn_effects.h"
+#include "session/non_finite.h"
 #include "session/overlay.h"
 #include "session/scene_state.h"
 #include "session/session.h"
@@ -79,6 +80,7 @@ struct Session::Impl {
     /// For scenes as given, not while a user moves the eye.
     void warn_of_eye() { state.warn_of_eye(shape()); }
     void draw(render::Loading loading, render::PassTimes* times = nullptr);
+    FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);
     template <typename Read, typename Value>

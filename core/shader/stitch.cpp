@@ -77,6 +77,7 @@ class Stitcher {
         for (const Stage* stage : {&vertex_, &fragment_})
             for (const Hook& hook : hooks())
                 note_use(*stage, hook);
+        add_names();
         return std::move(result_);
     }
 
@@ -293,6 +294,22 @@ class Stitcher {
     std::optional<Stage> shading_;
     StoredVaryings stored_;
     TextureUnits units_;
+    void add_names() {
+        for (const Snippet* snippet : input_.snippets) {
+            const Source& source = snippet->source;
+            for (const Item& item : source.items)
+                result_.names.insert(result_.names.end(), item.names.begin(), item.names.end());
+            for (const Param& param : source.params) {
+                result_.names.push_back(param.name);
+                if (!param.is_static) result_.values.push_back(param.name);
+            }
+            for (const Sampler& sampler : source.samplers)
+                result_.names.push_back(sampler.name);
+            for (const Varying& varying : source.varyings)
+                result_.names.push_back(varying.name);
+        }
+    }
+
     Stitched result_;
 };
 

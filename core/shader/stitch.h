@@ -76,6 +76,8 @@ struct Stitched {
     BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
     bool uses_params = false;  ///< whether this program has the block
     std::vector<HookUse> hooks;
+    std::vector<std::string> names;   ///< of all globals of the plugins, for suggestions
+    std::vector<std::string> values;  ///< of their parameters that are not static
     /// Number of RGBA32F targets with the stored varyings of a geometry or shading program. The
     /// shading program reads them as the layers of `varyings`.
     int varying_targets = 0;

@@ -70,6 +70,6 @@ vec4 occlusion_pass_smooth(in Texel t) {
 }
 
 void occlusion_on_ambient(in Surface s, inout vec3 irradiance) {
-    float seen = texture(occlusion_smooth, gl_FragCoord.xy * frame.viewport.zw).r;
+    float seen = textureLod(occlusion_smooth, gl_FragCoord.xy * frame.viewport.zw, 0.0).r;
     irradiance *= clamp(1.0 - occlusion_amount * (1.0 - seen), 0.0, 1.0);
 }

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/folder_watch.h"
 #include "base/units.h"
 #include "dem/load.h"
 #include "light/fields.h"
@@ -22,7 +23,6 @@
 #include "viewer/document.h"
 #include "viewer/export.h"
 #include "viewer/file_watch.h"
-#include "viewer/folder_watch.h"
 #include "viewer/fonts.h"
 #include "viewer/history.h"
 #include "viewer/navigation.h"
