@@ -24,12 +24,9 @@ class Selector {
         for (const Effect& effect : registry.effects())
             if (effect.manifest.enabled_by_default && !lacking(effect, ground))
                 on_.insert(effect.id());
-        for (const Preset& preset : presets) {
-            ++turn_;
+        for (const Preset& preset : presets)
             apply(known_of(preset));
-        }
         check_command_line(command_line);
-        ++turn_;
         apply(command_line);
         for (const std::string& id : on_)
             if (const auto word = lacking(effect(id), ground))
@@ -112,7 +109,7 @@ class Selector {
             on_.insert(id);
             asked_.insert(id);
             disabled_.erase(id);
-            turns_[id] = turn_;
+            turns_[id] = ++turn_;
         };
         if (switches.only) {
             on_.clear();
@@ -256,13 +253,8 @@ class Selector {
                 if (!(id < other)) continue;
                 const std::string word = rival_word(effect(id), effect(other));
                 if (word.empty()) continue;
-                const int turn = turn_of(id), others = turn_of(other);
-                if (turn == others && turn > 0)
-                    bad_input(fmt::format(
-                        "{}: {}: expected one provider of it but got {} and {}; add --disable {} "
-                        "or --disable {}",
-                        kWho, word, id, other, id, other));
-                give_way(turn < others ? id : other, turn < others ? other : id, word);
+                const bool is_earlier = turn_of(id) < turn_of(other);
+                give_way(is_earlier ? id : other, is_earlier ? other : id, word);
                 return true;
             }
         }
@@ -356,9 +348,8 @@ class Selector {
     const Registry& registry_;
     const Switches& command_line_;
     std::set<std::string> on_;
-    std::set<std::string> asked_;  // by name, or as a requirement of such effects
-    std::map<std::string, int>
-        turns_;  // index of the preset that requested it; the command line is last
+    std::set<std::string> asked_;       // by name, or as a requirement of such effects
+    std::map<std::string, int> turns_;  // order in which effects were asked for, from 1
     int turn_ = 0;
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
