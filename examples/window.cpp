@@ -50,8 +50,8 @@ struct Shown {
 void on_key(GLFWwindow* window, int key, int, int action, int) {
     auto& [session, message] = *static_cast<Shown*>(glfwGetWindowUserPointer(window));
     if (action == GLFW_RELEASE) return;
-    if (key == GLFW_KEY_LEFT) session.set_moment(session.moment() + -1800.0);
-    if (key == GLFW_KEY_RIGHT) session.set_moment(session.moment() + 1800.0);
+    if (key == GLFW_KEY_LEFT) session.set_time(session.time() + -1800.0);
+    if (key == GLFW_KEY_RIGHT) session.set_time(session.time() + 1800.0);
     if (key == GLFW_KEY_R) message = read_effects_again(session);
 }
 

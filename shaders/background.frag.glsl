@@ -3,18 +3,17 @@
 
 //@ include lib/exposed.glsl
 //@ include lib/finite.glsl
+//@ include lib/pixel.glsl
 //@ include lib/shown.glsl
 
 layout(location = 0) out vec4 light_out;
 
 void main() {
-    vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
-               gl_FragCoord.y * frame.pixel_ray_dy.xyz;
-    vec3 radiance = background_radiance(normalize(ray), true);
+    vec3 radiance = background_radiance(normalize(pixel_ray_at(gl_FragCoord.xy)), true);
     float numbers = finite(vec4(radiance, 0.0));
     radiance = exposed(radiance);
 #ifdef SHOWN
-    light_out = shown(radiance, vec4(0.0), numbers);
+    light_out = shown(pixel_with(kSky_m), radiance, vec4(0.0), numbers);
 #else
     light_out = vec4(radiance, numbers);
 #endif

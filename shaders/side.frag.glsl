@@ -5,6 +5,7 @@
 //@ include lib/exposed.glsl
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
+//@ include lib/pixel.glsl
 //@ include lib/shown.glsl
 //@ include lib/tangent.glsl
 
@@ -53,7 +54,7 @@ void main() {
     float numbers = finite(vec4(radiance, 0.0));
     radiance = exposed(radiance);
 #ifdef SHOWN
-    light_out = shown(radiance, vec4(0.0), numbers);
+    light_out = shown(pixel_with(s.distance_m), radiance, vec4(0.0), numbers);
 #else
     light_out = vec4(radiance, numbers);
 #endif

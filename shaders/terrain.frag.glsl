@@ -12,6 +12,7 @@
 //@ include lib/octahedral.glsl
 //@ include lib/moved.glsl
 //@ include lib/pages.glsl
+//@ include lib/pixel.glsl
 //@ include lib/shown.glsl
 //@ include lib/srgb.glsl
 //@ include lib/tangent.glsl
@@ -48,7 +49,7 @@ vec2 slope_at(in vec2 post, in int level) {
 
 #ifdef OVERLAY_RASTER
 /// Replaces the reflectance of the ground by an overlay's colours, premultiplied sRGB.
-void lay_lit(inout Surface s, in vec4 laid) {
+void overlay_as_reflectance(inout Surface s, in vec4 laid) {
     vec3 reflectance = srgb_decoded(min(laid.rgb / max(laid.a, 1e-3), 1.0));
     s.diffuse = mix(s.diffuse, reflectance, laid.a);
     s.ambient = mix(s.ambient, reflectance, laid.a);
@@ -63,8 +64,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 what = texelFetch(gbuffer, pixel, 0);
     float depth = uintBitsToFloat(what.w);
-    vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
-               gl_FragCoord.y * frame.pixel_ray_dy.xyz;
+    vec3 ray = pixel_ray_at(gl_FragCoord.xy);
 
     Surface s;
     s.position_m = ray * depth;
@@ -133,7 +133,7 @@ void main() {
     hook_material(s);
 #ifdef OVERLAY_RASTER
     vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
-    if (frame.overlay_shape.w > 0.0) lay_lit(s, laid);
+    if (frame.overlay_shape.w > 0.0) overlay_as_reflectance(s, laid);
 #endif
 
     vec3 to_sun;
@@ -163,7 +163,7 @@ void main() {
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);
     radiance = exposed(radiance);
 #ifdef SHOWN
-    light_out = shown(radiance, over, numbers);
+    light_out = shown(pixel_with(s.distance_m), radiance, over, numbers);
 #else
     light_out = vec4(radiance, numbers);
 #endif

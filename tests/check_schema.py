@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the JSON that the documentation shows against the published schemas of scenes and jobs, and files of the
-program's own.
+"""Checks the JSON that the documentation shows against the published schemas of scenes, jobs and plugins, and
+the program's own plugins and files.
 
 Usage: check_schema.py ROOT [SCENE.json...] [--jobs JOB.json...]. Prints every violation and exits with 1 if there is
 one.
@@ -13,7 +13,8 @@ import warnings
 
 import jsonschema
 
-SHOWN = {"scene.md": "scene", "jobs.md": "job"}
+SHOWN = {"scene.md": "scene", "jobs.md": "job", "plugin-guide.md": "plugin"}
+KINDS = ("scene", "job", "plugin")
 
 
 def shown_files(page):
@@ -31,7 +32,7 @@ def shown_files(page):
 
 
 def validators(docs):
-    schemas = {kind: json.loads((docs / f"{kind}.schema.json").read_text(encoding="utf-8")) for kind in ("scene", "job")}
+    schemas = {kind: json.loads((docs / f"{kind}.schema.json").read_text(encoding="utf-8")) for kind in KINDS}
     store = {f"{kind}.schema.json": schema for kind, schema in schemas.items()}
     result = {}
     for kind, schema in schemas.items():
@@ -48,6 +49,8 @@ def main():
     check = validators(root / "docs")
     texts = [(check[kind], f"{page}: {name}", text)
              for page, kind in SHOWN.items() for name, text in shown_files(root / "docs" / page)]
+    texts += [(check["plugin"], str(path.relative_to(root)), path.read_text(encoding="utf-8"))
+              for path in sorted((root / "plugins").glob("*/plugin.json"))]
     kind = "scene"
     for name in sys.argv[2:]:
         if name == "--jobs":
@@ -62,7 +65,11 @@ def main():
     # What must not pass: the schemas say something.
     for kind, wrong in (("scene", {"format": 1, "dem": {"files": ["a"]}, "camera": {"fov": 500}}),
                         ("job", {"format": 1, "shots": [{"camera": {"zoom": 1}}]}),
-                        ("job", {"format": 1, "sweep": [{"times": ["noon"], "dates": ["2026-01-01"]}]})):
+                        ("job", {"format": 1, "sweep": [{"times": ["noon"], "dates": ["2026-01-01"]}]}),
+                        ("plugin", {"format": 1, "id": "Dust", "name": "D", "version": "1"}),
+                        ("plugin", {"format": 1, "id": "dust", "name": "D", "version": "1", "provide": ["dust"]}),
+                        ("plugin", {"format": 1, "id": "dust", "name": "D", "version": "1",
+                                    "textures": {"a": {"kind": "2d", "files": ["a.png"], "encoding": "srgb"}}})):
         if check[kind].is_valid(wrong):
             print(f"{kind}.schema.json takes {json.dumps(wrong)}")
             faults += 1

@@ -7,11 +7,13 @@
 #include <future>
 #include <memory>
 #include <new>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/folder_watch.h"
 #include "base/held_notices.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -19,6 +21,7 @@
 #include "cli/scene_arguments.h"
 #include "cli/trust.h"
 #include "dem/files_of.h"
+#include "effect/search_path.h"
 #include "geo/format.h"
 #include "session/batch.h"
 #include "session/record.h"
@@ -32,7 +35,7 @@ struct Arguments {
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false, sidecar = false, audit = false, allow_blank = false;
+    bool overwrite = false, sidecar = false, audit = false, allow_blank = false, watch = false;
 };
 
 /// What is to be drawn.
@@ -106,7 +109,7 @@ class Timings {
         const std::clock_t processor_began = std::clock();
         for (int i = 0; i < repeat; ++i) {
             const auto began = Clock::now();
-            if (step_s > 0) session.set_moment(session.moment() + step_s);
+            if (step_s > 0) session.set_time(session.time() + step_s);
             session.draw_alone();
             frames_ms.push_back(milliseconds_since(began));
         }
@@ -151,7 +154,7 @@ std::string local_time(const session::Session& session) {
 
 /// What the program chose because the command line does not say it, in one line.
 void report_chosen(const session::Session& session) {
-    const bool time = !session.moment_reason().empty(), view = !session.view_reason().empty();
+    const bool time = !session.time_reason().empty(), view = !session.view_reason().empty();
     if (!time && !view) return;
     const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
     std::string text = "chosen: " + (time ? local_time(session) : "");
@@ -165,9 +168,9 @@ void report_chosen(const session::Session& session) {
 
 /// Place, time, sun and the assumptions about the ground.
 void report_scene(const session::Session& session) {
-    log::debug(fmt::format("{}, {}: sun at {}", session.place_text(), sun::to_iso(session.moment()),
+    log::debug(fmt::format("{}, {}: sun at {}", session.place_text(), sun::to_iso(session.time()),
                            session.sun_text()));
-    for (const std::string& reason : {session.moment_reason(), session.view_reason()})
+    for (const std::string& reason : {session.time_reason(), session.view_reason()})
         if (!reason.empty()) log::debug(reason);
     if (const std::string climate = session.climate_text(); !climate.empty())
         log::debug(
@@ -262,6 +265,38 @@ void capture(const Arguments& arguments) {
     report_chosen(session);
 }
 
+/// The folders of the plugins and of the presets that a picture is made from.
+std::vector<std::filesystem::path> watched_folders(const scene::Effects& effects) {
+    std::vector<std::filesystem::path> folders =
+        effect::plugin_search_path({effects.plugin_path.begin(), effects.plugin_path.end()});
+    for (const std::string& preset : effects.presets)
+        if (effect::is_preset_file(preset))
+            folders.push_back(std::filesystem::absolute(preset).parent_path());
+    return folders;
+}
+
+/// Makes the picture, and again after each change of a plugin's file until the program is
+/// interrupted. Mistakes are reported, and the picture waits for the next change.
+void capture_and_watch(Arguments arguments) {
+    constexpr std::chrono::milliseconds kStep(200);
+    const scene::Effects effects = wanted(arguments).scene.effects;
+    FolderWatch watch;
+    watch.watch(watched_folders(effects), {".json", ".glsl", ".so"});
+    while (true) {
+        try {
+            capture(arguments);
+            log::info(fmt::format("{} is written; waiting for changes of plugins, Ctrl+C ends",
+                                  printable(arguments.output)));
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Usage || error.code() == ErrorCode::NoDevice) throw;
+            log::error(error.what());
+        }
+        arguments.overwrite = true;
+        while (!watch.changed())
+            std::this_thread::sleep_for(kStep);
+    }
+}
+
 }  // namespace
 
 void add_capture(CLI::App& app) {
@@ -284,6 +319,8 @@ void add_capture(CLI::App& app) {
                   "Write a JSON sidecar: sun, camera, device, versions, DEM");
     verb.add_flag("--audit", arguments->audit,
                   "Compare the drawn shadows with the computed ones; implies --sidecar");
+    verb.add_flag("--watch", arguments->watch,
+                  "Write the picture again after each change of a plugin's file");
     verb.add_flag("--allow-blank", arguments->allow_blank, "Accept a picture that shows no ground");
     verb.add_option("--ab", arguments->ab,
                     "Comparison: left half with these effects, right half without")
@@ -304,7 +341,10 @@ void add_capture(CLI::App& app) {
         ->group("Diagnosis");
     verb.callback([arguments] {
         try {
-            capture(*arguments);
+            if (arguments->watch)
+                capture_and_watch(*arguments);
+            else
+                capture(*arguments);
         } catch (const std::bad_alloc&) {
             failed(fmt::format(
                 "capture: --size {}: not enough memory for the picture and the DEM; "

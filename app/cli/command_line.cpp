@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/effects.h"
 
 namespace relevo::cli {
 namespace {
@@ -192,6 +193,7 @@ bool is_option(std::string_view word) {
 std::string unknown_words(const CLI::App& app, const Named& named,
                           const std::vector<std::string>& words) {
     const std::string& word = words.front();
+    if (is_setting(word)) return fmt::format("{0}: write --set {0}, once for each value", word);
     if (!is_option(word))
         return fmt::format(
             "{}: belongs to no option; write values of several parts with commas and without "

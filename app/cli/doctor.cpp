@@ -112,14 +112,17 @@ std::string why(const std::string& wanted, const std::vector<Tried>& devices,
 
 struct Plugins {
     std::filesystem::path folder;
+    std::vector<std::string> search_path;
     std::vector<std::string> ids;
     std::vector<std::string> broken;
 };
 
 Plugins find_plugins() {
-    Plugins plugins{share_dir() / "plugins", {}, {}};
+    Plugins plugins{share_dir() / "plugins", {}, {}, {}};
     try {
         const effect::Registry registry = effect::Registry::load_installed();
+        for (const std::filesystem::path& path : registry.search_paths())
+            plugins.search_path.push_back(path.string());
         for (const effect::Effect& effect : registry.effects())
             plugins.ids.push_back(effect.id());
         for (const effect::BrokenEffect& effect : registry.broken())
@@ -202,6 +205,7 @@ Json to_json(const Findings& found) {
     json["share_dir"] = share_dir().string();
     json["share_found"] = found.has_share;
     json["plugin_folder"] = found.plugins.folder.string();
+    json["plugin_search_path"] = found.plugins.search_path;
     json["plugins"] = found.plugins.ids;
     json["broken_plugins"] = found.plugins.broken;
     json["advice"] = found.advice;
@@ -235,7 +239,10 @@ void print(const Findings& found) {
     line("data", fmt::format("{}{}", share_dir().string(),
                              found.has_share ? "" : " (not there; RELEVO_SHARE names another)"));
     line("plugins",
-         fmt::format("{} in {}", found.plugins.ids.size(), found.plugins.folder.string()));
+         fmt::format("{} in {}", found.plugins.ids.size(),
+                     found.plugins.search_path.empty()
+                         ? found.plugins.folder.string()
+                         : fmt::format("{}", fmt::join(found.plugins.search_path, ", "))));
     for (const std::string& broken : found.plugins.broken)
         line("broken", broken);
     for (const std::string& text : found.advice)

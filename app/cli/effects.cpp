@@ -1,10 +1,35 @@
 #include "cli/effects.h"
 
+#include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "effect/preset.h"
 
 namespace relevo::cli {
+
+bool is_setting(std::string_view word) {
+    const std::string_view address = word.substr(0, word.find('='));
+    const std::size_t dot = address.find('.');
+    const auto is_name = [](std::string_view text) {
+        return !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+                                    std::string_view::npos;
+    };
+    return address.size() < word.size() && dot != std::string_view::npos &&
+           is_name(address.substr(0, dot)) && is_name(address.substr(dot + 1));
+}
+
+void EffectArguments::check_files(const std::vector<std::string>& files) const {
+    if (settings.empty()) return;
+    for (const std::string& file : files) {
+        std::error_code ignored;
+        if (is_setting(file) && !std::filesystem::exists(file, ignored))
+            bad_usage(fmt::format("--set: {}: --set takes one value; write --set {} --set {}", file,
+                                  settings.back(), file));
+    }
+}
 
 void EffectArguments::add_to(CLI::App& verb) {
     only_option =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,9 @@
 #include "scene/scene.h"
 
 namespace relevo::cli {
+
+/// Whether a word is meant for --set: "haze.density=0.2".
+bool is_setting(std::string_view word);
 
 /// --only, --enable, --disable, --set, --preset and --plugin-path.
 struct EffectArguments {
@@ -18,6 +22,9 @@ struct EffectArguments {
     /// Puts what was given in the place of what a scene says: --only and --preset replace its own,
     /// the rest is added. @throws Error (Usage)
     void apply_to(scene::Effects& effects) const;
+    /// Refuses names of files that are meant for --set, which takes one value. @throws Error
+    /// (Usage)
+    void check_files(const std::vector<std::string>& files) const;
 };
 
 }  // namespace relevo::cli

@@ -95,14 +95,14 @@ std::string text_of(const std::optional<dem::Water>& water, const dem::Grid& gri
                        water->lakes);
 }
 
-/// A moment that needs the DEM.
-/// @param field  loaded where the moment needs heights
-sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,
+/// Parses a time that requires the DEM.
+/// @param field  loaded if the time requires heights
+sun::ParsedTime parse_over(const scene::TimeSpec& spec, const dem::Source& source,
                            std::int64_t max_posts, std::optional<dem::Heightfield>& field) {
-    if (!sun::is_event_time(moment.time))  // the zone of its middle is all that is missing
-        return session::parse(moment, {.middle = [&] { return source.grid().center(); }});
+    if (!sun::is_event_time(spec.at))  // only the time zone is missing
+        return session::parse(spec, {.middle = [&] { return source.grid().center(); }});
     field = dem::load(source, max_posts);
-    return session::parse_over(moment, source, *field);
+    return session::parse_over(spec, source, *field);
 }
 
 /// At the middle of a DEM and of its heights.
@@ -149,16 +149,15 @@ void add_info(CLI::App& app) {
     arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
-        const scene::Moment moment = arguments->time.moment();
+        const scene::TimeSpec spec = arguments->time.spec();
         std::optional<sun::ParsedTime> given_time;
-        if (arguments->time.given() && !session::needs_dem(moment))
-            given_time = session::parse(moment);
+        if (arguments->time.given() && !session::needs_dem(spec)) given_time = session::parse(spec);
         const std::int64_t max_posts = arguments->dem.options().max_posts;
         const dem::Source source =
             dem::Source::open(arguments->dem.paths, arguments->dem.options());
         std::optional<dem::Heightfield> field;
         if (arguments->time.given() && !given_time)
-            given_time = parse_over(moment, source, max_posts, field);
+            given_time = parse_over(spec, source, max_posts, field);
         // Means would hide the lowest and the highest post.
         const dem::Summary summary = field && field->reduction == 1
                                          ? dem::summarize(*field)

@@ -1,10 +1,13 @@
+#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "cli/commands.h"
+#include "cli/plugin_tools.h"
 #include "cli/shared.h"
 #include "effect/registry.h"
 
@@ -52,7 +55,7 @@ nlohmann::ordered_json json_of(const effect::Effect& effect) {
             {"parameters", params}};
 }
 
-void list(const effect::Registry& registry, bool json) {
+void print_list(const effect::Registry& registry, bool json) {
     if (json) {
         nlohmann::ordered_json plugins = nlohmann::ordered_json::array();
         for (const effect::Effect& effect : registry.effects())
@@ -70,6 +73,16 @@ void list(const effect::Registry& registry, bool json) {
                    effect.manifest.enabled_by_default ? "on" : "off", effect.manifest.description);
     for (const effect::BrokenEffect& effect : registry.broken())
         fmt::print("{:<12} {:<4} {}\n", effect.id, "-", effect.error);
+}
+
+/// @throws Error (Failed) if a plugin is broken, after the list
+void list(const effect::Registry& registry, bool json) {
+    print_list(registry, json);
+    const std::size_t broken = registry.broken().size();
+    if (broken == 0) return;
+    std::fflush(stdout);
+    failed(fmt::format("plugins: {} of {} cannot be used", broken,
+                       broken + registry.effects().size()));
 }
 
 void info(const effect::Effect& effect, bool json) {
@@ -112,7 +125,8 @@ void add_plugins(CLI::App& app) {
         }
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("plugins", "Lists effects and their parameters");
+    CLI::App& verb =
+        *app.add_subcommand("plugins", "Lists effects and their parameters; tools for authors");
     verb.require_subcommand(0, 1);
     verb.add_option("--plugin-path", arguments->plugin_path, "Folder with more plugins")
         ->allow_extra_args(false);
@@ -125,8 +139,10 @@ void add_plugins(CLI::App& app) {
         info(arguments->registry().effect(arguments->id, "plugins"), arguments->json);
     });
     list_verb.callback([] {});
-    verb.callback([arguments, &info_verb] {
-        if (info_verb.count() == 0) list(arguments->registry(), arguments->json);
+    add_plugin_tools(verb, arguments->plugin_path);
+    verb.callback([arguments, &verb, &list_verb] {
+        if (verb.get_subcommands().empty() || list_verb.count() > 0)
+            list(arguments->registry(), arguments->json);
     });
 }
 

@@ -106,12 +106,11 @@ class Run {
     explicit Run(const Arguments& arguments) : arguments_(arguments) {}
 
     void run() {
-        if (!arguments_.dry_run)
-            moments_.before_reading([this](const auto& scene) { hash(scene); });
+        if (!arguments_.dry_run) times_.before_reading([this](const auto& scene) { hash(scene); });
         shots_ = shots();
         for (const scene::Shot& shot : shots_)
             image::check_format(shot.output, shot.scene.width_px, shot.scene.height_px);
-        session::settle(shots_, moments_, inputs_);
+        session::settle(shots_, times_, inputs_);
         session::order_for_drawing(shots_);
         for (const scene::Shot& shot : shots_)
             if (session::scene_in(shot.output, shot.scene) == session::SceneIn::Sidecar)
@@ -153,7 +152,7 @@ class Run {
             job,
             [&](const scene::Scene& scene) {
                 trusted.check_names(scene);  // before its DEM is opened
-                return moments_.of(scene);
+                return times_.of(scene);
             },
             arguments_.yes ? kMost : kMostUnasked);
         for (scene::Shot& shot : drawn_up.shots)
@@ -319,7 +318,7 @@ class Run {
                 if (first.empty()) first = printable(shot.output.string());
                 count();
             };
-            failures = session::draw_batch(shots_, batch, moments_, inputs_, files_);
+            failures = session::draw_batch(shots_, batch, times_, inputs_, files_);
         }
         const double took_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -343,7 +342,7 @@ class Run {
         std::string time = "no time";
         if (!shots_.empty()) {
             try {
-                time = "some " + duration_text(session::time_batch(shots_, options(), moments_));
+                time = "some " + duration_text(session::time_batch(shots_, options(), times_));
             } catch (const Error& error) {
                 time = fmt::format("an unknown time ({})", error.what());
             }
@@ -384,7 +383,7 @@ class Run {
     log::HeldNotices notices_;
     const Arguments& arguments_;
     FilesInUse files_;
-    session::Moments moments_;
+    session::SceneTimes times_;
     std::vector<scene::Shot> shots_;
     session::SceneInputs inputs_{RELEVO_VERSION};
     std::set<fs::path> beside_;  ///< pictures whose scene is in a sidecar, for want of room

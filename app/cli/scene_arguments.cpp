@@ -80,8 +80,9 @@ scene::Scene SceneArguments::scene() const {
 }
 
 void SceneArguments::apply_to(scene::Scene& result) const {
+    effects.check_files(dem.paths);
     dem.apply_to(result);
-    if (time.given()) result.moment = time.moment();
+    if (time.given()) result.time = time.spec();
     if (refraction.given()) result.refraction = refraction.name();
     view.apply_to(result);
     effects.apply_to(result.effects);

@@ -58,7 +58,7 @@ struct TimeArguments {
     void add_to(CLI::App& verb);
     /// @throws Error (Usage) for --date or --tz without --time, which would say nothing
     bool given() const;
-    scene::Moment moment() const { return {time, date, zone}; }
+    scene::TimeSpec spec() const { return {time, date, zone}; }
 };
 
 /// --refraction and --no-refraction.

@@ -161,7 +161,7 @@ void add_assumption(nlohmann::ordered_json& json, const std::string& assumption)
 /// An angle in degrees, rounded to 0.04 milliarcseconds: 236.9, not 236.89999999999998.
 double angle_deg(double angle_rad);
 
-/// The moment in UTC with milliseconds, or null.
+/// The time in UTC with milliseconds, or null.
 nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc);
 
 using geo::compass_point;

@@ -99,16 +99,15 @@ void check_height(const geo::PlaceText& at) {
 
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
     const auto points = arguments.points.read(files, arguments.output);
-    const scene::Moment moment = arguments.time.moment();
-    session::needs_dem(moment);  // what is wrong with its words is said before any work
-    const bool zone_by_place = sun::is_zone_by_place(moment.zone) &&
-                               !sun::is_solar_zone(moment.zone) &&
-                               (sun::is_event_time(moment.time) || sun::is_wall_time(moment.time));
+    const scene::TimeSpec spec = arguments.time.spec();
+    session::needs_dem(spec);  // reports invalid words before any work
+    const bool zone_by_place = sun::is_zone_by_place(spec.zone) && !sun::is_solar_zone(spec.zone) &&
+                               (sun::is_event_time(spec.at) || sun::is_wall_time(spec.at));
     const PointsJob job{
         .columns = kColumns, .remarks = {kDefinition}, .forms = [&](const geo::PlaceText& at) {
             check_height(at);
             const auto result = std::make_shared<Result>(
-                result_of(arguments, at, session::parse_quietly(moment, {}, at)));
+                result_of(arguments, at, session::parse_quietly(spec, {}, at)));
             return PointForms{.rows = [=] { return std::vector{row_of(*result)}; },
                               .json = [=] { return json_of(*result); },
                               .doubt = {}};
@@ -122,7 +121,7 @@ void run(const Arguments& arguments) {
     if (arguments.points.given()) return run_points(arguments, files, file);
     const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
     check_height(at);
-    const Result result = result_of(arguments, at, session::parse(arguments.time.moment(), {}, at));
+    const Result result = result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
     arguments.output.deliver({.drawing = {},
                               .csv =
                                   [&] {

@@ -66,8 +66,8 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
     return sun;
 }
 
-/// The sun of a moment.
-Asked at_moment(const Arguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
+/// The sun at a time.
+Asked at_time(const Arguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
     const session::SunOverMiddle over =
         session::sun_over_middle(posts, when.utc, arguments.refraction.name());
     return {over.sun, over.apparent_rad, std::move(when), {}};
@@ -86,8 +86,8 @@ std::vector<Asked> at_times(const Arguments& arguments, const std::vector<dem::N
             fmt::format("--times: {}: line {}: ", printable(arguments.times), time.line);
         try {
             suns.push_back(
-                at_moment(arguments, posts,
-                          session::parse_quietly({time.time, {}, arguments.time.zone}, terrain)));
+                at_time(arguments, posts,
+                        session::parse_quietly({time.time, {}, arguments.time.zone}, terrain)));
         } catch (const Error& error) {
             bad_input(line + error.what());
         }
@@ -109,10 +109,10 @@ std::vector<Asked> all_suns(const Arguments& arguments, const std::vector<dem::N
         return {{sun, sun.elevation_rad, {}, {}}};
     }
     const geo::Geodetic middle = posts.grid().center();
-    return {at_moment(arguments, posts,
-                      session::parse(arguments.time.moment(),
-                                     {.middle = [&] { return middle; },
-                                      .posts = [&]() -> const dem::Posts& { return posts; }}))};
+    return {at_time(arguments, posts,
+                    session::parse(arguments.time.spec(),
+                                   {.middle = [&] { return middle; },
+                                    .posts = [&]() -> const dem::Posts& { return posts; }}))};
 }
 
 /// Where the sun stands, and when.

@@ -13,6 +13,7 @@
 #include "cli/scene_arguments.h"
 #include "dem/remote.h"
 #include "effect/registry.h"
+#include "effect/search_path.h"
 
 namespace relevo::cli {
 namespace {
@@ -30,6 +31,9 @@ Trust::Trust(const SceneArguments& given, std::string file, NamedBy by)
     : given_(given), file_(std::move(file)), by_(by) {
     for (const std::string& folder : given.effects.plugin_path)
         named_.push_back(absolute(folder));
+    // Their plugins are loaded whether or not a scene names the folder.
+    for (const std::filesystem::path& folder : effect::user_plugin_folders())
+        named_.push_back(absolute(folder.string()));
 }
 
 void Trust::check_names(const scene::Scene& scene) const {

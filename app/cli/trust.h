@@ -46,7 +46,7 @@ class Trust {
     const SceneArguments& given_;
     std::string file_;
     NamedBy by_;
-    std::vector<std::string> named_;      ///< folders of the command line, absolute
+    std::vector<std::string> named_;      ///< by the command line and the user's own
     std::map<std::string, Known> known_;  ///< by the name in a scene
     std::vector<std::string> left_out_;   ///< folders, absolute
     std::vector<std::string> modules_;    ///< folders of plugins whose modules are not loaded

@@ -19,7 +19,7 @@ void view(Arguments arguments) {
     TimeArguments& time = arguments.scene.time;
     const std::string zone = time.time.empty() ? std::exchange(time.zone, {}) : std::string();
     scene::Scene scene = arguments.scene.scene();
-    if (!zone.empty()) scene.moment.zone = zone;
+    if (!zone.empty()) scene.time.zone = zone;
     if (scene.dems.empty()) scene.dems.push_back((share_dir() / "data/dem/jacksboro.tif").string());
     viewer::run(scene, arguments.device);
 }

@@ -125,7 +125,7 @@ void add_stamps(Command& command, const scene::Stamps& stamps) {
 scene::Scene Document::whole(const Land& land) const {
     scene::Scene result = scene;
     result.view = view_of(pose, land);
-    result.moment = {.time = sun::to_iso(utc, zone), .date = "", .zone = ""};
+    result.time = {.at = sun::to_iso(utc, zone), .date = "", .zone = ""};
     return result;
 }
 
@@ -189,10 +189,10 @@ scene::Effects without_values(scene::Effects effects, const std::string& of) {
 std::string capture_command(const scene::Scene& scene, const std::string& output) {
     Command command("relevo capture");
     add_dem(command, scene);
-    if (!scene.moment.time.empty()) {
-        command.option("--time", scene.moment.time);
-        if (!scene.moment.date.empty()) command.option("--date", scene.moment.date);
-        if (!scene.moment.zone.empty()) command.option("--tz", scene.moment.zone);
+    if (!scene.time.at.empty()) {
+        command.option("--time", scene.time.at);
+        if (!scene.time.date.empty()) command.option("--date", scene.time.date);
+        if (!scene.time.zone.empty()) command.option("--tz", scene.time.zone);
     }
     add_view(command, scene.view);
     add_stamps(command, scene.stamps);

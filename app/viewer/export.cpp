@@ -130,8 +130,8 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene, cons
     const std::optional<session::OverlayTime>& overlay_time = coloured.overlay_time;
     if (scene.stamps.date)
         stamped.clock = overlay_time
-                            ? session::clock_text(*overlay_time, scene.moment.zone, frame.origin())
-                            : session::clock_text(picture.utc, scene.moment.zone, frame.origin());
+                            ? session::clock_text(*overlay_time, scene.time.zone, frame.origin())
+                            : session::clock_text(picture.utc, scene.time.zone, frame.origin());
     if (scene.stamps.sun)
         stamped.sun =
             overlay_time ? session::sun_text(*overlay_time) : sun_of(picture, scene, opened.ground);

@@ -176,7 +176,7 @@ void Hand::press(glm::vec2 mouse, bool comparing) {
                     : button == 2                               ? Drag::Look
                                                                 : Drag::Pan;
         if (button == 0 && picture_ && !ground_at(mouse) &&
-            moment_at(state_, *picture_, window_.size(), mouse))
+            time_at(state_, *picture_, window_.size(), mouse))
             dragging_ = Drag::Sun;
         if (button == 0 && comparing &&
             std::abs(mouse.x - window_.line() * window_.size().x) < kLine_px)
@@ -227,7 +227,7 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
 
 void Hand::drag_sun(glm::vec2 mouse) {
     if (!picture_) return;
-    const auto utc = moment_at(state_, *picture_, window_.size(), mouse);
+    const auto utc = time_at(state_, *picture_, window_.size(), mouse);
     if (!utc || *utc == state_.document.utc) return;
     state_.set_utc(*utc);
     state_.sun_moves = true;

@@ -25,7 +25,7 @@ void play(State& state, double passed_s) {
 }  // namespace
 
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
-    : device_(device, presentation_of_environment()), zone_(scene.moment.zone) {
+    : device_(device, presentation_of_environment()), zone_(scene.time.zone) {
     state_.document.scene = scene;
     if (scene.overlay) state_.document.overlay = {OverlayKind::File, scene.overlay->opacity};
     Window::check_display();

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/paths.h"
 #include "base/text.h"
+#include "effect/search_path.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -94,11 +94,10 @@ void Opening::watch_files() {
     for (const std::string& dem : scene.dems)
         if (std::filesystem::is_regular_file(dem, ignored)) dems.emplace_back(dem);
     dem_files_.watch(std::move(dems));
-    std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
-    plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
-                   scene.effects.plugin_path.end());
+    const std::vector<std::string>& extra = scene.effects.plugin_path;
     // Images in a plugin's folder are not watched: saving one does not reload the effects.
-    effect_files_.watch(plugins, {".json", ".glsl", ".so"});
+    effect_files_.watch(effect::plugin_search_path({extra.begin(), extra.end()}),
+                        {".json", ".glsl", ".so"});
 }
 
 }  // namespace relevo::viewer

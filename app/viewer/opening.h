@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "base/folder_watch.h"
 #include "viewer/discard.h"
 #include "viewer/file_watch.h"
-#include "viewer/folder_watch.h"
 #include "viewer/messages.h"
 #include "viewer/scene_thread.h"
 

@@ -124,6 +124,7 @@ struct SceneThread::Impl {
                 return std::move(context);
             };
             options.allow_preview = true;
+            options.allow_unmet = true;  // the panel shows what an effect lacks
             reads_all_posts = !dem;
             options.dem = std::move(dem);
             FilesInUse files;
@@ -174,7 +175,7 @@ struct SceneThread::Impl {
     std::shared_ptr<const Opened> as_opened() const {
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
                                                session->outline(), session->heights_to_aim_at(),
-                                               session->moment(), session->overlay_legend()});
+                                               session->time(), session->overlay_legend()});
     }
 
     /// Reads the complete DEM in the background, after the first frame of a preview.
@@ -311,8 +312,8 @@ struct SceneThread::Impl {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view, now.keep_above_m);
-        if (now.utc && *now.utc != session->moment()) {
-            session->set_moment(*now.utc);
+        if (now.utc && *now.utc != session->time()) {
+            session->set_time(*now.utc);
             // Core's lighting is always current.
             shadows_lag = !session->effects().loaded.modules.empty();
         }
@@ -352,7 +353,7 @@ struct SceneThread::Impl {
             copy(*made);
         made->camera = session->camera();
         made->aim_m = session->heights_to_aim_at();
-        made->utc = session->moment();
+        made->utc = session->time();
         made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;

@@ -125,7 +125,7 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
 /// @param size_px  of the window
 void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px);
 /// The time whose sun is nearest to a place in the window; none if the sun path is not near.
-std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,
-                                      glm::vec2 at_px);
+std::optional<sun::Instant> time_at(const State& state, const Picture& picture, glm::vec2 size_px,
+                                    glm::vec2 at_px);
 
 }  // namespace relevo::viewer

@@ -13,7 +13,7 @@
 
 namespace relevo::viewer {
 
-/// Where the sun is at a moment, as seen from the DEM's middle.
+/// Position of the sun at a time, as seen from the DEM's middle.
 struct SunPoint {
     sun::Instant utc;
     glm::dvec3 direction{0};   ///< in the DEM's local frame, lifted by the air, unit

@@ -108,8 +108,8 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
     list.AddCircle(*at, kSun_px + 1, IM_COL32(120, 80, 20, 200), 0, 1.5f);
 }
 
-std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,
-                                      glm::vec2 at_px) {
+std::optional<sun::Instant> time_at(const State& state, const Picture& picture, glm::vec2 size_px,
+                                    glm::vec2 at_px) {
     std::optional<sun::Instant> best;
     float least = kReach_px;
     const std::vector<SunPoint>& points = state.day.points;

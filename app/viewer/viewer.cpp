@@ -28,7 +28,7 @@ void run(const scene::Scene& scene, const std::string& device) {
             log::warning(
                 fmt::format("{}; the window begins again with the same scene", lost.what()));
             current = window.scene();
-            current.moment.zone = scene.moment.zone;
+            current.time.zone = scene.time.zone;
         }
     }
 }

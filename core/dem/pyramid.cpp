@@ -17,7 +17,7 @@
 namespace relevo::dem {
 namespace {
 
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+constexpr float kVoid_m = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kWhole = 255;
 
 /// Nodes of the next coarser level along a side.
@@ -25,7 +25,7 @@ int coarser(int nodes) {
     return (nodes - 1 + 1) / 2 + 1;
 }
 
-/// Weighted mean of the heights that are none of the holes, and the share that they are.
+/// Weighted mean of valid heights, and their fraction of the weight.
 class NodeMean {
   public:
     void add(float weight, float height_m) {
@@ -34,7 +34,7 @@ class NodeMean {
         sum_ += weight * height_m;
         covered_ += weight;
     }
-    float height_m() const { return covered_ > 0 ? sum_ / covered_ : kHole; }
+    float height_m() const { return covered_ > 0 ? sum_ / covered_ : kVoid_m; }
     std::uint8_t coverage() const {
         return static_cast<std::uint8_t>(whole_ > 0 ? std::lrint(kWhole * covered_ / whole_) : 0);
     }
@@ -47,18 +47,18 @@ class NodeMean {
 
 Pyramid::Pyramid(const Array2d<float>& posts_m)
     : posts_m_(&posts_m), sizes_{{posts_m.width(), posts_m.height()}} {
-    std::atomic<bool> holes = false;
+    std::atomic<bool> has_voids = false;
     parallel_for(0, rows(), 64, [&](int first, int last) {
         for (int row = first; row < last; ++row)
             for (const float h : posts_m.row(row))
                 if (std::isnan(h)) {
-                    holes = true;
+                    has_voids = true;
                     return;
                 }
     });
-    has_holes_ = holes;
+    has_voids_ = has_voids;
     Level level;
-    if (has_holes_) {
+    if (has_voids_) {
         level.coverage = Array2d<std::uint8_t>(columns(), rows());
         for (int row = 0; row < rows(); ++row)
             for (int column = 0; column < columns(); ++column)
@@ -76,7 +76,7 @@ Pyramid::Pyramid(const Heightfield& means, const Source& source)
     for (int level = 0; level < first_; ++level)
         sizes_.emplace_back(coarser(sizes_.back().x), coarser(sizes_.back().y));
     // A mean says nothing of single posts without a height: that there may be some costs little.
-    has_holes_ = true;
+    has_voids_ = true;
     levels_.push_back(nodes_of_means(means.height_m, {0, 0}, first_, {0, 0}, sizes_.back()));
     constexpr std::int64_t kAlways = 1 << 23;
     sample_errors(std::max<std::int64_t>(kAlways, std::ssize(means.height_m) / 4));
@@ -112,7 +112,7 @@ float Pyramid::height(int level, int column, int row) const {
 }
 
 float Pyramid::coverage(int level, int column, int row) const {
-    if (!has_holes_) return 1;
+    if (!has_voids_) return 1;
     const Array2d<std::uint8_t>& c = levels_[static_cast<std::size_t>(level)].coverage;
     return static_cast<float>(
                c.at(std::clamp(column, 0, c.width() - 1), std::clamp(row, 0, c.height() - 1))) /
@@ -126,10 +126,10 @@ void Pyramid::make_level() {
     const int columns = coarser(width), rows = coarser(height);
     Level coarse;
     coarse.height_m = Array2d<float>(columns, rows);
-    if (has_holes_) coarse.coverage = Array2d<std::uint8_t>(columns, rows);
+    if (has_voids_) coarse.coverage = Array2d<std::uint8_t>(columns, rows);
     parallel_for(0, rows, 16, [&](int first, int last) {
         // Weighted sums down the columns, then along them: of heights times coverage, and of
-        // coverage, which is a constant where there are no holes.
+        // coverage, which is a constant without voids.
         std::vector<float> sums(static_cast<std::size_t>(width)), shares(sums.size());
         for (int row = first; row < last; ++row) {
             const int y = std::min(2 * row, height - 1);
@@ -141,7 +141,7 @@ void Pyramid::make_level() {
                 const auto w = static_cast<float>(2 - std::abs(dy));
                 whole_down += w;
                 const float* const from = h.row(y + dy).data();
-                if (!has_holes_) {
+                if (!has_voids_) {
                     for (std::size_t x = 0; x < sums.size(); ++x)
                         sums[x] += w * from[x];
                     continue;
@@ -163,11 +163,11 @@ void Pyramid::make_level() {
                     share += w * shares[static_cast<std::size_t>(x + dx)];
                     whole += w * whole_down;
                 }
-                if (!has_holes_) {
+                if (!has_voids_) {
                     coarse.height_m.at(column, row) = sum / whole;
                     continue;
                 }
-                coarse.height_m.at(column, row) = share > 0 ? sum / share : kHole;
+                coarse.height_m.at(column, row) = share > 0 ? sum / share : kVoid_m;
                 coarse.coverage.at(column, row) =
                     static_cast<std::uint8_t>(std::lrint(share / whole));
             }
@@ -227,7 +227,7 @@ Pyramid::Block Pyramid::block(int level, glm::ivec2 first, int columns, int rows
             to[static_cast<std::size_t>(x)] =
                 from[static_cast<std::size_t>(std::clamp(first.x + x, 0, h.width() - 1))];
     }
-    if (!has_holes_) return block;
+    if (!has_voids_) return block;
     for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
             const glm::ivec2 node = first + glm::ivec2(x, y);
@@ -275,7 +275,7 @@ Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 f
 }
 
 Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int rows) const {
-    // One node more on each side, for the means beside holes; then nodes on the DEM alone.
+    // One node more on each side, for the means next to voids; then nodes on the DEM alone.
     const glm::ivec2 last = size(level) - 1;
     const glm::ivec2 from = glm::clamp(first - 1, glm::ivec2(0), last);
     const glm::ivec2 to = glm::clamp(first + glm::ivec2(columns, rows), glm::ivec2(0), last);

@@ -13,8 +13,8 @@
 
 namespace relevo::dem {
 
-/// A value between the four corners of a quad that is divided from its upper right to its lower
-/// left corner, as the drawn grid's are.
+/// Interpolates on the two triangles of a quad, which is split from its upper right to its lower
+/// left corner as in the drawn grid.
 /// @param u, v  0 to 1 from the left and from above
 inline float on_triangles(float upper_left, float upper_right, float lower_left, float lower_right,
                           float u, float v) {
@@ -23,84 +23,83 @@ inline float on_triangles(float upper_left, float upper_right, float lower_left,
                             (1 - v) * (upper_right - lower_right);
 }
 
-/// The heights of a DEM at spacings that double from level to level.
+/// Heights of a DEM at several levels of detail. The spacing doubles from level to level.
 ///
-/// Level 0 are the posts. The nodes of level k lie on every 2^k-th post, counted from the first,
-/// and on the last post of each row and column, so that all levels have the same rim. A node's
-/// height is the mean of the nodes of the next finer level around it with weights 1 2 1 both ways,
-/// over those that have a height; its coverage is the share of that weight that has one. Coverage
-/// averages like area: where holes are cut at a coverage of one half, they keep their size whatever
-/// the level, and heights next to them are those of their neighbours alone.
+/// The nodes of level 0 are the posts. The nodes of level k are every 2^k-th post, counted from the
+/// first, and the last post of each row and column: all levels have the same rim. A node's height
+/// is the mean of the valid nodes around it on the next finer level, with weights 1 2 1 along rows
+/// and columns. Its coverage is the valid fraction of these weights. Coverage averages like area:
+/// voids that are cut at a coverage of 0.5 have the same size on all levels. Voids do not affect
+/// the heights next to them.
 ///
-/// Of a DEM that memory does not hold, the finer levels are read when a block of them is asked for,
-/// as means that a file's overviews speed up, and what is known of their tiles comes from the
-/// coarser levels and from a sample of the posts.
+/// If the DEM exceeds the memory, block() reads the finer levels as means, from the file's
+/// overviews if it has them. The bounds of their tiles are derived from the coarser levels and from
+/// a sample of the posts.
 class Pyramid {
   public:
-    /// Makes all coarser levels down to one of at most 65 x 65 nodes.
-    /// @param posts_m  level 0, NaN for holes; it must outlive this
+    /// Computes coarser levels until one has at most 65 x 65 nodes.
+    /// @param posts_m  level 0, NaN in voids; must outlive this
     explicit Pyramid(const Array2d<float>& posts_m);
 
-    /// Of a DEM of which only means are in memory.
-    /// @param means   as load() makes them of the source: a power of two posts to each
-    /// @param source  where finer levels are read from; both must outlive this. Of the pieces that
-    ///                are sampled, each takes a quarter of the means' memory at most, or 32 MiB.
-    /// @throws Error (BadInput) where the file is damaged, also from block()
+    /// For a DEM of which only means are in memory.
+    /// @param means   as returned by load(): means of a power of two posts; must outlive this
+    /// @param source  of the finer levels; must outlive this. Each sampled piece takes at most a
+    ///     quarter of the means' memory, or 32 MiB
+    /// @throws Error (BadInput) if the file is damaged, also from block()
     Pyramid(const Heightfield& means, const Source& source);
 
-    /// The one or the other, by whether the heightfield has means.
-    /// @param source  null: the means are all there is
+    /// Pyramid of a heightfield of posts or of means.
+    /// @param source  null: there are no levels finer than the heightfield
     static Pyramid of(const Heightfield& field, const Source* source);
 
     int levels() const { return static_cast<int>(sizes_.size()); }
-    int columns() const { return sizes_.front().x; }  ///< of posts
-    int rows() const { return sizes_.front().y; }
-    int first_in_memory() const { return first_; }  ///< the finest level that is not read
-    bool has_holes() const { return has_holes_; }
+    int columns() const { return sizes_.front().x; }  ///< of level 0
+    int rows() const { return sizes_.front().y; }     ///< of level 0
+    int first_in_memory() const { return first_; }    ///< the finest level in memory
+    bool has_voids() const { return has_voids_; }
 
-    /// Nodes of a level, columns and rows.
+    /// Columns and rows of a level.
     glm::ivec2 size(int level) const;
-    /// The post that a node lies on.
+    /// Column and row of the post at a node.
     glm::ivec2 post(int level, glm::ivec2 node) const;
 
-    /// Height of a node [m] of a level in memory, NaN where its coverage is 0. Indices beyond the
-    /// rim repeat it.
+    /// Height [m] of a node of a level in memory; NaN if its coverage is 0. Indices are clamped to
+    /// the level.
     float height(int level, int column, int row) const;
-    /// 0 to 1; likewise.
+    /// Coverage of a node of a level in memory, 0 to 1. Indices are clamped to the level.
     float coverage(int level, int column, int row) const;
 
-    /// Of a level in memory.
+    /// All heights of a level in memory.
     const Array2d<float>& heights(int level) const {
         return level == 0 ? *posts_m_ : levels_[static_cast<std::size_t>(level)].height_m;
     }
 
-    /// Nodes of a rectangle. Where the coverage is 0, the height is the mean of the eight nodes
-    /// around, so that a surface meets the cut half way without a jump; 0 where those have none.
+    /// Nodes of a rectangle. Nodes of coverage 0 have the mean height of their eight neighbours, so
+    /// that the surface is continuous up to the cut at half coverage; 0 if all of these are voids.
     struct Block {
         Array2d<float> height_m;
         Array2d<float> coverage;  ///< 0 to 1
     };
-    /// @param first  its first node; nodes beyond the rim repeat it
-    /// Safe on several threads at once.
+    /// Thread-safe.
+    /// @param first  column and row of its first node; indices are clamped to the level
     Block block(int level, glm::ivec2 first, int columns, int rows) const;
 
-    /// Where a node lies among those of the next coarser level: `share` of the way from node `from`
-    /// to the one after.
+    /// Position of a node among those of the next coarser level: from + share, in nodes.
     struct Place {
         int from = 0;
-        float share = 0;
+        float share = 0;  ///< 0 to 1
     };
     Place column_in_coarser(int level, int column) const;
     Place row_in_coarser(int level, int row) const;
 
-    /// Lowest and highest post of a tile, and the distance [m] in height from its posts to the
-    /// surface of the level's triangles: a bound of the largest, and the root mean square as the
-    /// levels' own distances give it if they are independent (within a third of the true one on the
-    /// bundled DEM, tests/dem/test_pyramid.cpp).
+    /// Heights of a tile's posts [m], and the vertical error of the level's triangles at these
+    /// posts.
     struct Bounds {
         float lowest_m = 0;
-        float highest_m = 0;  ///< below lowest_m: the tile is a hole
-        float error_m = 0;
+        float highest_m = 0;  ///< below lowest_m if the tile is all void
+        float error_m = 0;    ///< upper bound of the largest error
+        /// Root mean square error, from the errors between successive levels as if independent.
+        /// Within a third of the true one on the bundled DEM (tests/dem/test_pyramid.cpp).
         float rms_m = 0;
 
         bool empty() const { return highest_m < lowest_m; }
@@ -109,34 +108,35 @@ class Pyramid {
     /// Quads along a side of a tile.
     static constexpr int kTileQuads = 64;
 
-    /// Tiles of a level, columns and rows.
+    /// Columns and rows of a level's tiles.
     glm::ivec2 tiles(int level) const;
-    /// Of tile (x, y), which covers the nodes 64 x to 64 x + 64 and likewise y.
+    /// Bounds of tile (x, y), which has the columns 64 x to 64 x + 64 and the rows 64 y to 64 y
+    /// + 64.
     Bounds bounds(int level, glm::ivec2 tile) const;
 
-    /// The error that a share of a level's tiles does not exceed [m].
-    /// @param measure  &Bounds::error_m or &Bounds::rms_m
-    /// @param share    0 to 1
-    float error_m(int level, float Bounds::*measure, double share) const;
+    /// Quantile of the errors of a level's tiles [m].
+    /// @param measure   &Bounds::error_m or &Bounds::rms_m
+    /// @param quantile  0 to 1
+    float error_m(int level, float Bounds::*measure, double quantile) const;
 
   private:
     struct Level {
         Array2d<float> height_m;
-        Array2d<std::uint8_t> coverage;  // 0 to 255; empty where there are no holes
+        Array2d<std::uint8_t> coverage;  // 0 to 255; empty without voids
         Array2d<Bounds> tiles;
     };
 
     void make_coarser_levels();
     void make_level();
     void bound_tiles(int level);
-    /// How far a tile of a level is from the nodes of the next finer one.
+    /// Vertical errors of a tile's triangles at the nodes of the next finer level.
     struct Misfit {
         float worst_m = 0;
         double mean_square_m2 = 0;
     };
-    /// @param columns  where those nodes lie between the coarser ones
+    /// @param columns  column_in_coarser() of these nodes
     Misfit misfit(int level, glm::ivec2 tile, const std::vector<Place>& columns) const;
-    /// Of the tiles of the next finer level below a tile; none where all are holes.
+    /// Union of the bounds of a tile's children; nullopt if all are void.
     std::optional<Bounds> bounds_of_children(int level, glm::ivec2 tile) const;
     void measure_errors(int level);
     Level nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean, int level,
@@ -149,8 +149,8 @@ class Pyramid {
     int first_ = 0;
     std::vector<glm::ivec2> sizes_;  // of all levels
     std::vector<Level> levels_;      // empty below first_; the heights of level 0 are posts_m_
-    std::vector<Bounds> sampled_;    // errors of levels 0 to first_, the largest of the sample
-    bool has_holes_ = false;
+    std::vector<Bounds> sampled_;    // largest sampled errors of levels 0 to first_
+    bool has_voids_ = false;
 };
 
 }  // namespace relevo::dem

@@ -100,7 +100,7 @@ void Pyramid::bound_tiles(int level) {
                      y < std::min((ty + 1) * kTileQuads + 1, posts.height()); ++y) {
                     const float* const row = posts.row(y).data();
                     for (int x = tx * kTileQuads; x < end; ++x) {
-                        low = row[x] < low ? row[x] : low;  // false for holes
+                        low = row[x] < low ? row[x] : low;  // false for voids
                         high = row[x] > high ? row[x] : high;
                     }
                 }
@@ -158,7 +158,7 @@ Pyramid::Misfit Pyramid::misfit(int level, glm::ivec2 tile,
             const float surface =
                 on_triangles(upper[c], upper[d], lower[c], lower[d], column.share, row.share);
             const float off = std::abs(from[x] - surface);
-            if (!(off >= 0)) continue;  // in or beside a hole
+            if (!(off >= 0)) continue;  // in or next to a void
             found.worst_m = std::max(found.worst_m, off);
             row_squares += off * off;
             ++measured;
@@ -189,13 +189,13 @@ void Pyramid::measure_errors(int level) {
     });
 }
 
-float Pyramid::error_m(int level, float Bounds::*measure, double share) const {
+float Pyramid::error_m(int level, float Bounds::*measure, double quantile) const {
     if (level < first_) return sampled_[static_cast<std::size_t>(level)].*measure;
     std::vector<float> errors;
     for (const Bounds& bounds : levels_[static_cast<std::size_t>(level)].tiles)
         if (!bounds.empty()) errors.push_back(bounds.*measure);
     if (errors.empty()) return 0;
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
+    const auto at = static_cast<std::ptrdiff_t>(quantile * static_cast<double>(errors.size() - 1));
     std::nth_element(errors.begin(), errors.begin() + at, errors.end());
     return errors[static_cast<std::size_t>(at)];
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/contains.h"
 #include "base/error.h"
@@ -48,8 +49,24 @@ void check_wants(const Effect& effect) {
                                  wanted.word, effect.manifest.file.string(), wanted.word));
 }
 
+/// Textures of core's are there for passes and for hooks of finished pixels.
+void check_core_sampler(const shader::Sampler& sampler) {
+    std::vector<std::string> names;
+    for (const shader::CoreTexture& texture : shader::kCoreTextures)
+        names.emplace_back(texture.name);
+    if (!contains(names, sampler.resource))
+        fail(sampler.file, sampler.line,
+             fmt::format("{}: expected one of {} but got {}", sampler.name, fmt::join(names, ", "),
+                         sampler.resource));
+    if (sampler.type != "sampler2D")
+        fail(sampler.file, sampler.line,
+             fmt::format("{}: expected a sampler2D for {} but got a {}", sampler.name,
+                         sampler.resource, sampler.type));
+}
+
 void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
     const Manifest& manifest = effect.manifest;
+    if (sampler.resource.starts_with("core.")) return check_core_sampler(sampler);
     const std::string prefix = effect.id() + '.';
     if (sampler.resource.substr(0, prefix.size()) != prefix) return;  // another plugin's
     const std::string name = sampler.resource.substr(prefix.size());
@@ -64,11 +81,60 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
                              texture.line, sampler.type));
         return;
     }
+    for (const shader::PluginPass& pass : manifest.passes) {
+        names.push_back(pass.name);
+        if (pass.name != name) continue;
+        if (sampler.type != "sampler2D")
+            fail(sampler.file, sampler.line,
+                 fmt::format("{}: expected a sampler2D for the pass {} of {}:{} but got a {}",
+                             sampler.name, name, manifest.file.string(), pass.line, sampler.type));
+        return;
+    }
     if (!manifest.module.empty()) return;
     const std::optional<std::string> near = nearest(name, names);
     fail(sampler.file, sampler.line,
          fmt::format("{}: {} has no texture {}{}", sampler.name, manifest.file.string(), name,
                      near ? fmt::format("; did you mean {}?", *near) : ""));
+}
+
+const shader::PluginPass* find_pass(const Effect& effect, std::string_view name) {
+    const auto found = std::ranges::find(effect.manifest.passes, name, &shader::PluginPass::name);
+    return found == effect.manifest.passes.end() ? nullptr : &*found;
+}
+
+/// Each pass has one function, and each function of a pass its pass.
+void check_passes(const Effect& effect) {
+    const Manifest& manifest = effect.manifest;
+    for (const shader::PluginPass& pass : manifest.passes) {
+        const std::string key = "passes." + pass.name;
+        if (std::ranges::find(manifest.textures, pass.name, &TextureSpec::name) !=
+            manifest.textures.end())
+            fail(manifest.file.string(), pass.line,
+                 fmt::format("{}: a texture of \"textures\" has this name too; rename one", key));
+        const auto defines = [&](const shader::Snippet& snippet) {
+            return std::ranges::count(snippet.passes, pass.name, &shader::PassFunction::name);
+        };
+        std::ptrdiff_t functions = 0;
+        for (const shader::Snippet& snippet : effect.snippets)
+            functions += defines(snippet);
+        if (functions != 1)
+            fail(manifest.file.string(), pass.line,
+                 fmt::format("{}: expected one function vec4 {}(in Texel t) in the plugin's GLSL "
+                             "but got {}",
+                             key, pass.function, functions));
+        const std::vector<shader::Param> params = effect.params();
+        for (const std::string& address : pass.parameters)
+            if (std::ranges::find(params, address, &shader::Param::address) == params.end())
+                fail(manifest.file.string(), pass.line,
+                     fmt::format("{}: parameters: the plugin has no {}", key, address));
+    }
+    for (const shader::Snippet& snippet : effect.snippets)
+        for (const shader::PassFunction& function : snippet.passes)
+            if (!find_pass(effect, function.name))
+                fail(snippet.file, function.line,
+                     fmt::format("{}_pass_{}: {} has no pass {}; add \"passes\": {{\"{}\": {{}}}}",
+                                 effect.id(), function.name, manifest.file.string(), function.name,
+                                 function.name));
 }
 
 void check_textures(const Effect& effect) {
@@ -232,6 +298,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     if (const auto& invents = effect.manifest.invents)
         check_named(effect, invents->address, "invents", invents->line);
     check_wants(effect);
+    check_passes(effect);
     check_textures(effect);
     check_texts(effect);
     return effect;

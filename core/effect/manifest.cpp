@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,13 +20,25 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 48> kReserved = {
-    "all",   "antialias", "backdrop", "background", "camera",  "climate",  "colour", "copy",
-    "core",  "data",      "depth",    "drape",      "east",    "edges",    "floor",  "footprint",
-    "frame", "gbuffer",   "geometry", "gl",         "ground",  "height",   "hook",   "light",
-    "load",  "net",       "none",     "normal",     "overlay", "page",     "place",  "post",
-    "scene", "select",    "side",     "slope",      "srgb",    "steps",    "store",  "stored",
-    "sun",   "surface",   "tangent",  "terrain",    "up",      "varyings", "vertex", "water"};
+constexpr std::array<std::string_view, 49> kReserved = {
+    "all",       "antialias", "backdrop", "background", "camera",   "climate", "colour",
+    "copy",      "core",      "data",     "depth",      "east",     "edges",   "floor",
+    "footprint", "frame",     "gbuffer",  "geometry",   "gl",       "ground",  "height",
+    "hook",      "light",     "load",     "net",        "none",     "normal",  "overlay",
+    "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
+    "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
+    "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
+
+constexpr int kMaxPassSide = 4096;
+constexpr double kMinPassScale = 1.0 / 64;
+constexpr std::array<std::pair<PixelFormat, std::string_view>, 7> kPassFormats = {
+    std::pair(PixelFormat::RGBA16F, "rgba16f"),
+    {PixelFormat::RGBA32F, "rgba32f"},
+    {PixelFormat::RG16F, "rg16f"},
+    {PixelFormat::RG32F, "rg32f"},
+    {PixelFormat::R16F, "r16f"},
+    {PixelFormat::R32F, "r32f"},
+    {PixelFormat::RGBA8, "rgba8"}};
 
 // Capabilities that core provides itself: render/core_passes.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
@@ -124,9 +137,11 @@ class ManifestReader {
                                     manifest_.module));
         glsl(object);
         textures(object);
+        passes(object);
         texts(object);
         displaces(object);
         invents(object);
+        object.string("$schema", "");  // which editors look for
         object.finish();
         return std::move(manifest_);
     }
@@ -134,14 +149,8 @@ class ManifestReader {
   private:
     void identity(json::ObjectReader& object) {
         manifest_.id = object.string("id");
-        if (!is_id(manifest_.id))
-            object.fail(
-                object.line_of("id"), "id",
-                fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
-                            manifest_.id));
-        if (contains(kReserved, manifest_.id))
-            object.fail(object.line_of("id"), "id",
-                        fmt::format("{} is a word of core's; choose another", manifest_.id));
+        if (const std::string fault = fault_of_id(manifest_.id); !fault.empty())
+            object.fail(object.line_of("id"), "id", fault);
         manifest_.name = object.string("name");
         manifest_.description = object.string("description", "");
         manifest_.version = object.string("version");
@@ -218,6 +227,59 @@ class ManifestReader {
         spec.mipmaps = object.boolean("mipmaps", true);
         object.finish();
         return spec;
+    }
+
+    void passes(json::ObjectReader& object) {
+        named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
+            manifest_.passes.push_back(pass(name, value));
+        });
+    }
+
+    /// A fraction of the frame's size, or a fixed size.
+    void pass_size(json::ObjectReader& object, shader::PluginPass& pass) {
+        if (object.has("width") || object.has("height")) {
+            if (object.has("scale"))
+                object.fail(object.line_of("scale"), "scale",
+                            "expected a scale of the frame's size, or width and height, not both");
+            object.need("width");
+            object.need("height");
+            pass.scale = 0;
+            pass.width = static_cast<int>(object.number("width", 1, 1, kMaxPassSide, true));
+            pass.height = static_cast<int>(object.number("height", 1, 1, kMaxPassSide, true));
+            return;
+        }
+        pass.scale = object.number("scale", 1, kMinPassScale, 1, false);
+        int exponent = 0;
+        if (std::frexp(pass.scale, &exponent) != 0.5)
+            object.fail(object.line_of("scale"), "scale",
+                        fmt::format("expected 1, 0.5, 0.25 or another half of these down to {} but "
+                                    "got {}",
+                                    kMinPassScale, pass.scale));
+    }
+
+    shader::PluginPass pass(const std::string& name, const json::Value& value) {
+        using When = shader::PluginPass::When;
+        json::ObjectReader object(kWho, manifest_.file.string(), "passes." + name, value);
+        shader::PluginPass pass{.name = name,
+                                .resource = manifest_.id + '.' + name,
+                                .function = manifest_.id + "_pass_" + name,
+                                .line = value.line};
+        std::vector<std::string> formats;
+        for (const auto& [format, word] : kPassFormats)
+            formats.emplace_back(word);
+        pass.format =
+            kPassFormats[static_cast<std::size_t>(object.choice("format", formats, 0))].first;
+        pass.linear = object.choice("filter", {"linear", "nearest"}, 0) == 0;
+        pass_size(object, pass);
+        pass.when = static_cast<When>(object.choice("when", {"frame", "sun", "changed", "dem"}, 0));
+        for (const std::string& word : words(object, "parameters"))
+            pass.parameters.push_back(manifest_.id + '.' + word);
+        if ((pass.when == When::Changed) == pass.parameters.empty())
+            object.fail(object.line_of("parameters"), "parameters",
+                        "expected the parameters that change it with \"when\": \"changed\", "
+                        "and only then");
+        object.finish();
+        return pass;
     }
 
     std::filesystem::path data_file(const json::ObjectReader& object, const std::string& key,
@@ -308,6 +370,19 @@ class ManifestReader {
 
 std::span<const std::string_view> ground_words() {
     return kGroundWords;
+}
+
+bool is_core_word(std::string_view word) {
+    return contains(kCoreWords, word);
+}
+
+std::string fault_of_id(std::string_view text) {
+    if (!is_id(text))
+        return fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
+                           text);
+    if (contains(kReserved, text))
+        return fmt::format("{} is a word of core's; choose another", text);
+    return {};
 }
 
 Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {

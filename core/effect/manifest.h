@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shader/param_store.h"
+#include "shader/plugin_pass.h"
 
 namespace relevo::effect {
 
@@ -79,6 +80,7 @@ struct Manifest {
 
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
+    std::vector<shader::PluginPass> passes;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty
@@ -91,6 +93,12 @@ struct Manifest {
 /// Words of "default_where", for features of a DEM: "water"; "marked_holes", voids that are filled
 /// and marked; "covered_voids", voids too wide to be filled as ground.
 std::span<const std::string_view> ground_words();
+
+/// Whether core itself provides a capability word, for some of its programs.
+bool is_core_word(std::string_view word);
+
+/// Why a text cannot be the id of a plugin; empty if it can.
+std::string fault_of_id(std::string_view text);
 
 /// Reads `folder/plugin.json`.
 /// @param data_dir  where `data:ground/rock.png` is: `share_dir() / "data"`

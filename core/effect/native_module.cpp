@@ -1,5 +1,6 @@
 #include "effect/native_module.h"
 
+#include <cstdlib>
 #include <cstring>
 
 #include <dlfcn.h>
@@ -25,6 +26,45 @@ const void* log_service(const relevo_host*, const char* name, uint32_t version) 
                                         if (text) log_of_module(level, text);
                                     }};
     return name && std::strcmp(name, "relevo.log") == 0 && version == 1 ? &table : nullptr;
+}
+
+/// A copy of a library under a name that no library had before. It is removed with this.
+class PrivateCopy {
+  public:
+    explicit PrivateCopy(const std::filesystem::path& library) {
+        std::error_code error;
+        std::string folder =
+            (std::filesystem::temp_directory_path(error) / "relevo-module-XXXXXX").string();
+        if (error || !mkdtemp(folder.data()))  // for this user alone
+            fail(library, "it is loaded already, and no folder for a copy can be created");
+        folder_ = folder;
+        std::filesystem::copy_file(library, file(library), error);
+        if (error) fail(library, fmt::format("it cannot be copied, {}", error.message()));
+    }
+    ~PrivateCopy() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    PrivateCopy(const PrivateCopy&) = delete;
+    PrivateCopy& operator=(const PrivateCopy&) = delete;
+
+    std::filesystem::path file(const std::filesystem::path& library) const {
+        return folder_ / library.filename();
+    }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// Loads a library as it is on disk now. dlopen() would return one of the same name that is still
+/// loaded, also after the file was built again.
+void* open_library(const std::filesystem::path& library) {
+    constexpr int kFlags = RTLD_NOW | RTLD_LOCAL;
+    void* const loaded = dlopen(library.c_str(), kFlags | RTLD_NOLOAD);
+    if (!loaded) return dlopen(library.c_str(), kFlags);
+    dlclose(loaded);
+    const PrivateCopy copy(library);
+    return dlopen(copy.file(library).c_str(), kFlags);
 }
 
 }  // namespace
@@ -63,7 +103,7 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
     module.folder_ = manifest.folder;
     module.process_ = std::make_unique<ModuleInProcess>(manifest.id, library);
     const ModuleCall call(*module.process_, "registration");
-    module.handle_ = {dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL), Close{module.process_.get()}};
+    module.handle_ = {open_library(library), Close{module.process_.get()}};
     if (!module.handle_) fail(library, fmt::format("it cannot be loaded: {}", dlerror()));
     const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
         dlsym(module.handle_.get(), "relevo_plugin_register"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <new>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +10,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "effect/search_path.h"
 
 namespace relevo::effect {
 namespace {
@@ -25,6 +27,13 @@ std::string name_of(const std::filesystem::path& folder) {
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(folder, error).lexically_normal();
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+/// One name for a folder, whichever way it is named.
+std::filesystem::path one_name(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::canonical(folder, error);
+    return error ? folder : whole;
 }
 
 std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& path) {
@@ -49,8 +58,11 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
                         const std::filesystem::path& data_dir) {
     Registry registry;
     registry.search_paths_ = search_paths;
+    std::set<std::filesystem::path> seen;
     for (const std::filesystem::path& path : search_paths) {
         for (const std::filesystem::path& folder : plugin_folders(path)) {
+            // Two search paths may have the same folder.
+            if (!seen.insert(one_name(folder)).second) continue;
             std::string id = name_of(folder);
             try {
                 Effect effect = load_effect(folder, data_dir);
@@ -76,12 +88,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
 }
 
 Registry Registry::load_installed(const std::vector<std::filesystem::path>& extra) {
-    std::vector<std::filesystem::path> paths;
-    std::error_code ignored;
-    if (std::filesystem::is_directory(share_dir() / "plugins", ignored))
-        paths.push_back(share_dir() / "plugins");
-    paths.insert(paths.end(), extra.begin(), extra.end());
-    return load(paths, share_dir() / "data");
+    return load(plugin_search_path(extra), share_dir() / "data");
 }
 
 const Effect* Registry::find(std::string_view id) const {
@@ -126,6 +133,13 @@ std::vector<shader::TextParam> Registry::texts() const {
     for (const Effect& effect : effects_)
         result.insert(result.end(), effect.manifest.texts.begin(), effect.manifest.texts.end());
     return result;
+}
+
+std::vector<std::string> Registry::provided_words() const {
+    std::set<std::string> words;
+    for (const Effect& effect : effects_)
+        words.insert(effect.manifest.provides.begin(), effect.manifest.provides.end());
+    return {words.begin(), words.end()};
 }
 
 }  // namespace relevo::effect

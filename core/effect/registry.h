@@ -20,13 +20,13 @@ struct BrokenEffect {
 class Registry {
   public:
     /// Reads every plugin below the search paths: a folder with a plugin.json, or a folder of such
-    /// folders. A broken plugin does not affect the others. Of two with the same id the second is
-    /// broken.
+    /// folders. A broken plugin does not affect the others. Of two with the same id the first is
+    /// used, and the second is broken. A folder that two search paths have is read once.
     /// @param data_dir  where `data:` files are
     /// @throws Error (BadInput) only for a search path that is no folder
     static Registry load(const std::vector<std::filesystem::path>& search_paths,
                          const std::filesystem::path& data_dir);
-    /// Reads the bundled plugins, then those below `extra` (--plugin-path).
+    /// Reads the plugins of plugin_search_path(extra). @throws Error as that, and as load()
     static Registry load_installed(const std::vector<std::filesystem::path>& extra = {});
 
     const std::vector<Effect>& effects() const { return effects_; }  ///< by id
@@ -40,6 +40,8 @@ class Registry {
     const Effect& effect(std::string_view id, std::string_view who) const;
     std::vector<shader::Param> params() const;     ///< of all effects, for ParamStore::declare
     std::vector<shader::TextParam> texts() const;  ///< of all effects, too
+    /// The capability words that plugins provide, sorted.
+    std::vector<std::string> provided_words() const;
 
   private:
     std::vector<Effect> effects_;

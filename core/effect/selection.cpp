@@ -9,6 +9,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/text.h"
 
 namespace relevo::effect {
 namespace {
@@ -23,12 +24,9 @@ class Selector {
         for (const Effect& effect : registry.effects())
             if (effect.manifest.enabled_by_default && !lacking(effect, ground))
                 on_.insert(effect.id());
-        for (const Preset& preset : presets) {
-            ++turn_;
+        for (const Preset& preset : presets)
             apply(known_of(preset));
-        }
         check_command_line(command_line);
-        ++turn_;
         apply(command_line);
         for (const std::string& id : on_)
             if (const auto word = lacking(effect(id), ground))
@@ -55,6 +53,7 @@ class Selector {
         selection.capabilities.assign(words.begin(), words.end());
         selection.notices = std::move(notices_);
         selection.warnings = std::move(warnings_);
+        selection.refused = std::move(refused_);
         return selection;
     }
 
@@ -110,7 +109,7 @@ class Selector {
             on_.insert(id);
             asked_.insert(id);
             disabled_.erase(id);
-            turns_[id] = turn_;
+            turns_[id] = ++turn_;
         };
         if (switches.only) {
             on_.clear();
@@ -186,26 +185,52 @@ class Selector {
         }
         const std::string reason =
             fmt::format("it requires {}, {}", word,
-                        offers.empty() ? "which no plugin here provides"
+                        offers.empty() ? "which no plugin here provides" + suggestion(word)
                                        : fmt::format("{}", fmt::join(offers, "; ")));
         if (needs_broken) {
             broken_.insert(id);
             warn_off(id, reason);
         } else {
             notices_.push_back(fmt::format("{} is off: {}", id, reason));
+            refuse_named(id, reason, word);
         }
+        reasons_[id] = reason;
         on_.erase(id);
         asked_.erase(id);
         unmet_.insert(id);
     }
 
+    /// "; did you mean materials?" for a word that is nearly one that a plugin provides.
+    std::string suggestion(const std::string& word) const {
+        const std::optional<std::string> near = nearest(word, registry_.provided_words());
+        return near ? fmt::format("; did you mean {}?", *near) : "";
+    }
+
+    /// The option of the command line that switches an effect on by name; empty: none.
+    std::string_view named_by(const std::string& id) const {
+        if (command_line_.only && contains(*command_line_.only, id)) return "--only";
+        return contains(command_line_.enable, id) ? "--enable" : "";
+    }
+
+    std::string refusal(const std::string& id, const std::string& reason) const {
+        return fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho, id,
+                           reason, named_by(id));
+    }
+
+    void refuse_named(const std::string& id, const std::string& reason, const std::string& word) {
+        if (named_by(id).empty()) return;
+        // A provider that is off has a reason itself.
+        std::string whole = reason;
+        for (const Effect* provider : providers(word))
+            if (const auto why = reasons_.find(provider->id()); why != reasons_.end())
+                whole += fmt::format(" ({})", why->second);
+        refused_.push_back(refusal(id, whole));
+    }
+
     /// Warns that an effect is off because something is broken.
     /// @throws Error if the command line asks for that effect by name
     void warn_off(const std::string& id, const std::string& reason) {
-        const bool only = command_line_.only && contains(*command_line_.only, id);
-        if (only || contains(command_line_.enable, id))
-            bad_input(fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho,
-                                  id, reason, only ? "--only" : "--enable"));
+        if (!named_by(id).empty()) bad_input(refusal(id, reason));
         warnings_.push_back(
             fmt::format("{} is off: {}; --disable {} silences this", id, reason, id));
     }
@@ -228,13 +253,8 @@ class Selector {
                 if (!(id < other)) continue;
                 const std::string word = rival_word(effect(id), effect(other));
                 if (word.empty()) continue;
-                const int turn = turn_of(id), others = turn_of(other);
-                if (turn == others && turn > 0)
-                    bad_input(fmt::format(
-                        "{}: {}: expected one provider of it but got {} and {}; add --disable {} "
-                        "or --disable {}",
-                        kWho, word, id, other, id, other));
-                give_way(turn < others ? id : other, turn < others ? other : id, word);
+                const bool is_earlier = turn_of(id) < turn_of(other);
+                give_way(is_earlier ? id : other, is_earlier ? other : id, word);
                 return true;
             }
         }
@@ -328,14 +348,14 @@ class Selector {
     const Registry& registry_;
     const Switches& command_line_;
     std::set<std::string> on_;
-    std::set<std::string> asked_;  // by name, or as a requirement of such effects
-    std::map<std::string, int>
-        turns_;  // index of the preset that requested it; the command line is last
+    std::set<std::string> asked_;       // by name, or as a requirement of such effects
+    std::map<std::string, int> turns_;  // order in which effects were asked for, from 1
     int turn_ = 0;
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
     std::set<std::string> broken_;    // of those, unusable ones and those that require them
-    std::vector<std::string> notices_, warnings_;
+    std::map<std::string, std::string> reasons_;  // of those that lack a requirement
+    std::vector<std::string> notices_, warnings_, refused_;
 };
 
 /// The value to set. A relative path is relative to the folder of the file that sets it.
@@ -360,6 +380,13 @@ std::vector<const shader::Snippet*> Selection::snippets() const {
     for (const Effect* effect : effects)
         for (const shader::Snippet& snippet : effect->snippets)
             result.push_back(&snippet);
+    return result;
+}
+
+std::vector<shader::PluginPass> Selection::passes() const {
+    std::vector<shader::PluginPass> result;
+    for (const Effect* effect : effects)
+        result.insert(result.end(), effect->manifest.passes.begin(), effect->manifest.passes.end());
     return result;
 }
 

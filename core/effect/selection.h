@@ -17,9 +17,13 @@ struct Selection {
     std::vector<std::string> capabilities;  ///< that they provide, sorted
     std::vector<std::string> notices;       ///< effects that were also switched on or off, and why
     std::vector<std::string> warnings;      ///< effects that are off because something is broken
+    /// Effects that the command line names and that are off because a requirement is not met: whole
+    /// error messages.
+    std::vector<std::string> refused;
 
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
+    std::vector<shader::PluginPass> passes() const;        ///< likewise
 };
 
 /// Effects that cannot be on, by id, and why.

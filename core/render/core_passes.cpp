@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "render/pass_context.h"
+#include "render/pass_texts.h"
 #include "shader/stored_varyings.h"
 
 namespace relevo::render {
@@ -13,33 +14,47 @@ constexpr const char* kFullscreen = "fullscreen.vert.glsl";
 constexpr const char* kTerrain = "terrain.vert.glsl";
 constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
 
-// Outputs beside the G-buffer: GL guarantees eight.
+// Colour outputs in addition to the G-buffer: GL guarantees eight in total.
 constexpr int kMaxStored = 7;
 
-/// Recomputes the light by place that programs read, if the sun has moved.
-/// @param with_walls  walls below the ground may be in sight without it
-void light(PassContext& frame, bool with_walls) {
+/// Updates the textures of GroundLight that the frame's programs read.
+/// @param with_walls  walls may be visible where the ground is not
+void update_light(PassContext& frame, bool with_walls) {
     GroundLight& light = frame.terrain.light();
     const FrameInputs& inputs = frame.inputs;
     const LodView view =
         LodView::of_camera(inputs.camera, frame.width_px, frame.height_px, 1, inputs.exaggeration);
-    // Without ground in sight the light of any sun will do, else the coarsest.
+    // If no ground is visible, shadows of an earlier sun are kept. If there are none, the coarsest
+    // are computed.
     const bool sees_ground =
         with_walls ? frame.tiles.triangles() > 0 : frame.terrain.sees_ground(frame.tiles, view);
     const double pixel_posts =
         sees_ground ? frame.tiles.nearest_m() * view.tolerance / frame.terrain.normal_spacing_m()
                     : std::numeric_limits<double>::infinity();
-    if (frame.is_read("light_margins") && (sees_ground || !light.followed()))
-        light.follow(inputs.sun, inputs.exaggeration, pixel_posts);
-    if (frame.is_read("light_sky")) light.look_up(inputs.exaggeration);
+    if (frame.is_read("light_clearance") && (sees_ground || !light.shadow_sun()))
+        light.update_shadows(inputs.sun, inputs.exaggeration, pixel_posts);
+    if (frame.is_read("light_sky")) light.update_sky_view(inputs.exaggeration);
     light.describe(frame.block);
+}
+
+When when_of(shader::PluginPass::When when) {
+    switch (when) {
+        case shader::PluginPass::When::Sun:
+            return When::Sun;
+        case shader::PluginPass::When::Changed:
+            return When::Parameters;
+        case shader::PluginPass::When::Dem:
+            return When::Dem;
+        default:
+            return When::Frame;
+    }
 }
 
 class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
         : facts_(facts),
-          tone_mapped_(facts.antialias ? "colour" : "picture"),
+          tone_mapped_(facts.antialias ? "colour" : "output"),
           shaded_(facts.radiance ? "radiance" : tone_mapped_) {
         if (!facts.radiance)
             end_defines_.push_back({"SHOWN", ""});
@@ -52,6 +67,8 @@ class Declaration {
         prepare();
         natives();
         geometry();
+        for (const shader::PluginPass& pass : facts_.plugin_passes)
+            plugin_pass(pass);
         terrain();
         if (facts_.outside) side();
         background();
@@ -65,8 +82,8 @@ class Declaration {
     void add(Resource resource) { frame_.graph.resources.push_back(std::move(resource)); }
     void provided(const char* name) { add(Resource{.name = name, .lifetime = Lifetime::Provided}); }
 
-    /// @param word  a capability that it has beside those of the effects; null: none
-    /// @returns its name, which ends in the word
+    /// @param word  capability word in addition to those of the effects; null: none
+    /// @returns the program's name, with the word as its suffix
     std::string program(const char* name, shader::ProgramRecipe recipe,
                         const char* word = nullptr) {
         if (facts_.software) recipe.defines.push_back({"EXACT_FILTERS", ""});
@@ -77,8 +94,8 @@ class Declaration {
 
     void resources() {
         using enum PixelFormat;
-        for (const char* name : {"tiles", "frame", "parameters", "light_margins", "light_shares",
-                                 "light_sky", "floor_ground"})
+        for (const char* name : {"tiles", "frame", "parameters", "light_clearance",
+                                 "light_fraction", "light_sky", "floor_ground"})
             provided(name);
         add(Resource{.name = "gbuffer", .format = RGBA32UI, .output = facts_.audited});
         add(Resource{.name = "depth", .format = Depth32F, .output = true});
@@ -98,10 +115,10 @@ class Declaration {
             add(Resource{.name = "colour", .format = RGBA8, .linear = true});
             add(Resource{.name = "edge_marks", .format = Stencil8});
         }
-        add(Resource{.name = "picture", .format = RGBA8, .linear = true, .output = true});
+        add(Resource{.name = "output", .format = RGBA8, .linear = true, .output = true});
     }
 
-    /// What the host does before anything is drawn.
+    /// Passes on the host before the first draw.
     void prepare() {
         add(Pass{.name = "select",
                  .kind = PassKind::Host,
@@ -115,9 +132,9 @@ class Declaration {
         add(Pass{.name = "light",
                  .kind = PassKind::Host,
                  .reads = {"tiles"},
-                 .writes = {"light_margins", "light_shares", "light_sky"},
+                 .writes = {"light_clearance", "light_fraction", "light_sky"},
                  .body = [with_walls = facts_.outside](PassContext& frame) {
-                     light(frame, with_walls);
+                     update_light(frame, with_walls);
                  }});
         add(Pass{.name = "footprint",
                  .kind = PassKind::Host,
@@ -133,7 +150,7 @@ class Declaration {
                  .body = [](PassContext& frame) { frame.services.upload_blocks(frame.block); }});
     }
 
-    /// Each draws the ground's depth as often as it likes and may write parameters.
+    /// Passes of native effects. Each may draw the ground's depth repeatedly and write parameters.
     void natives() {
         if (facts_.natives.empty()) return;
         shader::ProgramRecipe recipe{.vertex_main = kTerrain,
@@ -176,6 +193,23 @@ class Declaration {
         add(std::move(pass));
     }
 
+    void plugin_pass(const shader::PluginPass& pass) {
+        const When when = when_of(pass.when);
+        add(Resource{.name = pass.resource,
+                     .format = pass.format,
+                     .size = {.share = pass.scale, .width = pass.width, .height = pass.height},
+                     // A texture that is not computed in every frame has to last.
+                     .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
+                     .linear = pass.linear});
+        add(Pass{
+            .name = pass.resource,
+            .when = when,
+            .parameters = pass.parameters,
+            .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
+                                                       .fragment_main = PassTexts::name_of(pass)}),
+            .colours = {{pass.resource}}});
+    }
+
     void ground_defines(shader::ProgramRecipe& recipe) const {
         if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         if (facts_.displaced) recipe.defines.push_back({"DISPLACED", ""});
@@ -193,7 +227,7 @@ class Declaration {
     }
     bool has_overlay() const { return facts_.radiance && facts_.overlays; }
 
-    /// Shades what the geometry pass has drawn.
+    /// Shades the pixels of the geometry pass.
     void terrain() {
         shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
                                      .fragment_main = "terrain.frag.glsl",
@@ -211,7 +245,7 @@ class Declaration {
         add(std::move(pass));
     }
 
-    /// The walls of a block that is seen from outside.
+    /// The walls of a block, for views from outside.
     void side() {
         Pass pass{.name = "side",
                   .kind = PassKind::Geometry,
@@ -228,7 +262,7 @@ class Declaration {
         add(std::move(pass));
     }
 
-    /// The sky, or what is behind a block.
+    /// The sky, or the backdrop of a block.
     void background() {
         const char* const name = facts_.outside ? "backdrop" : "background";
         const shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
@@ -238,30 +272,31 @@ class Declaration {
                   .program = program(name, recipe),
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Uncovered},
-                  .after = {"side"}};  // which there is from outside alone
+                  .after = {"side"}};  // a pass of views from outside only
         if (!facts_.outside && facts_.wants_night)
             pass.program_at_night = program(name, recipe, kNightWord);
         add(std::move(pass));
     }
 
-    /// Tone mapping of stored radiance. Without it the shading programs do that.
+    /// Tone mapping of stored radiance. Without radiance, the shading programs map tones.
     void post() {
+        shader::ProgramRecipe recipe{
+            .vertex_main = kFullscreen, .fragment_main = "post.frag.glsl", .defines = end_defines_};
+        if (facts_.pixel_hooks) recipe.defines.push_back({"PIXEL_HOOKS", ""});
         add(Pass{.name = "post",
-                 .program = program("post", {.vertex_main = kFullscreen,
-                                             .fragment_main = "post.frag.glsl",
-                                             .defines = end_defines_}),
+                 .program = program("post", std::move(recipe)),
                  .colours = {{tone_mapped_}}});
     }
 
-    /// Two draws: the first marks the few pixels of silhouettes, the second smooths those over a
-    /// copy. One draw over all pixels takes five times as long on a software renderer.
+    /// Two draws: the first marks the pixels of silhouettes in the stencil, the second smooths only
+    /// those. A single draw over all pixels takes five times as long on a software renderer.
     void antialias() {
         add(Pass{.name = "copy",
                  .kind = PassKind::Host,
                  .reads = {"colour"},
-                 .writes = {"picture"},
+                 .writes = {"output"},
                  .body = [](PassContext& frame) {
-                     frame.texture("picture").copy_from(frame.texture("colour"));
+                     frame.texture("output").copy_from(frame.texture("colour"));
                  }});
         add(Pass{.name = "edges",
                  .program = program(
@@ -270,13 +305,13 @@ class Declaration {
         add(Pass{.name = "antialias",
                  .program = program("antialias", {.vertex_main = kFullscreen,
                                                   .fragment_main = "antialias.frag.glsl"}),
-                 .colours = {{.resource = "picture", .updates = true}},
+                 .colours = {{.resource = "output", .updates = true}},
                  .stencil = Stencil{"edge_marks"}});
     }
 
     const FrameFacts& facts_;
-    std::string tone_mapped_;  // resource of the tone-mapped colours
-    std::string shaded_;       // what the shading passes draw into: that, or radiance
+    std::string tone_mapped_;  // resource of the tonemapped colours
+    std::string shaded_;  // resource that the shading passes draw into: tone_mapped_ or radiance
     std::vector<shader::Define> end_defines_;  // of the shading programs
     CoreFrame frame_;
 };

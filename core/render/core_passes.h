@@ -9,55 +9,57 @@
 
 namespace relevo::render {
 
-/// A capability word that core provides, to the background alone and while it is night: what is
-/// only in a night's sky then is in a program of its own, and costs a day nothing.
+/// Capability word of core for the background at night. Code for the night sky is compiled into a
+/// separate program and adds no cost by day.
 inline constexpr const char* kNightWord = "night";
 
-/// A capability word that core provides to the ground's programs while it is seen from outside as a
-/// block: what is only within, such as air, costs a frame from outside nothing.
+/// Capability word of core for the ground of a block seen from outside. Code for views from within,
+/// such as air, adds no cost to these frames.
 inline constexpr const char* kOutsideWord = "outside";
 
-/// The stored steps of the height, from the geometry to the terrain program: their sampler, and the
-/// define that has the number of their output. There where a hook reads them.
+/// Height differences between neighbouring pixels, from the geometry to the terrain program: the
+/// sampler, and the define with the number of the output. Present if a hook reads them.
 inline constexpr const char* kHeightStepsTexture = "height_steps";
 inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
 
-/// The define that has the number of the output that audits read.
+/// Define with the number of the output for audits.
 inline constexpr const char* kAuditedDefine = "AUDITED";
 
-/// What decides which passes and programs a frame has.
+/// Determines the passes and programs of a frame.
 struct FrameFacts {
-    bool outside = false;         ///< the DEM is seen from outside, as a block
-    bool wants_outside = false;   ///< effects want the word `outside`
-    bool wants_night = false;     ///< effects want the word `night`
-    bool radiance = false;        ///< linear radiance is stored; else shading ends in colours
-    bool antialias = true;        ///< silhouettes are smoothed
-    bool overlays = false;        ///< effects or a raster draw over the tone-mapped ground
-    bool overlay_raster = false;          ///< a raster lies on the ground: Terrain::set_overlay
-    bool audited = false;         ///< the terrain pass also writes what SunSeen has
-    bool vertex_normals = false;  ///< per vertex instead of per fragment
-    bool displaced = false;       ///< effects move the ground
-    bool software = false;        ///< as ProgramOptions
-    bool height_steps = false;    ///< hooks read height_dx_m or height_dy_m
-    int varying_targets = 0;      ///< layers of stored varyings: shader::Stitched
+    bool outside = false;                ///< the DEM is seen from outside, as a block
+    bool wants_outside = false;          ///< effects want the word `outside`
+    bool wants_night = false;            ///< effects want the word `night`
+    bool radiance = false;               ///< stores linear radiance; else shading writes colours
+    bool antialias = true;               ///< smooths silhouettes
+    bool pixel_hooks = false;            ///< effects have the hook image, finish or overlay
+    bool overlays = false;               ///< effects or a raster draw over the tone-mapped ground
+    bool overlay_raster = false;         ///< the ground has an overlay: Terrain::set_overlay
+    bool audited = false;                ///< the terrain pass also writes the data of SunSeen
+    bool vertex_normals = false;         ///< computed per vertex, not per fragment
+    bool displaced = false;              ///< effects displace the ground
+    bool software = false;               ///< the device is a software renderer
+    bool height_steps = false;           ///< hooks read height_dx_m or height_dy_m
+    int varying_targets = 0;             ///< layers of stored varyings (shader::Stitched)
     std::vector<std::string> natives{};  ///< ids of native effects, in their order
+    std::vector<shader::PluginPass> plugin_passes{};
 };
 
-/// A program of core's before it is stitched.
+/// A program of core before stitching.
 struct ProgramRecipe {
     std::string name;
     shader::ProgramRecipe recipe;
-    std::string word{};  ///< a capability that it has beside those of the effects; empty: none
+    std::string word{};  ///< capability word in addition to those of the effects; empty: none
 };
 
-/// The passes of a frame, what they read and write, and their programs.
+/// The passes of a frame with their resources, and their programs.
 struct CoreFrame {
     FrameGraph graph;
     std::vector<ProgramRecipe> programs;
 };
 
-/// Declares core's passes: the one place to add one. A full-screen pass needs a Pass, its Resource
-/// and a ProgramRecipe; GLSL goes into shaders/.
+/// Declares all passes of core; new ones are added here. A full-screen pass needs a Pass, its
+/// Resource, a ProgramRecipe, and its GLSL in shaders/.
 CoreFrame core_frame(const FrameFacts& facts);
 
 }  // namespace relevo::render

@@ -166,8 +166,8 @@ void check_fits(std::size_t bytes, const char* what) {
 
 DeviceShadows::DeviceShadows()
     : sweep_(program("light_sweep")),
-      margins_(program("light_margins")),
-      shares_(program("light_shares")) {}
+      clearance_(program("light_clearance")),
+      fraction_(program("light_fraction")) {}
 
 DeviceShadows::Ground::Ground(const SunTerrain& terrain) : terrain_(terrain) {
     const std::vector<float> height_m = heights_of(terrain);
@@ -196,28 +196,28 @@ void DeviceShadows::sweep(const Ground& ground, const DeviceSweep& sweep) {
                       static_cast<unsigned>(tables.tiles()), 1);
 }
 
-void DeviceShadows::make_textures(const Ground& ground, bool has_disc, const gl::Texture& margins,
-                                  const gl::Texture& shares) {
+void DeviceShadows::write_textures(const Ground& ground, bool has_disc,
+                                   const gl::Texture& clearance, const gl::Texture& fraction) {
     const Window posts = ground.terrain_.window();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     ground.height_m_.bind_storage(0);
     for (unsigned part = 0; part < 3; ++part)
         ground.shadow_m_[has_disc ? part : 0].bind_storage(1 + part);
-    margins.bind_image(0, 0, gl::Format::RG16UI);
-    shares.bind_image(1, 0, gl::Format::RG8);
-    margins_.use();
+    clearance.bind_image(0, 0, gl::Format::RG16UI);
+    fraction.bind_image(1, 0, gl::Format::RG8);
+    clearance_.use();
     const int uniforms[] = {posts.columns, posts.rows, ground.terrain_.grid().columns(),
                             posts.column};
     for (int location = 0; location < 4; ++location)
-        margins_.set(location, uniforms[location]);
+        clearance_.set(location, uniforms[location]);
     glDispatchCompute(groups((posts.columns + 1) / 2, kSide), groups((posts.rows + 1) / 2, kSide),
                       1);
-    shares_.use();
-    for (int level = 1; level < shares.levels(); ++level) {
+    fraction_.use();
+    for (int level = 1; level < fraction.levels(); ++level) {
         glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        shares.bind_image(0, level - 1, gl::Format::RG8);
-        shares.bind_image(1, level, gl::Format::RG8);
-        const gl::Extent size = shares.level_extent(level);
+        fraction.bind_image(0, level - 1, gl::Format::RG8);
+        fraction.bind_image(1, level, gl::Format::RG8);
+        const gl::Extent size = fraction.level_extent(level);
         glDispatchCompute(groups(size.width, kSide), groups(size.height, kSide), 1);
     }
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -226,8 +226,8 @@ void DeviceShadows::make_textures(const Ground& ground, bool has_disc, const gl:
 light::Clearances::Found DeviceShadows::find(const light::Clearances& clearances, Ground& ground,
                                              const geo::Geodetic& place,
                                              const light::SunOverDem& sun,
-                                             const gl::Texture& margins,
-                                             const gl::Texture& shares) {
+                                             const gl::Texture& clearance,
+                                             const gl::Texture& fraction) {
     gl::expect_no_error("light_sweep");
     // A program that has never run may hang a device, whose driver then cannot be stopped.
     const std::vector<const shader::Snippet*> none;
@@ -242,7 +242,7 @@ light::Clearances::Found DeviceShadows::find(const light::Clearances& clearances
     const light::Clearances::Found found =
         clearances.each_sweep(place, sun, [&](const DeviceSweep& each) { sweep(ground, each); });
     if (found.night) return found;
-    make_textures(ground, sun.semidiameter_rad > 0, margins, shares);
+    write_textures(ground, sun.semidiameter_rad > 0, clearance, fraction);
     if (!proven_) glFinish();
     gl::throw_if_lost();
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)

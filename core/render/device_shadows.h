@@ -12,25 +12,25 @@
 
 namespace relevo::render {
 
-/// light_margins and light_shares, computed on the device from a DEM's heights. Each invocation of
-/// light_sweep.comp.glsl follows one line of light::Sweep over a tile. Geometry comes from the
-/// processor, as tables of a few MB a sun.
+/// Computes light_clearance and light_fraction of GroundLight on the device. Each invocation of
+/// light_sweep.comp.glsl processes one line of light::Sweep over a tile. The processor provides the
+/// geometry as tables, a few MB for each sun.
 ///
-/// Accuracy: shadows are those of light::Clearances::each() to the bit where the device rounds
-/// sums and products as IEEE 754 does (tests/render/test_device_shadows.cpp).
+/// Accuracy: shadows are bitwise equal to those of light::Clearances::each() if the device rounds
+/// sums and products as IEEE 754 (tests/render/test_device_shadows.cpp).
 class DeviceShadows {
   public:
     /// Compiles the programs.
-    /// @throws Error (Failed) where the device refuses them
+    /// @throws Error (Failed) if the device rejects them
     DeviceShadows();
 
-    /// The heights of a DEM, and room for its shadows: 16 bytes a post.
+    /// Buffers for the heights of a DEM and its shadows: 16 bytes a post.
     class Ground {
       public:
-        /// @throws Error (Failed) where the device has no memory for it
+        /// @throws Error (Failed) if the device has too little memory
         explicit Ground(const light::SunTerrain& terrain);
 
-        /// Heights of the shadows of a part of the disc, as the last find() left them [m].
+        /// Shadow heights [m] of a part of the disc, from the last find().
         std::vector<float> read(light::Clearances::DeviceSweep::Part part) const;
 
       private:
@@ -40,19 +40,21 @@ class DeviceShadows {
         std::array<gl::Buffer, 3> shadow_m_;  // of DeviceSweep::Part
     };
 
-    /// @param margins  RG16F, a texel a post of the DEM
-    /// @param shares   RG8, a texel 2 x 2 posts; levels are halves. Sides that are longer stay
-    /// @throws Error (Failed) where the device has no memory for the tables; (BadInput) as divide()
+    /// @param clearance  RG16F, a texel for each post of the DEM
+    /// @param fraction   RG8, 2 x 2 posts a texel, with mipmaps. Texels without posts are not
+    /// written
+    /// @throws Error (Failed) if the device has too little memory for the tables; (BadInput) as
+    ///     divide()
     light::Clearances::Found find(const light::Clearances& clearances, Ground& ground,
                                   const geo::Geodetic& place, const light::SunOverDem& sun,
-                                  const gl::Texture& margins, const gl::Texture& shares);
+                                  const gl::Texture& clearance, const gl::Texture& fraction);
 
   private:
     void sweep(const Ground& ground, const light::Clearances::DeviceSweep& sweep);
-    void make_textures(const Ground& ground, bool has_disc, const gl::Texture& margins,
-                       const gl::Texture& shares);
+    void write_textures(const Ground& ground, bool has_disc, const gl::Texture& clearance,
+                        const gl::Texture& fraction);
 
-    gl::ComputeProgram sweep_, margins_, shares_;
+    gl::ComputeProgram sweep_, clearance_, fraction_;
     bool proven_ = false;  // the device has run them
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "render/draw_scope.h"
 
 namespace relevo::render {
@@ -145,7 +146,7 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
                                  {(*clear)[0], (*clear)[1], (*clear)[2], (*clear)[3]});
     const DrawScope scope(*target, {.depth = pass.depth,
                                     .stencil = pass.stencil,
-                                    .clips_voids = pass.clips_voids && frame.terrain.has_holes()});
+                                    .clips_voids = pass.clips_voids && frame.terrain.has_voids()});
     draw(pass, program, *target, frame);
 }
 
@@ -189,14 +190,34 @@ void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target
     }
 }
 
+namespace {
+
+/// "plugins/dust/dust.glsl:3", where a sampler is declared.
+std::string place_of(const shader::TextureUnit& unit, const shader::Stitched& stitched) {
+    for (const shader::StageText* stage : {&stitched.fragment, &stitched.vertex}) {
+        const std::vector<std::string> lines = split(stage->text, '\n');
+        for (std::size_t i = 0; i < std::min(lines.size(), stage->lines.size()); ++i)
+            if (lines[i].starts_with("layout(binding") && lines[i].ends_with(unit.name + ";"))
+                return fmt::format("{}:{}", stage->lines[i].file, stage->lines[i].line);
+    }
+    return "core";
+}
+
+[[noreturn]] void fail_missing(const shader::TextureUnit& unit, const shader::Stitched& stitched) {
+    failed(
+        fmt::format("render: {}: {}: no effect that is on makes the texture {}; correct "
+                    "//@ from({})\n--disable {} goes on without it",
+                    place_of(unit, stitched), unit.name, unit.resource, unit.resource, unit.owner));
+}
+
+}  // namespace
+
 void FrameRunner::use(const std::string& program, const Terrain& terrain) {
     programs_.link(program).use();
     for (const shader::TextureUnit& unit : programs_.text(program).stitched.textures) {
-        const gl::Texture* texture = targets_.texture(unit.resource);
+        const gl::Texture* texture = targets_.texture(Version::of(unit.resource).resource);
         if (!texture) texture = provider_(unit, terrain);
-        if (!texture)
-            failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,
-                               unit.owner));
+        if (!texture) fail_missing(unit, programs_.text(program).stitched);
         texture->bind(static_cast<unsigned>(unit.unit));
     }
 }

@@ -31,12 +31,13 @@
 namespace relevo::render {
 namespace {
 
-constexpr int kMostLevels = 9;      // of means; the coarsest are of 512 x 512 posts
-constexpr int kMostSide = 16384;    // of textures, by OpenGL 4.5
-constexpr double kMarginPosts = 4;  // a margin of so many spacings counts as one of any size
+constexpr int kMaxLevels = 9;          // the coarsest has means of 512 x 512 posts
+constexpr int kMaxSide_px = 16384;     // that OpenGL 4.5 guarantees
+constexpr double kClearancePosts = 4;  // shaders clamp clearances to so many post spacings
 
-/// Means of squares of posts, as Source::read() makes them: holes take no part.
-Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) {
+/// Means of squares of side x side posts, excluding voids, as Source::read() computes them.
+/// @param factor  of the heights
+Array2d<float> block_means(const Array2d<float>& height_m, int side, float factor) {
     const int columns = height_m.width() / side, rows = height_m.height() / side;
     Array2d<float> means(columns, rows);
     parallel_for(0, rows, 8, [&](int first, int last) {
@@ -58,36 +59,36 @@ Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) 
     return means;
 }
 
-/// Two bytes a texel.
-struct Bytes2 {
+struct CoverageTexel {
     std::uint8_t value, coverage;
 };
 
-/// Values and coverage with levels of means. Sides are such that each level halves the one before;
-/// what is beyond the posts has no coverage.
-class Shares {
+/// Texture of values times coverage, and of coverage, with mipmaps. Its sides are padded such that
+/// each level has half the side of the finer one; coverage is 0 outside the posts.
+class CoverageTexture {
   public:
-    /// @param width, height  of what level 0 has to have
+    /// @param width, height  minimum size of level 0
     void resize(int width, int height) {
-        if (width == asked_.x && height == asked_.y) return;
-        asked_ = {width, height};
+        if (width == size_.x && height == size_.y) return;
+        size_ = {width, height};
         int levels = 1;
-        while (levels < kMostLevels && std::max(width, height) >> levels > 0)
+        while (levels < kMaxLevels && std::max(width, height) >> levels > 0)
             ++levels;
         const int unit = 1 << (levels - 1);
         const auto padded = [&](int side) { return (side + unit - 1) / unit * unit; };
         levels_.clear();
         for (int level = 0; level < levels; ++level)
-            levels_.emplace_back(padded(width) >> level, padded(height) >> level, Bytes2{0, 0});
+            levels_.emplace_back(padded(width) >> level, padded(height) >> level,
+                                 CoverageTexel{0, 0});
         texture_.reset();
     }
 
-    Array2d<Bytes2>& base() { return levels_.front(); }
+    Array2d<CoverageTexel>& base() { return levels_.front(); }
 
-    /// Without coverage, where it is new.
+    /// A new texture has coverage 0.
     const gl::Texture& make_texture(const char* name) {
         if (texture_) return *texture_;
-        const Array2d<Bytes2>& base = levels_.front();
+        const Array2d<CoverageTexel>& base = levels_.front();
         texture_.emplace(gl::TextureKind::D2, gl::Format::RG8,
                          gl::Extent{base.width(), base.height(), 1},
                          static_cast<int>(levels_.size()), name);
@@ -109,47 +110,49 @@ class Shares {
     const gl::Texture* texture() const { return texture_ ? &*texture_ : nullptr; }
 
   private:
-    static void reduce(const Array2d<Bytes2>& fine, Array2d<Bytes2>& coarse) {
+    static void reduce(const Array2d<CoverageTexel>& fine, Array2d<CoverageTexel>& coarse) {
         parallel_for(0, coarse.height(), 64, [&](int first, int last) {
             for (int row = first; row < last; ++row) {
-                const Bytes2 *const a = fine.row(2 * row).data(), *const b =
-                                                                      fine.row(2 * row + 1).data();
-                Bytes2* const to = coarse.row(row).data();
+                const CoverageTexel *const a = fine.row(2 * row).data(), *const b =
+                                                                             fine.row(2 * row + 1)
+                                                                                 .data();
+                CoverageTexel* const to = coarse.row(row).data();
                 for (int i = 0; i < coarse.width(); ++i) {
-                    const auto mean = [&](std::uint8_t Bytes2::*part) {
+                    const auto mean = [&](std::uint8_t CoverageTexel::*part) {
                         return static_cast<std::uint8_t>((a[2 * i].*part + a[2 * i + 1].*part +
                                                           b[2 * i].*part + b[2 * i + 1].*part + 2) /
                                                          4);
                     };
-                    to[i] = {mean(&Bytes2::value), mean(&Bytes2::coverage)};
+                    to[i] = {mean(&CoverageTexel::value), mean(&CoverageTexel::coverage)};
                 }
             }
         });
     }
 
-    glm::ivec2 asked_{0};
-    std::vector<Array2d<Bytes2>> levels_;
+    glm::ivec2 size_{0};  // before padding
+    std::vector<Array2d<CoverageTexel>> levels_;
     std::optional<gl::Texture> texture_;
 };
 
-/// How many posts a mean is of, each way, where there may be so many means.
-int reduction_to(const Array2d<float>& h, std::int64_t most_posts) {
+/// The smallest power of two such that means of reduction x reduction posts number at most
+/// `max_posts` and fit into a texture. Leaves at least 2 means a side.
+int reduction_within(const Array2d<float>& h, std::int64_t max_posts) {
     int reduction = 1;
     while (std::min(h.width(), h.height()) / (2 * reduction) >= 2 &&
-           (std::max(h.width(), h.height()) / reduction > kMostSide ||
-            std::int64_t{h.width() / reduction} * (h.height() / reduction) > most_posts))
+           (std::max(h.width(), h.height()) / reduction > kMaxSide_px ||
+            std::int64_t{h.width() / reduction} * (h.height() / reduction) > max_posts))
         reduction *= 2;
     return reduction;
 }
 
-/// A DEM's posts at the height that they are drawn at, or means of them.
-struct DrawnPosts {
-    std::optional<dem::Heightfield> own;  ///< unless they are the given ones
+/// Posts of a DEM, or means of them, with exaggerated heights.
+struct ExaggeratedPosts {
+    std::optional<dem::Heightfield> own;  ///< nullopt: `posts` are those of the given heightfield
     std::optional<dem::Posts> posts;
     double exaggeration = 0;
-    int reduction = 1;  ///< of the given posts to one of these, each way
+    int reduction = 1;  ///< given posts per post, along a side
 
-    void make(const dem::Heightfield& given, double wanted, int wanted_reduction) {
+    void update(const dem::Heightfield& given, double wanted, int wanted_reduction) {
         if (posts && exaggeration == wanted && reduction == wanted_reduction) return;
         posts.reset();
         exaggeration = wanted;
@@ -161,7 +164,7 @@ struct DrawnPosts {
         }
         const int columns = h.width() / reduction, rows = h.height() / reduction;
         own.emplace(dem::Heightfield{
-            means_of(h, reduction, static_cast<float>(exaggeration)),
+            block_means(h, reduction, static_cast<float>(exaggeration)),
             given.grid.part({0, 0, columns * reduction, rows * reduction}, columns, rows),
             given.about});
         own->about.statistics = dem::statistics(own->height_m);
@@ -169,55 +172,56 @@ struct DrawnPosts {
     }
 };
 
-/// The sun that textures were made for.
-struct SunMade {
+/// The sun of the shadow textures.
+struct SunKey {
     glm::dvec3 direction{0};
     double semidiameter_rad = 0;
-    friend bool operator==(const SunMade&, const SunMade&) = default;
+    friend bool operator==(const SunKey&, const SunKey&) = default;
 };
 
-/// The air that margins were made for, told apart by how it bends rays.
-struct AirMade {
+/// The air of the clearances, identified by its refraction at three elevations.
+struct AirKey {
     std::array<double, 3> refraction_rad{};
     double terrestrial = 0;
-    friend bool operator==(const AirMade&, const AirMade&) = default;
+    friend bool operator==(const AirKey&, const AirKey&) = default;
 
-    static AirMade of(const SunLight& sun) {
-        AirMade made;
-        made.terrestrial = sun.terrestrial_refraction;
+    static AirKey of(const SunLight& sun) {
+        AirKey key;
+        key.terrestrial = sun.terrestrial_refraction;
         if (sun.air && sun.refraction_rad)
-            made.refraction_rad = {sun.refraction_rad(0), sun.refraction_rad(0.1),
-                                   sun.refraction_rad(0.7)};
-        return made;
+            key.refraction_rad = {sun.refraction_rad(0), sun.refraction_rad(0.1),
+                                  sun.refraction_rad(0.7)};
+        return key;
     }
 };
 
 }  // namespace
 
-struct SkyFound {
-    DrawnPosts ground;
-    Array2d<float> share;  ///< of the sky that they see; all of it on maps of the world
+struct SkyView {
+    ExaggeratedPosts ground;
+    Array2d<float> factor;  ///< relative to an unobstructed slope; NaN in voids, 1 near the poles
 };
 
 namespace {
 
-std::shared_ptr<const SkyFound> find_sky(const dem::Heightfield& field, double exaggeration) {
-    const auto found = std::make_shared<SkyFound>();
-    found->ground.make(field, exaggeration,
-                       reduction_to(field.height_m, GroundLight::kMostSkyPosts));
+std::shared_ptr<const SkyView> compute_sky_view(const dem::Heightfield& field,
+                                                double exaggeration) {
+    const auto view = std::make_shared<SkyView>();
+    view->ground.update(field, exaggeration,
+                        reduction_within(field.height_m, GroundLight::kMaxSkyPosts));
     light::SkyViewOptions options;
     options.directions = GroundLight::kSkyDirections;
     options.of_open_slope = true;
-    const dem::Grid& grid = found->ground.posts->grid();
+    const dem::Grid& grid = view->ground.posts->grid();
     try {
-        found->share = light::sky_view(*found->ground.posts, options).share;
+        view->factor = light::sky_view(*view->ground.posts, options).share;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
         log::info("sky shading is off: this grid is too near the pole");
         log::debug(error.what());
-        found->share = {grid.columns(), grid.rows(), 1};
+        view->factor = {grid.columns(), grid.rows(), 1};
     }
-    return found;
+    return view;
 }
 
 }  // namespace
@@ -226,55 +230,56 @@ struct GroundLight::Impl {
     const dem::Heightfield& field;
     const geo::LocalFrame& frame;
 
-    /// Posts, or means of them, and what is the same for all suns.
+    /// Posts of one reduction, with data that all suns share.
     struct Level {
-        DrawnPosts ground;
-        std::optional<light::Clearances> margins;  // of the posts above
-        std::optional<DeviceShadows::Ground> on_device;
-        AirMade air;
+        ExaggeratedPosts ground;
+        std::optional<light::Clearances> clearances;  // points to `ground`
+        std::optional<DeviceShadows::Ground> device_ground;
+        AirKey air;
 
         void clear() {
-            on_device.reset();
-            margins.reset();
+            device_ground.reset();
+            clearances.reset();
         }
     };
     std::map<int, Level> levels;  // by reduction
-    Level* level = nullptr;       // of the textures
+    Level* level = nullptr;       // of the shadow textures
     ShadowsOn where;
     std::optional<DeviceShadows> device;
-    bool of_device = false;  // the textures
-    SkyAhead sky_ahead;
-    std::shared_ptr<const SkyFound> sky_found;  // what the texture has
-    std::optional<SunMade> sun;
-    double told_error_rad = 0;
+    bool on_device = false;  // the shadow textures were computed there
+    SkyViewFuture sky_future;
+    std::shared_ptr<const SkyView> sky_view;  // of the sky-view texture
+    std::optional<SunKey> sun;                // of the shadow textures
+    double reported_error_rad = 0;
 
-    Array2d<std::uint32_t> halves;       // upper limb's margin in the low half, lower one's above
-    Array2d<std::uint16_t> post_shares;  // value and coverage, a byte each
-    std::optional<gl::Texture> margin_texture;
-    Shares shares, sky;
-    bool has_sun = true;  // one can be found over the DEM
+    Array2d<std::uint32_t> half_clearances;  // two half floats: upper limb low, lower limb high
+    Array2d<std::uint16_t> fractions;        // value and coverage, a byte each
+    std::optional<gl::Texture> clearance_texture;
+    CoverageTexture fraction, sky;
+    bool has_shadows = true;  // false: the grid is too near a pole
 
-    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyAhead ahead, ShadowsOn on)
-        : field(f), frame(l), where(on), sky_ahead(std::move(ahead)) {}
+    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyViewFuture future, ShadowsOn on)
+        : field(f), frame(l), where(on), sky_future(std::move(future)) {}
 
-    /// Means are finer than the pixels, and few where pixels allow it.
+    /// The largest reduction whose means are not coarser than the pixels, within kCoarsePosts.
     int reduction_for(double pixel_posts) const {
-        const int few = reduction_to(field.height_m, kFewPosts);
-        int reduction = reduction_to(field.height_m, kMostPosts);
-        while (2 * reduction * field.reduction <= pixel_posts && 2 * reduction <= few)
+        const int coarsest = reduction_within(field.height_m, kCoarsePosts);
+        int reduction = reduction_within(field.height_m, kMaxPosts);
+        while (2 * reduction * field.reduction <= pixel_posts && 2 * reduction <= coarsest)
             reduction *= 2;
         return reduction;
     }
 
-    void prepare(const SunLight& light, double exaggeration, int reduction) {
-        const AirMade wanted = AirMade::of(light);
+    /// Selects the level of a reduction, and computes what its suns share.
+    void select_level(const SunLight& light, double exaggeration, int reduction) {
+        const AirKey wanted = AirKey::of(light);
         Level& here = levels[reduction];
         if (level != &here) sun.reset();
         level = &here;
         if (here.air != wanted) here.clear();
-        if (here.margins && here.ground.exaggeration == exaggeration) return;
+        if (here.clearances && here.ground.exaggeration == exaggeration) return;
         here.clear();
-        here.ground.make(field, exaggeration, reduction);
+        here.ground.update(field, exaggeration, reduction);
         here.air = wanted;
         sun.reset();
         light::ShadowOptions options;
@@ -282,52 +287,54 @@ struct GroundLight::Impl {
         if (light.air)
             options.air = [&](const geo::Geodetic& place) {
                 geo::Geodetic at = place;
-                at.height_m /= exaggeration;  // of the ground that there is
+                at.height_m /= exaggeration;  // true height
                 return light.air(at);
             };
-        here.margins.emplace(*here.ground.posts, options);
+        here.clearances.emplace(*here.ground.posts, options);
     }
 
-    void make_textures() {
+    void resize_textures() {
         const dem::Grid& grid = level->ground.posts->grid();
         const gl::Extent size{grid.columns(), grid.rows(), 1};
-        shares.resize((size.width + 1) / 2, (size.height + 1) / 2);
-        if (margin_texture && margin_texture->extent() == size) return;
-        margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F, size, 1, "light_margins");
-        margin_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+        fraction.resize((size.width + 1) / 2, (size.height + 1) / 2);
+        if (clearance_texture && clearance_texture->extent() == size) return;
+        clearance_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F, size, 1,
+                                  "light_clearance");
+        clearance_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
     }
 
-    void make_room() {
-        make_textures();
-        const auto [columns, rows, depth] = margin_texture->extent();
-        if (halves.width() == columns && halves.height() == rows) return;
-        halves = Array2d<std::uint32_t>(columns, rows);
-        post_shares = Array2d<std::uint16_t>(columns, rows);
+    void resize_buffers() {
+        resize_textures();
+        const auto [columns, rows, depth] = clearance_texture->extent();
+        if (half_clearances.width() == columns && half_clearances.height() == rows) return;
+        half_clearances = Array2d<std::uint32_t>(columns, rows);
+        fractions = Array2d<std::uint16_t>(columns, rows);
     }
 
-    void take(const light::ClearanceRun& run) {
-        encode_shadows(run, &halves.at(run.column, run.row), &post_shares.at(run.column, run.row));
+    void store(const light::ClearanceRun& run) {
+        encode_shadows(run, &half_clearances.at(run.column, run.row),
+                       &fractions.at(run.column, run.row));
     }
 
-    /// All posts are in the shade, or none.
-    void set_all(bool lit) {
-        const std::uint32_t margin = half_of(lit ? kMostMargin : -kMostMargin);
-        std::ranges::fill(halves, margin << 16 | margin);
-        std::ranges::fill(post_shares, std::uint16_t(lit ? 0xffffU : 0xff00U));
+    /// Sets all posts to sunlight or to shadow.
+    void fill(bool lit) {
+        const std::uint32_t clearance = to_half(lit ? kMaxClearance_m : -kMaxClearance_m);
+        std::ranges::fill(half_clearances, clearance << 16 | clearance);
+        std::ranges::fill(fractions, std::uint16_t(lit ? 0xffffU : 0xff00U));
     }
 
-    /// Textures of a sun, computed on the device; false where the processor has to: at night, for
-    /// DEMs without a sun, and after the device has failed.
-    bool find_on_device(const light::SunOverDem& over) {
-        if (where != ShadowsOn::Device || !has_sun) return false;
+    /// Computes the shadow textures on the device.
+    /// @returns false if the processor must: at night, too near a pole, and after the device failed
+    bool compute_on_device(const light::SunOverDem& over) {
+        if (where != ShadowsOn::Device || !has_shadows) return false;
         try {
-            make_textures();
+            resize_textures();
             if (!device) device.emplace();
-            if (!level->on_device) level->on_device.emplace(level->margins->terrain());
+            if (!level->device_ground) level->device_ground.emplace(level->clearances->terrain());
             const light::Clearances::Found found =
-                device->find(*level->margins, *level->on_device, frame.origin(), over,
-                             *margin_texture, shares.make_texture("light_shares"));
-            if (!found.night) tell(found.error_rad);
+                device->find(*level->clearances, *level->device_ground, frame.origin(), over,
+                             *clearance_texture, fraction.make_texture("light_fraction"));
+            if (!found.night) report_error(found.error_rad);
             return !found.night;
         } catch (const Error& error) {
             if (error.code() == ErrorCode::BadInput) return false;
@@ -335,41 +342,42 @@ struct GroundLight::Impl {
             log::warning(fmt::format("shadows: computed on the processor: {}", error.what()));
             where = ShadowsOn::Processor;
             for (auto& [reduction, each] : levels)
-                each.on_device.reset();
+                each.device_ground.reset();
             return false;
         }
     }
 
-    /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in
-    /// poles.
-    bool find_margins(const light::SunOverDem& over) {
-        make_room();
-        if (!has_sun) return false;
+    /// Computes shadows into the buffers of the processor.
+    /// @returns false if the grid is too near a pole, as maps of the world are
+    bool compute_on_processor(const light::SunOverDem& over) {
+        resize_buffers();
+        if (!has_shadows) return false;
         try {
-            const light::Clearances::Found found = level->margins->each(
-                frame.origin(), over, [&](const light::ClearanceRun& run) { take(run); });
-            if (found.night) set_all(false);
-            tell(found.error_rad);
+            const light::Clearances::Found found = level->clearances->each(
+                frame.origin(), over, [&](const light::ClearanceRun& run) { store(run); });
+            if (found.night) fill(false);
+            report_error(found.error_rad);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
-            has_sun = false;
+            has_shadows = false;
             log::info("shadows are off: this grid is too near the pole");
             log::debug(error.what());
         }
-        return has_sun;
+        return has_shadows;
     }
 
-    void upload_sun() {
-        margin_texture->write(0, {0, 0, 0}, {halves.width(), halves.height(), 1},
-                              std::as_bytes(std::span(halves.data(), halves.size())));
-        Array2d<Bytes2>& base = shares.base();
-        const int columns = halves.width(), rows = halves.height();
+    void upload_shadows() {
+        clearance_texture->write(
+            0, {0, 0, 0}, {half_clearances.width(), half_clearances.height(), 1},
+            std::as_bytes(std::span(half_clearances.data(), half_clearances.size())));
+        Array2d<CoverageTexel>& base = fraction.base();
+        const int columns = half_clearances.width(), rows = half_clearances.height();
         parallel_for(0, (rows + 1) / 2, 32, [&](int first, int last) {
             for (int row = first; row < last; ++row) {
-                const std::uint16_t* const a = post_shares.row(2 * row).data();
+                const std::uint16_t* const a = fractions.row(2 * row).data();
                 const std::uint16_t* const b =
-                    post_shares.row(std::min(2 * row + 1, rows - 1)).data();
-                Bytes2* const to = base.row(row).data();
+                    fractions.row(std::min(2 * row + 1, rows - 1)).data();
+                CoverageTexel* const to = base.row(row).data();
                 for (int i = 0; i < (columns + 1) / 2; ++i) {
                     const int x = 2 * i, y = std::min(x + 1, columns - 1);
                     const auto mean = [&](int shift) {
@@ -382,81 +390,85 @@ struct GroundLight::Impl {
                 }
             }
         });
-        shares.upload("light_shares");
+        fraction.upload("light_fraction");
     }
 
-    /// Says once how far off the sun is where one does not hold for enough posts.
-    void tell(double error_rad) {
-        if (error_rad <= told_error_rad) return;
-        told_error_rad = error_rad;
+    /// Logs the error of the sun's direction on DEMs that are too wide for one direction; again
+    /// only if it increases.
+    void report_error(double error_rad) {
+        if (error_rad <= reported_error_rad) return;
+        reported_error_rad = error_rad;
         log::info(fmt::format(
             "shadows: on this wide DEM the sun's direction is off by up to {:.1f} degrees",
             degrees(error_rad)));
     }
 };
 
-SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration) {
-    // Where the system gives no further thread it is found when it is waited for.
+SkyViewFuture compute_sky_view_async(const dem::Heightfield& field, double exaggeration) {
+    // Deferred to get() if the system cannot start another thread.
     return std::async(std::launch::async | std::launch::deferred,
-                      [&field, exaggeration] { return find_sky(field, exaggeration); });
+                      [&field, exaggeration] { return compute_sky_view(field, exaggeration); });
 }
 
-GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky,
-                         ShadowsOn where)
+GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame,
+                         SkyViewFuture sky, ShadowsOn where)
     : impl_(std::make_unique<Impl>(field, frame, std::move(sky), where)) {}
 GroundLight::GroundLight(GroundLight&&) noexcept = default;
 GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
 GroundLight::~GroundLight() = default;
 
-void GroundLight::follow(const SunLight& light, double exaggeration, double pixel_posts) {
+void GroundLight::update_shadows(const SunLight& light, double exaggeration, double pixel_posts) {
     Impl& my = *impl_;
-    my.prepare(light, exaggeration, my.reduction_for(pixel_posts));
-    const SunMade wanted{light.direction, light.semidiameter_rad};
+    my.select_level(light, exaggeration, my.reduction_for(pixel_posts));
+    const SunKey wanted{light.direction, light.semidiameter_rad};
     if (my.sun == wanted) return;
     const glm::dvec3& d = light.direction;
     const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
                                  light.semidiameter_rad};
-    my.of_device = my.find_on_device(over);
-    if (!my.of_device) {
-        if (!my.find_margins(over)) my.set_all(true);
-        my.upload_sun();
+    my.on_device = my.compute_on_device(over);
+    if (!my.on_device) {
+        if (!my.compute_on_processor(over)) my.fill(true);
+        my.upload_shadows();
     }
     my.sun = wanted;
 }
 
-bool GroundLight::is_of_device() const {
-    return impl_->of_device;
+bool GroundLight::is_computed_on_device() const {
+    return impl_->on_device;
 }
 
-std::optional<glm::dvec3> GroundLight::followed() const {
+std::optional<glm::dvec3> GroundLight::shadow_sun() const {
     if (!impl_->sun) return std::nullopt;
     return impl_->sun->direction;
 }
 
-void GroundLight::look_up(double exaggeration) {
+void GroundLight::update_sky_view(double exaggeration) {
     Impl& my = *impl_;
-    if (my.sky_found && my.sky_found->ground.exaggeration == exaggeration) return;
-    if (my.sky_ahead.valid()) my.sky_found = std::exchange(my.sky_ahead, {}).get();
-    if (!my.sky_found || my.sky_found->ground.exaggeration != exaggeration)
-        my.sky_found = find_sky(my.field, exaggeration);
-    const Array2d<float>& share = my.sky_found->share;
-    my.sky.resize(share.width(), share.height());
-    for (int row = 0; row < share.height(); ++row)
-        for (int column = 0; column < share.width(); ++column) {
-            const float seen = share.at(column, row);
+    const auto is_current = [&] {
+        return my.sky_view && my.sky_view->ground.exaggeration == exaggeration;
+    };
+    if (is_current()) return;
+    if (my.sky_future.valid()) my.sky_view = std::exchange(my.sky_future, {}).get();
+    if (!is_current()) my.sky_view = compute_sky_view(my.field, exaggeration);
+    const Array2d<float>& factors = my.sky_view->factor;
+    my.sky.resize(factors.width(), factors.height());
+    for (int row = 0; row < factors.height(); ++row)
+        for (int column = 0; column < factors.width(); ++column) {
+            const float factor = factors.at(column, row);
             my.sky.base().at(column, row) =
-                std::isnan(seen)
-                    ? Bytes2{0, 0}
-                    : Bytes2{static_cast<std::uint8_t>(255 * std::clamp(seen, 0.0F, 1.0F) + 0.5F),
-                             255};
+                std::isnan(factor)
+                    ? CoverageTexel{0, 0}
+                    : CoverageTexel{
+                          static_cast<std::uint8_t>(255 * std::clamp(factor, 0.0F, 1.0F) + 0.5F),
+                          255};
         }
     my.sky.upload("light_sky");
 }
 
 const gl::Texture* GroundLight::texture(std::string_view name) const {
     const Impl& my = *impl_;
-    if (name == "light_margins") return my.margin_texture ? &*my.margin_texture : nullptr;
-    if (name == "light_shares") return my.shares.texture();
+    if (name == "light_clearance") return my.clearance_texture ? &*my.clearance_texture : nullptr;
+    if (name == "light_fraction") return my.fraction.texture();
     if (name == "light_sky") return my.sky.texture();
     return nullptr;
 }
@@ -467,20 +479,20 @@ void GroundLight::describe(FrameBlock& block) const {
     const double given = my.field.reduction;
     const glm::dvec2 spacing_m = grid.post_spacing_m();
     const int reduction = my.level ? my.level->ground.reduction : 1;
-    const int sky_reduction = my.sky_found ? my.sky_found->ground.reduction : 1;
+    const int sky_reduction = my.sky_view ? my.sky_view->ground.reduction : 1;
     const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
     block.light_grid = {static_cast<float>(1 / (given * reduction)),
                         static_cast<float>(1 / (given * sky_reduction)), 0,
-                        static_cast<float>(kMarginPosts * reduction *
+                        static_cast<float>(kClearancePosts * reduction *
                                            std::max(spacing_m.x, spacing_m.y) * exaggeration)};
     const geo::Geodetic centre = grid.center();
     const double step_m = std::max(spacing_m.x, spacing_m.y);
-    const auto posts_a_metre = [&](double azimuth_rad) {
+    const auto posts_per_m = [&](double azimuth_rad) {
         return (grid.post(geo::destination(centre, azimuth_rad, step_m)) -
                 grid.post(geo::destination(centre, azimuth_rad, -step_m))) /
                (2 * step_m);
     };
-    block.light_axes = {posts_a_metre(kPi / 2), posts_a_metre(0)};
+    block.light_axes = {posts_per_m(kPi / 2), posts_per_m(0)};
     block.light_map = {grid.crs().is_geographic() ? 1 : 0, 0, 0, 0};
 }
 

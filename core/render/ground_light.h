@@ -14,11 +14,12 @@
 
 namespace relevo::render {
 
-/// What ground leaves in sight of the sky, found beside other work: a driver's compiler, for one.
-struct SkyFound;
-using SkyAhead = std::shared_future<std::shared_ptr<const SkyFound>>;
-/// @param field  outlives what is found
-SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration);
+/// Sky-view factors of a DEM.
+struct SkyView;
+using SkyViewFuture = std::shared_future<std::shared_ptr<const SkyView>>;
+/// Computes sky-view factors in the background, for example while the shaders compile.
+/// @param field  must outlive the computation
+SkyViewFuture compute_sky_view_async(const dem::Heightfield& field, double exaggeration);
 
 /// Where shadows are computed.
 enum class ShadowsOn {
@@ -26,52 +27,53 @@ enum class ShadowsOn {
     Device,  ///< slower than the processor on a software renderer
 };
 
-/// What shaders read of the light that comes to the ground past the ground around it, for every
-/// post, as textures over the whole DEM. shaders/lib/sun_share.glsl and shaders/lib/openness.glsl
-/// read them.
+/// Sun and sky light of each post after occlusion by terrain, as textures over the whole DEM.
+/// shaders/lib/sun_share.glsl and shaders/lib/openness.glsl read them.
 ///
-/// - "light_margins": how high the ground is above the edge of the shadow of the sun's upper limb
-///   (r) and of its lower one (g) [m, as it is drawn], kHole in holes. Between posts they are
-///   linear, so that what is drawn coarser than the posts has the shadows of the posts all the
-///   same.
-/// - "light_shares": how much of the disc is seen, times coverage (r), and coverage (g): means of
-///   2 x 2, 4 x 4, ... posts in its levels, for pixels that hold several.
-/// - "light_sky": how much of the sky an endless slope as inclined sees is seen (r), times coverage
-///   (g), with levels.
+/// - "light_clearance": shadow clearance [m] of the sun's upper limb (r) and lower limb (g), in
+///   exaggerated heights; kVoidClearance in voids. Linear between posts, so that coarse levels of
+///   detail have the shadows of the posts.
+/// - "light_fraction": visible fraction of the solar disc, times coverage (r), and coverage (g).
+///   Level k has means of 2^(k+1) x 2^(k+1) posts, for pixels that cover several posts.
+/// - "light_sky": sky-view factor relative to that of an unobstructed slope, times coverage (r),
+///   and coverage (g), with mipmaps.
 ///
-/// Margins are those of means of 2 x 2, 4 x 4, ... posts where no pixel of the picture is finer,
-/// and of a DEM of more than kMostPosts posts; the sky's of one of more than kMostSkyPosts.
+/// Posts are reduced to means of 2 x 2, 4 x 4, ... posts for DEMs of more than kMaxPosts posts, and
+/// where no pixel of the frame is finer than the means. The sky-view factor has at most
+/// kMaxSkyPosts posts.
 class GroundLight {
   public:
-    /// @param field  outlives this
-    /// @param frame  the DEM's local frame; outlives this
-    /// @param sky    of the same field; may be none, and of another exaggeration
-    /// @param where  shadows are computed. A device that fails is reported once, and the processor
-    ///     takes over
-    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky = {},
+    /// @param field  must outlive this
+    /// @param frame  the DEM's local frame; must outlive this
+    /// @param sky    sky-view factors of the same field; may be invalid or for another exaggeration
+    /// @param where  a device that fails is reported once, and the processor takes over
+    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyViewFuture sky = {},
                 ShadowsOn where = ShadowsOn::Processor);
     GroundLight(GroundLight&&) noexcept;
     GroundLight& operator=(GroundLight&&) noexcept;
     ~GroundLight();
 
-    /// Has margins and shares be those of a sun. Nothing is done where they are.
-    /// @param pixel_posts  posts along the side of the picture's finest pixel of ground
+    /// Recomputes the shadow textures if the sun, the air, the exaggeration or the reduction
+    /// changed.
+    /// @param pixel_posts  posts along a side of the frame's finest pixel of ground
     /// @throws Error (BadInput) for a refraction that no air has
-    void follow(const SunLight& sun, double exaggeration, double pixel_posts = 1);
-    /// Towards the sun that margins and shares are of, as SunLight; none while there are none.
-    std::optional<glm::dvec3> followed() const;
-    /// Whether margins and shares were computed on the device.
-    bool is_of_device() const;
-    /// Has the sky be there. Nothing is done where it is.
-    void look_up(double exaggeration);
+    void update_shadows(const SunLight& sun, double exaggeration, double pixel_posts = 1);
+    /// Direction to the sun of the shadow textures, as SunLight; nullopt before update_shadows().
+    std::optional<glm::dvec3> shadow_sun() const;
+    /// True if the shadow textures were computed on the device.
+    bool is_computed_on_device() const;
+    /// Recomputes the sky-view texture if the exaggeration changed.
+    void update_sky_view(double exaggeration);
 
-    /// Null for what has not been asked for.
+    /// Null before the first update of that texture, and for other names.
     const gl::Texture* texture(std::string_view name) const;
-    /// Sets what frame.glsl says of it.
+    /// Sets the members of frame.glsl that locate the textures on the DEM.
     void describe(FrameBlock& block) const;
 
-    static constexpr float kHole = 65504;  ///< the greatest half
-    static constexpr int kMostPosts = 1 << 25, kFewPosts = 1 << 20, kMostSkyPosts = 1 << 18;
+    static constexpr float kVoidClearance = 65504;  ///< the greatest half float
+    static constexpr int kMaxPosts = 1 << 25, kMaxSkyPosts = 1 << 18;
+    /// Large pixels reduce the posts no further than to this number or fewer.
+    static constexpr int kCoarsePosts = 1 << 20;
     static constexpr int kSkyDirections = 16;
 
   private:

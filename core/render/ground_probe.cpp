@@ -18,14 +18,14 @@ constexpr double kMargin_m = 1;
 
 }  // namespace
 
-scene::Camera GroundProbe::camera_below(const scene::Camera& picture, const geo::LocalFrame& frame,
+scene::Camera GroundProbe::camera_below(const scene::Camera& camera, const geo::LocalFrame& frame,
                                         double tolerance, double pixel_error) {
-    const geo::Geodetic eye = frame.to_geodetic(picture.eye_m);
+    const geo::Geodetic eye = frame.to_geodetic(camera.eye_m);
     const geo::Axes axes = frame.axes(eye.lat_rad, eye.lon_rad);
     constexpr double kNarrow_rad = 1e-3;
     const double fov_y_rad =
         pixel_error > 0 ? 2 * std::atan(tolerance / (2 * pixel_error)) : kNarrow_rad;
-    return {picture.eye_m, -axes.up, axes.north, fov_y_rad};
+    return {camera.eye_m, -axes.up, axes.north, fov_y_rad};
 }
 
 void GroundProbe::aim(const FrameInputs& inputs, const Ground& ground, FrameBlock& block) {

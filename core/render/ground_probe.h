@@ -15,10 +15,10 @@ namespace relevo::render {
 class GroundProbe {
   public:
     /// Camera straight down from an eye through one pixel; selects the tiles.
-    /// @param picture      the frame's camera
+    /// @param camera       of the frame
     /// @param tolerance    LodView::tolerance of the frame
     /// @param pixel_error  of the terrain; 0 draws every post
-    static scene::Camera camera_below(const scene::Camera& picture, const geo::LocalFrame& frame,
+    static scene::Camera camera_below(const scene::Camera& camera, const geo::LocalFrame& frame,
                                       double tolerance, double pixel_error);
 
     /// Sets an orthographic projection of the vertical through the eye, with heights as depths.

@@ -24,7 +24,7 @@
 #include "gl/vertex_array.h"
 #include "render/draw_scope.h"
 #include "render/native_textures.h"
-#include "shader/driver_log.h"
+#include "shader/driver_hints.h"
 #include "shader/tokenizer.h"
 
 namespace relevo::render {
@@ -56,7 +56,7 @@ struct FrameState {
     const Ground& ground;
     const FrameInputs& inputs;
     const FrameBlock& block;
-    const TileSelection& picture;
+    const TileSelection& tiles;
 };
 
 }  // namespace
@@ -186,8 +186,9 @@ struct NativeHost::Impl : effect::ModuleServices {
             shader::LineMap lines(2);  // lines of the preamble
             for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
-            failed(fmt::format("{}: the driver refuses it\n{}", file,
-                               shader::parse_driver_log(failure.log, lines).text()));
+            failed(fmt::format(
+                "{}: the driver refuses it\n{}", file,
+                shader::brief_text(shader::parse_driver_log(failure.log, lines), {own, {}, {}})));
         }
         std::vector<gl::Program::Sampler> samplers = program->samplers();
         programs.emplace(id, OwnProgram{std::move(*program), std::move(samplers)});
@@ -241,7 +242,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         if (!fill_box(box, nullptr, 0)) failed("this DEM has no ground");
     }
     bool fill_visible_bounds(double nearer_than_m, relevo_box& box) override {
-        return fill_box(box, &state->picture, nearer_than_m);
+        return fill_box(box, &state->tiles, nearer_than_m);
     }
 
     int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) override {
@@ -258,7 +259,7 @@ struct NativeHost::Impl : effect::ModuleServices {
             view.planes.emplace_back(axes[i], -low[i]);
             view.planes.emplace_back(-axes[i], high[i]);
         }
-        const TileSelection tiles = drawn.terrain.select(view, &drawn.picture);
+        const TileSelection tiles = drawn.terrain.select(view, &drawn.tiles);
 
         FrameInputs inputs = drawn.inputs;
         inputs.camera.eye_m = origin_m;
@@ -280,10 +281,10 @@ struct NativeHost::Impl : effect::ModuleServices {
         const gl::Framebuffer& framebuffer = textures.depth_framebuffer(target);
         DrawState drawing{
             .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
-            .clips_voids = drawn.terrain.has_holes(),
+            .clips_voids = drawn.terrain.has_voids(),
             .clamps_depth = true};
         // Light hits the upper side of ground first, except under voids.
-        if (!drawn.terrain.has_holes())
+        if (!drawn.terrain.has_voids())
             drawing.winds_counterclockwise = drawn.terrain.winds_counterclockwise();
         const DrawScope scope(framebuffer, drawing);
         draw_ground(drawn.terrain, [&] { drawn.terrain.draw(tiles, origin_m); });
@@ -385,10 +386,10 @@ NativeHost& NativeHost::operator=(NativeHost&&) noexcept = default;
 NativeHost::~NativeHost() = default;
 
 void NativeHost::prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
-                         const FrameBlock& block, const TileSelection& picture) {
+                         const FrameBlock& block, const TileSelection& tiles) {
     const auto& functions = impl_->module.functions();
     if (!functions.prepare) return;
-    impl_->state.emplace(FrameState{terrain, ground, inputs, block, picture});
+    impl_->state.emplace(FrameState{terrain, ground, inputs, block, tiles});
     const struct EndOfFrame {
         Impl& impl;
         ~EndOfFrame() { impl.state.reset(); }

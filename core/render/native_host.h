@@ -36,10 +36,10 @@ class NativeHost {
     NativeHost& operator=(NativeHost&&) noexcept;
     ~NativeHost();
 
-    /// Calls the module's prepare(). Does not evict tile pages of `picture`, the frame's selection.
+    /// Calls the module's prepare(). Does not evict tile pages of `tiles`, the frame's selection.
     /// @throws Error (Failed) as the constructor
     void prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
-                 const FrameBlock& block, const TileSelection& picture);
+                 const FrameBlock& block, const TileSelection& tiles);
 
     /// Sets the size of subsequent frames.
     void resize(int width_px, int height_px);

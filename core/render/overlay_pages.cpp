@@ -35,13 +35,14 @@ int pages_of_all_levels(const OverlayTexels& texels) {
 }  // namespace
 
 OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid,
-                       double spacing_m, int slots)
+                           double spacing_m, int slots)
     : overlay_(std::move(raster)), pyramid_(pyramid), texels_(overlay_texels(*overlay_, pyramid)) {
     texel_m_ = spacing_m / std::sqrt(texels_.per_post.x * texels_.per_post.y);
     const glm::ivec2 finest = pages_of(texels_, 0);
     table_ = PageTable(std::max(finest.x, finest.y), "overlay table");
     const auto make = [this](const TileKey& key) {
-        const std::vector<std::uint32_t> texels = overlay_page(*overlay_, pyramid_, key.level, key.at);
+        const std::vector<std::uint32_t> texels =
+            overlay_page(*overlay_, pyramid_, key.level, key.at);
         std::vector<std::byte> bytes(texels.size() * sizeof(std::uint32_t));
         std::memcpy(bytes.data(), texels.data(), bytes.size());
         return bytes;
@@ -54,7 +55,7 @@ OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const de
 /// Adds the visible pages of a page, from coarse to fine as far as a view shows them.
 /// @param angle  of a pixel [rad]
 void OverlayPages::visit(TileTree& tree, const LodView& view, double angle, const TileKey& key,
-                       std::vector<TileKey>& pages) const {
+                         std::vector<TileKey>& pages) const {
     const glm::dvec2 low(key.at * (kNormalNodes << key.level));
     const glm::dvec2 first = texels_.first_post + low / texels_.per_post;
     const glm::dvec2 last = first + double(kNormalNodes << key.level) / texels_.per_post;
@@ -70,7 +71,8 @@ void OverlayPages::visit(TileTree& tree, const LodView& view, double angle, cons
     }
 }
 
-bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading, bool deterministic) {
+bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading,
+                           bool deterministic) {
     std::vector<TileKey> pages;
     for (double angle = view.tolerance;; angle *= kCoarser) {
         pages.clear();
@@ -98,7 +100,8 @@ const gl::Texture* OverlayPages::texture(std::string_view name) const {
 
 void OverlayPages::write(FrameBlock& block) const {
     block.overlay_texels = glm::vec4(texels_.first_post, texels_.per_post);
-    block.overlay_shape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels, overlay_->lit ? 1 : 0};
+    block.overlay_shape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels,
+                           overlay_->lit ? 1 : 0};
 }
 
 }  // namespace relevo::render

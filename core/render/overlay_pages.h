@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "gl/texture.h"
-#include "render/overlay_raster.h"
 #include "render/frame_block.h"
 #include "render/loading.h"
 #include "render/lod.h"
+#include "render/overlay_raster.h"
 #include "render/page_cache.h"
 #include "render/page_table.h"
 
@@ -21,8 +21,8 @@ class OverlayPages {
     /// @param pyramid    must outlive this
     /// @param spacing_m  from post to post
     /// @param slots      pages at most
-    OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid, double spacing_m,
-               int slots);
+    OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid,
+                 double spacing_m, int slots);
 
     /// Makes the pages of a view.
     /// @param tree           of the pyramid

@@ -54,8 +54,8 @@ std::uint32_t times_opacity(std::uint32_t texel, double opacity) {
     return result;
 }
 
-std::vector<std::uint32_t> photo_page(const OverlayRaster& raster, const OverlayTexels& texels, int level,
-                                      glm::ivec2 page) {
+std::vector<std::uint32_t> photo_page(const OverlayRaster& raster, const OverlayTexels& texels,
+                                      int level, glm::ivec2 page) {
     const glm::dvec2 step = double(1 << level) / texels.per_post;
     const Array2d<std::uint32_t> rgba = raster.photo->read(
         {.first_post = texels.first_post + glm::dvec2(page * kNormalNodes - 1) * step,
@@ -93,8 +93,8 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
     return texels;
 }
 
-std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid, int level,
-                                      glm::ivec2 page) {
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                        int level, glm::ivec2 page) {
     if (raster.photo) return photo_page(raster, overlay_texels(raster, pyramid), level, page);
     const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
     std::vector<Span> columns, rows;

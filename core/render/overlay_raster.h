@@ -35,9 +35,9 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
 std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
 /// Colours at the nodes of a raster's page with its border, kNormalPage_px a side. Each is the mean
-/// of the texels nearest to its node. A photo's nodes are those of overlay_texels(), others the DEM's
-/// posts.
-std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid, int level,
-                                      glm::ivec2 page);
+/// of the texels nearest to its node. A photo's nodes are those of overlay_texels(), others the
+/// DEM's posts.
+std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                        int level, glm::ivec2 page);
 
 }  // namespace relevo::render

@@ -18,7 +18,7 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 /// stay on their side of 0.5.
 dem::Pyramid::Block smoothly_cut(const dem::Pyramid& pyramid, int level, glm::ivec2 first,
                                  int columns, int rows) {
-    if (!pyramid.has_holes()) return pyramid.block(level, first, columns, rows);
+    if (!pyramid.has_voids()) return pyramid.block(level, first, columns, rows);
     constexpr float kLeastAside = 0.05f;
     const auto wide = pyramid.block(level, first - 1, columns + 2, rows + 2);
     dem::Pyramid::Block block{Array2d<float>(columns, rows), Array2d<float>(columns, rows)};

@@ -12,7 +12,8 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "render/graph/plan.h"
-#include "shader/driver_log.h"
+#include "render/pass_texts.h"
+#include "shader/driver_hints.h"
 
 namespace relevo::render {
 
@@ -54,14 +55,25 @@ bool reads_height_steps(const shader::StitchInput& input) {
     return false;
 }
 
+/// True if an effect has a sampler of a texture.
+bool reads(const shader::StitchInput& input, std::string_view resource) {
+    return std::ranges::any_of(input.snippets, [&](const shader::Snippet* snippet) {
+        return std::ranges::find(snippet->source.samplers, resource, &shader::Sampler::resource) !=
+               snippet->source.samplers.end();
+    });
+}
+
 /// Stitches the programs of a frame graph and sets what its passes read.
 class Stitcher {
   public:
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
              const ProgramOptions& options)
-        : core_(core), input_(input) {
-        facts_.radiance = !options.shown;
+        : core_(core, input.passes), input_(input) {
+        facts_.plugin_passes = input.passes;
+        facts_.radiance = !options.shown || reads(input, "core.radiance");
         facts_.antialias = options.antialias;
+        facts_.pixel_hooks =
+            answers(input, "image") || answers(input, "finish") || answers(input, "overlay");
         facts_.overlays = options.overlay_raster || answers(input, "display");
         facts_.overlay_raster = options.overlay_raster;
         facts_.audited = options.audited;
@@ -106,10 +118,13 @@ class Stitcher {
     }
 
     shader::Stitched stitched(const ProgramRecipe& recipe) const {
-        if (recipe.word.empty()) return shader::stitch(core_, recipe.recipe, input_);
         shader::StitchInput input = input_;
-        input.capabilities.push_back(recipe.word);
-        return shader::stitch(core_, recipe.recipe, input);
+        if (!recipe.word.empty()) input.capabilities.push_back(recipe.word);
+        shader::Stitched stitched = shader::stitch(core_, recipe.recipe, input);
+        for (shader::TextureUnit& unit : stitched.textures)
+            for (const shader::CoreTexture& texture : shader::kCoreTextures)
+                if (unit.resource == texture.name) unit.resource = texture.resource;
+        return stitched;
     }
 
     static const ProgramRecipe& geometry_of(const CoreFrame& frame) {
@@ -122,14 +137,14 @@ class Stitcher {
         if (program.empty()) return;
         const auto add = [&](const std::string& resource) {
             for (const Access& access : accesses(pass))
-                if (access.mode == Access::Mode::Read && access.version.resource == resource)
+                if (access.mode == Access::Mode::Read && access.version == Version::of(resource))
                     return;
             pass.reads.push_back(resource);
         };
         add("frame");
         if (pass.kind != PassKind::Host) add("parameters");
         for (const shader::TextureUnit& unit : result_.find(program)->stitched.textures) {
-            if (!graph.find(unit.resource)) provide(graph, unit.resource);
+            if (!graph.find(Version::of(unit.resource).resource)) provide(graph, unit.resource);
             // Host passes may draw with textures of native effects, which `after` orders: no read
             // is declared.
             if (pass.kind != PassKind::Host || !made_by_native(unit.resource)) add(unit.resource);
@@ -152,7 +167,7 @@ class Stitcher {
             ->writes.push_back(resource);
     }
 
-    const shader::CoreTexts& core_;
+    PassTexts core_;
     const shader::StitchInput& input_;
     FrameFacts facts_;
     StitchedFrames result_;
@@ -184,10 +199,33 @@ const ProgramText* StitchedFrames::find(std::string_view program) const {
     return found == programs.end() ? nullptr : &*found;
 }
 
+namespace {
+
+/// Checks that passes of plugins can be ordered.
+void check_order(const FrameGraph& graph, const std::vector<shader::PluginPass>& passes) {
+    if (passes.empty()) return;
+    try {
+        plan(graph);
+    } catch (const Error& error) {
+        std::set<std::string> ids;
+        for (const shader::PluginPass& pass : passes)
+            ids.insert(pass.resource.substr(0, pass.resource.find('.')));
+        bad_input(
+            fmt::format("{}; see Passes in docs/plugin-guide.md; --disable {} goes on "
+                        "without {}",
+                        error.what(), fmt::join(ids, ","), ids.size() == 1 ? "it" : "them"));
+    }
+}
+
+}  // namespace
+
 StitchedFrames stitch_frames(const shader::CoreTexts& core, const shader::StitchInput& input,
                              const ProgramOptions& options) {
     try {
-        return Stitcher(core, input, options).run();
+        StitchedFrames frames = Stitcher(core, input, options).run();
+        check_order(frames.within, input.passes);
+        if (frames.outside) check_order(*frames.outside, input.passes);
+        return frames;
     } catch (const shader::AuthorError& error) {
         if (error.owner() == "core") throw;
         throw Error(error.code(), fmt::format("{}; --disable {} goes on without it", error.what(),
@@ -241,8 +279,10 @@ gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text
                         : failure.stage == gl::Program::Failure::Stage::Fragment ? "fragment side"
                                                                                  : "link";
     const shader::DriverLog log = shader::parse_driver_log(failure.log, stage.lines);
-    failed(fmt::format("render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
-                       log.text(), remedy(text.stitched, log.blamed())));
+    failed(fmt::format(
+        "render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
+        shader::brief_text(log, {stage.text, text.stitched.names, text.stitched.values}),
+        remedy(text.stitched, log.blamed())));
 }
 
 }  // namespace relevo::render

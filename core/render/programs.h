@@ -23,7 +23,7 @@ struct ProgramText {
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
-    bool overlay_raster = false;          ///< with an overlay: Terrain::set_overlay
+    bool overlay_raster = false;  ///< with an overlay: Terrain::set_overlay
     /// Shading writes display-referred colours directly, without a radiance target and the program
     /// "post".
     bool shown = false;

@@ -32,11 +32,25 @@ int count_non_finite(std::span<const std::uint8_t> rgba) {
     return count;
 }
 
-image::Image8 read_picture(const gl::Texture& picture, int* non_finite) {
-    std::vector<std::uint8_t> texels(4 * texels_of(picture));
-    picture.read(0, std::as_writable_bytes(std::span(texels)));
+NonFinite find_non_finite(const gl::Texture& output) {
+    std::vector<std::uint8_t> texels(4 * texels_of(output));
+    output.read(0, std::as_writable_bytes(std::span(texels)));
+    NonFinite found{count_non_finite(texels), {}};
+    const int width = output.extent().width, height = output.extent().height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (texels[4 * static_cast<std::size_t>((height - 1 - y) * width + x) + 3] != 255) {
+                found.first = {x, y};
+                return found;
+            }
+    return found;
+}
+
+image::Image8 read_output(const gl::Texture& output, int* non_finite) {
+    std::vector<std::uint8_t> texels(4 * texels_of(output));
+    output.read(0, std::as_writable_bytes(std::span(texels)));
     if (non_finite) *non_finite = count_non_finite(texels);
-    return image::from_device(picture.extent().width, picture.extent().height, texels);
+    return image::from_device(output.extent().width, output.extent().height, texels);
 }
 
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite) {

@@ -25,9 +25,16 @@ struct SunSeen {
 /// alpha below 1.
 int count_non_finite(std::span<const std::uint8_t> rgba);
 
-/// RGB, rows from the top.
+/// Pixels of a frame that are NaN or infinite.
+struct NonFinite {
+    int count = 0;
+    glm::ivec2 first{0};  ///< column and row, rows from the top
+};
+NonFinite find_non_finite(const gl::Texture& output);
+
+/// Display-referred colours: RGB, rows from the top.
 /// @param non_finite  if not null, receives count_non_finite()
-image::Image8 read_picture(const gl::Texture& picture, int* non_finite);
+image::Image8 read_output(const gl::Texture& output, int* non_finite);
 /// Linear radiance, RGB, rows from the top. @param exposure  factor in the stored values
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite);
 /// Depth along the optical axis [m] of a stored depth.

@@ -270,10 +270,10 @@ struct Renderer::Impl : FrameServices {
 
     /// Creates the page layers that programs read, and fills in the terrain's part of the block.
     void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) const {
-        if (reads("surface_pages")) terrain.keep_surface();
-        if (reads("water_pages")) terrain.keep_water();
+        if (reads("surface_pages")) terrain.require_surface_pages();
+        if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
-        if (reads(kClimateTexture)) terrain.keep_climate(day_of(inputs.unix_s)).write(block);
+        if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};
@@ -293,7 +293,7 @@ struct Renderer::Impl : FrameServices {
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
-        return probe.height_m(terrain.has_holes(), [&] {
+        return probe.height_m(terrain.has_voids(), [&] {
             programs.draw(program, below.triangles(),
                           [&] { terrain.draw(below, inputs.camera.eye_m); });
         });
@@ -393,8 +393,8 @@ void Renderer::resize(int width_px, int height_px) {
         native.resize(width_px, height_px);
 }
 
-const gl::Texture& Renderer::picture() const {
-    return impl_->runner.texture("picture");
+const gl::Texture& Renderer::output() const {
+    return impl_->runner.texture("output");
 }
 
 const gl::Texture& Renderer::depth() const {
@@ -435,8 +435,12 @@ int Renderer::triangles() const {
     return impl_->tiles.triangles();
 }
 
-image::Image8 Renderer::read_picture(int* non_finite) const {
-    return render::read_picture(impl_->runner.texture("picture"), non_finite);
+image::Image8 Renderer::read_output(int* non_finite) const {
+    return render::read_output(output(), non_finite);
+}
+
+NonFinite Renderer::non_finite() const {
+    return find_non_finite(output());
 }
 
 image::ImageF Renderer::read_radiance(int* non_finite) const {

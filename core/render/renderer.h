@@ -99,7 +99,7 @@ class Renderer {
     /// targets again.
     void release_targets();
     /// The last frame on the device: RGBA8, rows from the bottom.
-    const gl::Texture& picture() const;
+    const gl::Texture& output() const;
     /// Depth of the last frame on the device: Depth32F, converted to metres by distance_m().
     const gl::Texture& depth() const;
 
@@ -125,7 +125,9 @@ class Renderer {
     bool is_watched() const;
     /// The last frame as RGB, rows from the top.
     /// @param non_finite  if not null, receives count_non_finite()
-    image::Image8 read_picture(int* non_finite = nullptr) const;
+    image::Image8 read_output(int* non_finite = nullptr) const;
+    /// Pixels of the last frame that are NaN or infinite.
+    NonFinite non_finite() const;
     /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.
     image::ImageF read_radiance(int* non_finite = nullptr) const;
 

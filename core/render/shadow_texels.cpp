@@ -1,4 +1,4 @@
-// Compiled once for each kind of vector that the processor may have.
+// Compiled once for each vector instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/shadow_texels.cpp"
 #include "render/shadow_texels.h"
@@ -11,24 +11,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace relevo::render::HWY_NAMESPACE {
 
-constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
+constexpr std::uint32_t kVoidPair = 0x7bff7bffU;  // GroundLight::kVoidClearance twice
 
-// A plain loop, which compilers make vectors of, as wide as the target's.
-void EncodeShadows(const light::ClearanceRun& run, std::uint32_t* HWY_RESTRICT halves,
-                   std::uint16_t* HWY_RESTRICT shares) {
+// A plain loop, which compilers vectorise for the target.
+void EncodeShadows(const light::ClearanceRun& run, std::uint32_t* HWY_RESTRICT clearances,
+                   std::uint16_t* HWY_RESTRICT fractions) {
     const float *const uppers = run.upper_m, *const lowers = run.lower_m;
     const int count = run.count;
     for (int i = 0; i < count; ++i) {
         const float u = uppers[i], l = lowers[i];
-        const bool hole = !(u == u);
-        const float upper = std::min(kMostMargin, std::max(-kMostMargin, u)),
-                    lower = std::min(kMostMargin, std::max(-kMostMargin, l));
-        const std::uint32_t pair = half_of(upper) | half_of(lower) << 16;
-        halves[i] = hole ? kHoles : pair;
+        const bool is_void = !(u == u);
+        const float upper = std::min(kMaxClearance_m, std::max(-kMaxClearance_m, u)),
+                    lower = std::min(kMaxClearance_m, std::max(-kMaxClearance_m, l));
+        const std::uint32_t pair = to_half(upper) | to_half(lower) << 16;
+        clearances[i] = is_void ? kVoidPair : pair;
         const float height = std::min(1.0F, std::max(0.0F, upper / std::max(upper - lower, 1e-3F)));
-        const float seen = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
-        const auto whole = static_cast<std::uint32_t>(static_cast<int>(255 * seen + 0.5F));
-        shares[i] = static_cast<std::uint16_t>(hole ? 0 : whole | 0xff00U);
+        const float fraction = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
+        const auto wis_void = static_cast<std::uint32_t>(static_cast<int>(255 * fraction + 0.5F));
+        fractions[i] = static_cast<std::uint16_t>(is_void ? 0 : wis_void | 0xff00U);
     }
 }
 
@@ -40,8 +40,9 @@ namespace relevo::render {
 
 HWY_EXPORT(EncodeShadows);
 
-void encode_shadows(const light::ClearanceRun& run, std::uint32_t* halves, std::uint16_t* shares) {
-    HWY_DYNAMIC_DISPATCH(EncodeShadows)(run, halves, shares);
+void encode_shadows(const light::ClearanceRun& run, std::uint32_t* clearances,
+                    std::uint16_t* fractions) {
+    HWY_DYNAMIC_DISPATCH(EncodeShadows)(run, clearances, fractions);
 }
 
 }  // namespace relevo::render

@@ -45,7 +45,7 @@ std::vector<SideEdge> Sides::find(const TileKey& key) const {
         if (key.at.x == 0) down(0, 0);
         if (key.at.x == last.x) down(quads.x, quads.x - 1);
     }
-    if (!pyramid_->has_holes()) return edges;
+    if (!pyramid_->has_voids()) return edges;
 
     const std::vector<float> page = height_page(*pyramid_, key.level, key.at);
     const auto coverage = [&](glm::ivec2 at, bool coarser) {
@@ -78,7 +78,7 @@ void Sides::add(const TileKey& key, std::uint8_t quadrants, std::vector<glm::vec
     // Two vertices, above and below. Without voids, adjacent walls of the DEM's edge share them.
     std::unordered_map<int, std::uint16_t> shared;
     const auto pair_at = [&](const SideEdge& edge, bool other) {
-        const bool alone = edge.third.x >= 0 || pyramid_->has_holes();
+        const bool alone = edge.third.x >= 0 || pyramid_->has_voids();
         const glm::vec2 at = other ? edge.b : edge.a;
         const auto next = static_cast<std::uint16_t>((vertices.size() - before) / kVectors);
         const int place = static_cast<int>(at.y) * kHeightPage_px + static_cast<int>(at.x);

@@ -115,16 +115,17 @@ std::vector<std::byte> Terrain::make_normals(const TileKey& key) const {
     return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
 }
 
-void Terrain::clear_surface() {
+void Terrain::update_surface_layers() {
+    if (surface_.find("normal_pages")) return;
     std::vector<PageLayer> layers{{"normal_pages", gl::Format::RG16Snorm, kNormalPage_px,
                                    gl::Filter::Linear,
                                    [this](const TileKey& key) { return make_normals(key); }}};
-    if (keeps_surface_)
+    if (has_surface_pages_)
         layers.push_back({"surface_pages", gl::Format::R32F, kNormalPage_px, gl::Filter::Nearest,
                           [this](const TileKey& key) {
                               return bytes_of(surface_page(pyramid_, key.level, key.at));
                           }});
-    if (keeps_water_)
+    if (has_water_pages_)
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
                           [this](const TileKey& key) {
                               return bytes_of(water_->page(pyramid_, key.level, key.at));
@@ -138,7 +139,7 @@ void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
     overlay_pages_.reset();
     if (overlay_)
         overlay_pages_.emplace(overlay_, pyramid_, normal_spacing_m_,
-                             std::min(kMaxNormalPages, options_.max_array_layers));
+                               std::min(kMaxNormalPages, options_.max_array_layers));
 }
 
 void Terrain::write(FrameBlock& block) const {
@@ -147,18 +148,18 @@ void Terrain::write(FrameBlock& block) const {
     if (overlay_pages_) overlay_pages_->write(block);
 }
 
-void Terrain::keep_water() {
-    if (keeps_water_) return;
-    keeps_water_ = true;
+void Terrain::require_water_pages() {
+    if (has_water_pages_) return;
+    has_water_pages_ = true;
     if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
     water_.emplace(*drawn_m_, options_.water ? *options_.water : *own_water_, options_.filled,
                    reduction_);
     surface_ = PageCache();
 }
 
-void Terrain::keep_surface() {
-    if (keeps_surface_) return;
-    keeps_surface_ = true;
+void Terrain::require_surface_pages() {
+    if (has_surface_pages_) return;
+    has_surface_pages_ = true;
     surface_ = PageCache();
 }
 
@@ -167,7 +168,7 @@ const climate::ClimateMap& Terrain::climate_map() {
     return *climate_map_;
 }
 
-const ClimateVolume& Terrain::keep_climate(int day) {
+const ClimateVolume& Terrain::update_climate(int day) {
     if (!climate_) {
         const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
         climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m);
@@ -276,7 +277,7 @@ TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_p
     complete_ = true;
     TileSelection selection =
         loading == Loading::Background ? select_in_background(view) : select(view);
-    if (!surface_.find("normal_pages")) clear_surface();
+    update_surface_layers();
     const LodView pixels = LodView::of_camera(camera, width_px, height_px, 1, exaggeration);
     prepare_surface(pixels, loading, deterministic);
     if (overlay_pages_)

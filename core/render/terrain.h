@@ -18,11 +18,12 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/climate_volume.h"
-#include "render/overlay_pages.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/loading.h"
 #include "render/lod.h"
+#include "render/overlay_pages.h"
+#include "render/overlay_raster.h"
 #include "render/page_cache.h"
 #include "render/page_table.h"
 #include "render/sides.h"
@@ -44,7 +45,7 @@ struct TerrainOptions {
     /// terrain.
     const dem::Water* water = nullptr;              ///< null: found when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
-    SkyAhead sky{};  ///< sky-view factor of the heightfield, if being computed
+    SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
 };
 
@@ -125,20 +126,20 @@ class Terrain {
                                  const TileSelection* selection = nullptr,
                                  double nearer_than_m = 0);
 
-    /// Adds surface pages to the normal pages, for programs that read them.
-    void keep_surface();
+    /// Adds a layer to the normal pages, for programs that read "surface_pages" or "water_pages".
+    /// The first call of each discards all pages. These layers are never removed, so that switching
+    /// an effect off and on does not remake the pages.
+    void require_surface_pages();
+    void require_water_pages();
 
-    /// As keep_surface(), for water pages.
-    void keep_water();
-
-    /// Sets the overlay for programs that read it; null: none.
+    /// Sets the overlay for programs that read it; null: none. Another one discards its pages.
     void set_overlay(std::shared_ptr<const OverlayRaster> raster);
 
-    /// Makes climate tables with the snow of a day (0 to 364).
+    /// Updates the climate tables to the snow of a day (0 to 364).
     /// @returns tables for FrameBlock
     /// @throws Error (BadInput) if the climate map is missing or damaged
-    const ClimateVolume& keep_climate(int day);
-    /// The climate map, read when first needed. @throws Error as keep_climate()
+    const ClimateVolume& update_climate(int day);
+    /// The climate map, read when first needed. @throws Error as update_climate()
     const climate::ClimateMap& climate_map();
 
     /// Sun and sky light after occlusion by terrain.
@@ -150,7 +151,7 @@ class Terrain {
     const gl::Texture* texture(std::string_view name) const;
     /// Unique in the process; changes with displacement.
     std::uint64_t serial() const { return serial_; }
-    bool has_holes() const { return pyramid_.has_holes(); }
+    bool has_voids() const { return pyramid_.has_voids(); }
     /// True if triangles are counter-clockwise as seen from above. False on grids with reversed
     /// rows.
     bool winds_counterclockwise();
@@ -166,7 +167,8 @@ class Terrain {
     /// The view's tolerance, or the smallest larger one within the vertex budget.
     double tolerance_in_budget(const LodView& wanted);
     void prepare_surface(const LodView& view, Loading loading, bool deterministic);
-    void clear_surface();
+    /// Creates surface_, without pages, if a layer was added or changed since.
+    void update_surface_layers();
     std::vector<std::byte> make_normals(const TileKey& key) const;
     TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
     std::vector<TileMesh::Tile> tiles_of(const TileSelection& selection,
@@ -188,7 +190,7 @@ class Terrain {
     std::shared_ptr<const OverlayRaster> overlay_;
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
-    bool keeps_surface_ = false, keeps_water_ = false;
+    bool has_surface_pages_ = false, has_water_pages_ = false;
     const Array2d<float>* drawn_m_;  // all posts in memory
     const dem::Grid* drawn_grid_;
     int reduction_;

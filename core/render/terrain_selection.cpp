@@ -47,7 +47,7 @@ TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, i
         draws = tree_.select(view, TileTree::Resident{is_there, keys});
     }
     heights_.require(keys);
-    if (!surface_.find("normal_pages")) clear_surface();
+    update_surface_layers();
     prepare_surface(LodView::of_camera(vertical, 1, 1, 1, exaggeration), Loading::Wait,
                     deterministic);
     return ready(view, draws);

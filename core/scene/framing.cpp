@@ -120,8 +120,8 @@ Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_de
         least = glm::min(least, glm::dvec2(node.right, node.up));
         most = glm::max(most, glm::dvec2(node.right, node.up));
     }
-    const DefaultMoment moment = day.estimate(azimuth_deg);
-    const glm::dvec3 to_sun = towards(azimuth_deg + moment.aside_deg, moment.elevation_deg);
+    const DefaultTime time = day.estimate(azimuth_deg);
+    const glm::dvec3 to_sun = towards(azimuth_deg + time.aside_deg, time.elevation_deg);
 
     // A node is hidden where nearer ground in the same column of the picture stands higher in it.
     const int columns = std::max(1, static_cast<int>(std::sqrt(nodes.size())));
@@ -182,7 +182,7 @@ Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay
             const double candidate_deg = turn_deg <= -180 ? turn_deg + 540 : 180 + turn_deg;
             Aspect aspect =
                 aspect_from(net, candidate_deg, wanted.elevation_deg.value_or(kMiddle_deg), day);
-            const DefaultMoment light = day.estimate(candidate_deg);
+            const DefaultTime light = day.estimate(candidate_deg);
             const double southern = 1 + 0.05 * std::cos(radians(turn_deg));
             const double score = aspect.score() * southern * obliqueness(candidate_deg, row_deg) *
                                  (light.within_bounds ? 1 : 0.3);

@@ -6,7 +6,7 @@
 
 #include "base/array2d.h"
 #include "scene/camera.h"
-#include "scene/moment.h"
+#include "scene/default_time.h"
 
 namespace relevo::scene {
 
@@ -18,7 +18,7 @@ using GroundNet = Array2d<glm::dvec3>;
 struct Aspect {
     double in_sight = 0;  ///< share of the ground that no other ground hides
     double filled = 0;    ///< share of a picture 5 : 4 that the ground covers, fitted to 95 %
-    double contrast = 0;  ///< of its light in the default moment: spread over mean
+    double contrast = 0;  ///< of its light at the default time: spread over mean
     double score() const;
 };
 

@@ -40,7 +40,7 @@ class Expansion {
                 shot.apply(draft);
                 sweep(draft);
             }
-        moments();
+        resolve_times();
         if (result_.shots.empty())
             bad_input(fmt::format(
                 "{}: {}: no picture is left: none of its events happens; the first: {}", kWho,
@@ -109,7 +109,7 @@ class Expansion {
     void product(const Draft& draft, std::size_t at) {
         if (at == job_.sweep.size()) return add(draft);
         const Axis& axis = job_.sweep[at];
-        for (const Change& value : axis.range ? moments_of(axis, draft) : axis.values) {
+        for (const Change& value : axis.range ? times_of(axis, draft) : axis.values) {
             Draft next = draft;
             value.apply(next);
             product(next, at + 1);
@@ -119,7 +119,7 @@ class Expansion {
     void zip(const Draft& draft) {
         std::vector<std::vector<Change>> columns;
         for (const Axis& axis : job_.sweep) {
-            columns.push_back(axis.range ? moments_of(axis, draft) : axis.values);
+            columns.push_back(axis.range ? times_of(axis, draft) : axis.values);
             if (columns.back().size() != columns.front().size())
                 fail(axis.line, axis.path,
                      fmt::format("expected {} values, as {} has, but got {}; \"combine\": \"zip\" "
@@ -136,19 +136,19 @@ class Expansion {
         }
     }
 
-    /// The moments of a range on the day of a draft.
-    std::vector<Change> moments_of(const Axis& axis, const Draft& draft) {
+    /// The times of a range on the day of a draft.
+    std::vector<Change> times_of(const Axis& axis, const Draft& draft) {
         const TimeRange& range = *axis.range;
-        const auto moment_at = [&](const std::string& text) {
+        const auto time_at = [&](const std::string& text) {
             Draft end = draft;
             end.time = text;
-            return resolve_(whole(end));
+            return resolve_(with_time(end));
         };
         std::vector<Change> result;
         sun::ParsedTime from, to;
         try {
-            from = moment_at(range.from);
-            to = moment_at(range.to);
+            from = time_at(range.from);
+            to = time_at(range.to);
         } catch (const Error& error) {
             // A day without a sunrise has no range from one.
             if (error.code() != ErrorCode::BadInput || !draft.date)
@@ -173,22 +173,22 @@ class Expansion {
         return result;
     }
 
-    /// The scene of a draft with its moment in whole words.
-    Scene whole(const Draft& draft) const {
+    /// The scene of a draft with a complete time.
+    Scene with_time(const Draft& draft) const {
         Scene scene = draft.scene;
-        Moment& moment = scene.moment;
-        std::string text = draft.time.empty() ? moment.time : draft.time;
+        TimeSpec& spec = scene.time;
+        std::string text = draft.time.empty() ? spec.at : draft.time;
         if (draft.date && text.empty())
             bad_input(fmt::format(
                 "{}: {}: dates need a time of day or an event; add \"at\" to them, or time.at",
                 kWho, job_.file));
-        const std::string own_date = is_whole(moment.time) ? moment.time.substr(0, 10) : "";
-        const std::string date = draft.date             ? sun::to_string(*draft.date)
-                                 : !moment.date.empty() ? moment.date
-                                                        : own_date;
+        const std::string own_date = is_whole(spec.at) ? spec.at.substr(0, 10) : "";
+        const std::string date = draft.date           ? sun::to_string(*draft.date)
+                                 : !spec.date.empty() ? spec.date
+                                                      : own_date;
         // Of a scene's own time on other days there is left its time of day.
         if (draft.date && draft.time.empty() && is_whole(text)) text = date + text.substr(10);
-        moment.date.clear();
+        spec.date.clear();
         if (is_clock(text)) {
             if (date.empty())
                 bad_input(
@@ -197,12 +197,12 @@ class Expansion {
                                 kWho, job_.file, text));
             text = fmt::format("{}T{}", date, padded_clock(text));
         } else if (!text.empty() && sun::is_event_time(text)) {
-            if (!sun::parse_event_time(text).date) moment.date = date;
+            if (!sun::parse_event_time(text).date) spec.date = date;
             if (draft.site && text.find('@') == std::string::npos)
                 text += fmt::format("@{:.10g},{:.10g}", degrees(draft.site->lat_rad),
                                     degrees(draft.site->lon_rad));
         }
-        moment.time = text;
+        spec.at = text;
         return scene;
     }
 
@@ -211,16 +211,16 @@ class Expansion {
                time.size() > 10;
     }
 
-    void moments() {
+    void resolve_times() {
         for (Draft& draft : drafts_) {
             Shot shot;
-            shot.scene = whole(draft);
+            shot.scene = with_time(draft);
             try {
                 const sun::ParsedTime time = resolve_(shot.scene);
                 shot.utc = time.utc;
                 shot.zone = time.zone;
             } catch (const Error& error) {
-                const bool event = sun::is_event_time(shot.scene.moment.time);
+                const bool event = sun::is_event_time(shot.scene.time.at);
                 if (!event || error.code() != ErrorCode::BadInput) throw;
                 result_.left_out.push_back(error.what());
                 continue;

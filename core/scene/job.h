@@ -31,7 +31,7 @@ struct Change {
     std::function<void(Draft&)> apply;
 };
 
-/// Moments between two, as many steps apart as there is room for. The ends may be events.
+/// Times from one to another in equal steps. The ends may be events.
 struct TimeRange {
     std::string from, to;
     double step_s = 0;
@@ -75,7 +75,7 @@ Job read_job(
 /// A day in the words of a job's file.
 struct JobDay {
     std::string date;            ///< "2026-06-21"
-    std::string zone;            ///< as Moment::zone
+    std::string zone;            ///< as TimeSpec::zone
     std::string from, to, step;  ///< "sunrise", "sunset", "1h": TimeRange
     std::string output;          ///< template of names
 };
@@ -86,7 +86,7 @@ std::string day_job_text(const Scene& scene, const JobDay& day,
 
 /// A picture of a job.
 struct Shot {
-    Scene scene;  ///< whose moment is whole
+    Scene scene;  ///< with a complete time
     sun::Instant utc;
     sun::Zone zone;  ///< by whose clocks its name tells the time
     std::map<std::string, std::string> names;
@@ -94,7 +94,7 @@ struct Shot {
     std::filesystem::path output;
 };
 
-/// Finds the moment of a scene's words. @throws Error (BadInput) where there is none
+/// Determines the time of a scene. @throws Error (BadInput) if it has none
 using Resolve = std::function<sun::ParsedTime(const Scene& scene)>;
 
 /// The pictures of a job.
@@ -107,7 +107,7 @@ struct Shots {
 /// Draws up a job's pictures, with their names.
 /// @param most  more pictures are an error, which says how many there are
 /// @throws Error (BadInput) for an axis without values, too many pictures, dates without a time,
-///     names that name one file twice, and as `resolve` where it finds no moment for any picture
+///     names that name one file twice, and as `resolve`, except for events that do not happen
 Shots shots_of(const Job& job, const Resolve& resolve, std::size_t most);
 
 }  // namespace relevo::scene

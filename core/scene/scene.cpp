@@ -150,10 +150,10 @@ ordered_json json_of(const Scene& scene, const fs::path& folder) {
     ordered_json json;
     json["format"] = kFormat;
     json["dem"] = dem_json(scene, folder);
-    if (!scene.moment.time.empty()) {
-        json["time"]["at"] = scene.moment.time;
-        if (!scene.moment.date.empty()) json["time"]["date"] = scene.moment.date;
-        if (!scene.moment.zone.empty()) json["time"]["zone"] = scene.moment.zone;
+    if (!scene.time.at.empty()) {
+        json["time"]["at"] = scene.time.at;
+        if (!scene.time.date.empty()) json["time"]["date"] = scene.time.date;
+        if (!scene.time.zone.empty()) json["time"]["zone"] = scene.time.zone;
     }
     json["refraction"];  // before the camera: --resume compares texts with those of older files
     json["camera"] = camera_json(scene);

@@ -14,11 +14,11 @@
 
 namespace relevo::scene {
 
-/// When, in the words that people use: what the command line takes as --time, --date and --tz.
-struct Moment {
-    std::string time;  ///< "2026-06-21T18:30+02:00", "sunset-30min"; empty: a summer morning
+/// A time as text, as given by --time, --date and --tz. session::parse() reads it.
+struct TimeSpec {
+    std::string at;    ///< "2026-06-21T18:30+02:00", "sunset-30min"; empty: scene::DefaultDay
     std::string date;  ///< of an event
-    std::string zone;  ///< "Europe/Zurich", "auto", "solar"; empty: auto, by the place
+    std::string zone;  ///< "Europe/Zurich", "auto", "solar"; empty: auto, that of the place
 };
 
 /// Which effects are on, with which values.
@@ -61,7 +61,7 @@ struct Scene {
     std::vector<std::string> dems;        ///< names that GDAL opens; several are one DEM
     dem::LoadOptions dem;                 ///< how they are read
     dem::Holes holes = dem::Holes::Fill;  ///< how they are drawn
-    Moment moment;
+    TimeSpec time;
     std::string refraction = "standard";
     View view;
     std::optional<Overlay> overlay;

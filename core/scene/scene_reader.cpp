@@ -70,7 +70,7 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
     if (const json::Value* const value = object.take("dem"))
         dem(*value, joined(path, "dem"), scene);
     if (const json::Value* const value = object.take("time"))
-        moment(*value, joined(path, "time"), scene.moment);
+        time(*value, joined(path, "time"), scene.time);
     take_options(object, "", scene);
     if (const json::Value* const value = object.take("camera"))
         take_camera(*value, joined(path, "camera"), scene);
@@ -158,43 +158,43 @@ void SceneReader::dem(const json::Value& value, const std::string& path, Scene& 
     object.finish();
 }
 
-void SceneReader::moment(const json::Value& value, const std::string& path, Moment& moment) const {
+void SceneReader::time(const json::Value& value, const std::string& path, TimeSpec& spec) const {
     ObjectReader object = inside(value, path);
-    // Another time says its own date.
+    // A new time replaces the date, too.
     const bool timed = object.take("at") != nullptr;
-    if (timed || moment.time.empty()) {
-        moment.time = object.string("at");
-        moment.date.clear();
+    if (timed || spec.at.empty()) {
+        spec.at = object.string("at");
+        spec.date.clear();
     }
-    moment.date = object.string("date", moment.date);
-    moment.zone = object.string("zone", moment.zone);
+    spec.date = object.string("date", spec.date);
+    spec.zone = object.string("zone", spec.zone);
     object.finish();
-    check_moment(object, moment);
+    check_time(object, spec);
 }
 
-void SceneReader::check_moment(const ObjectReader& object, const Moment& moment) const {
-    const bool event = sun::is_event_time(moment.time);
-    const bool clock = dates_ == Dates::Later && is_clock(moment.time);
-    if (!moment.date.empty() && !event && !clock)
+void SceneReader::check_time(const ObjectReader& object, const TimeSpec& spec) const {
+    const bool event = sun::is_event_time(spec.at);
+    const bool clock = dates_ == Dates::Later && is_clock(spec.at);
+    if (!spec.date.empty() && !event && !clock)
         object.fail(object.line_of("date"), "date",
                     "needs an event in time.at, such as sunset-30min");
     std::optional<sun::Zone> zone;
     std::optional<sun::Date> date;
     check(object, "zone", [&] {
-        // That of a place is known with the DEM; until then any shows what is wrong otherwise.
-        zone = sun::is_zone_by_place(moment.zone) ? sun::Zone() : sun::Zone::named(moment.zone);
+        // The zone of a place needs the DEM; any zone finds the other errors.
+        zone = sun::is_zone_by_place(spec.zone) ? sun::Zone() : sun::Zone::named(spec.zone);
     });
     check(object, "date", [&] {
-        if (!moment.date.empty()) date = sun::parse_date(moment.date);
+        if (!spec.date.empty()) date = sun::parse_date(spec.date);
     });
     check(object, "at", [&] {
         if (clock) {
-            sun::parse_time("2026-01-01T" + padded_clock(moment.time) + "Z");
+            sun::parse_time("2026-01-01T" + padded_clock(spec.at) + "Z");
         } else if (event) {
-            const sun::EventTime parsed = sun::parse_event_time(moment.time);
+            const sun::EventTime parsed = sun::parse_event_time(spec.at);
             if (dates_ == Dates::Needed || date || parsed.date) sun::day_of(parsed, date, zone);
-        } else if (!sun::is_zone_by_place(moment.zone) || sun::is_wall_time(moment.time)) {
-            sun::parse_time(moment.time, zone);
+        } else if (!sun::is_zone_by_place(spec.zone) || sun::is_wall_time(spec.at)) {
+            sun::parse_time(spec.at, zone);
         }
     });
 }

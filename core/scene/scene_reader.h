@@ -12,9 +12,9 @@ namespace relevo::scene {
 /// Reads the members of scenes from JSON, of whole ones and of parts that change another.
 class SceneReader {
   public:
-    /// What a moment may leave open.
+    /// What times may leave open.
     enum class Dates {
-        Needed,  ///< a moment is whole
+        Needed,  ///< times are complete
         Later,   ///< of a job: a time of day, or an event, whose date comes from elsewhere
     };
 
@@ -49,8 +49,8 @@ class SceneReader {
     /// Takes the options that the table has for an object.
     static void take_options(json::ObjectReader& object, std::string_view name, Scene& scene);
     void dem(const json::Value& value, const std::string& path, Scene& scene) const;
-    void moment(const json::Value& value, const std::string& path, Moment& moment) const;
-    void check_moment(const json::ObjectReader& object, const Moment& moment) const;
+    void time(const json::Value& value, const std::string& path, TimeSpec& spec) const;
+    void check_time(const json::ObjectReader& object, const TimeSpec& spec) const;
     void overlay(const json::Value& value, const std::string& path, Scene& scene) const;
     void stamps(const json::Value& value, const std::string& path, Scene& scene) const;
     void picture(const json::Value& value, const std::string& path, Scene& scene) const;

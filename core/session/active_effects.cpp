@@ -90,6 +90,7 @@ std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word
 render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
     inputs.stitch.snippets = loaded.selection.snippets();
+    inputs.stitch.passes = loaded.selection.passes();
     inputs.stitch.capabilities = loaded.selection.capabilities;
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)

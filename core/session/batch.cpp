@@ -103,8 +103,8 @@ struct Outputs {
 
 class Batch {
   public:
-    Batch(const BatchOptions& options, Moments& moments, SceneInputs& inputs, FilesInUse& files)
-        : options_(options), moments_(moments), inputs_(inputs), files_(files) {}
+    Batch(const BatchOptions& options, SceneTimes& times, SceneInputs& inputs, FilesInUse& files)
+        : options_(options), times_(times), inputs_(inputs), files_(files) {}
 
     std::size_t run(const std::vector<scene::Shot>& shots) {
         const bool linear = image::holds_linear_light(shots.front().output);
@@ -196,15 +196,15 @@ class Batch {
         options.radiance = linear;
         options.audited = options_.audit;
         session_.reset();
-        moments_.keep_only(shot.scene);
-        options.dem = moments_.loaded(shot.scene);
+        times_.keep_only(shot.scene);
+        options.dem = times_.loaded(shot.scene);
         session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
         dem_ = std::move(key);
         opened_ = true;
     }
 
     const BatchOptions& options_;
-    Moments& moments_;
+    SceneTimes& times_;
     SceneInputs& inputs_;
     FilesInUse& files_;
     std::unique_ptr<Session> session_;
@@ -216,17 +216,17 @@ class Batch {
 
 }  // namespace
 
-void settle(std::vector<scene::Shot>& shots, Moments& moments, SceneInputs& inputs) {
+void settle(std::vector<scene::Shot>& shots, SceneTimes& times, SceneInputs& inputs) {
     for (scene::Shot& shot : shots) {
         try {
             shot.scene.effects = inputs.settled(shot.scene.effects);
         } catch (const Error& error) {
             throw Error(error.code(), printable(shot.output.string()) + ": " + error.what());
         }
-        shot.scene.moment.time = sun::exact_iso(shot.utc);
-        shot.scene.moment.date.clear();
-        shot.scene.view = moments.settled_view(shot.scene);
-        shot.scene = moments.with_absolute_paths(std::move(shot.scene));
+        shot.scene.time.at = sun::exact_iso(shot.utc);
+        shot.scene.time.date.clear();
+        shot.scene.view = times.settled_view(shot.scene);
+        shot.scene = times.with_absolute_paths(std::move(shot.scene));
     }
 }
 
@@ -251,12 +251,12 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
 }
 
 std::size_t draw_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
-                       Moments& moments, SceneInputs& inputs, FilesInUse& files) {
-    return shots.empty() ? 0 : Batch(options, moments, inputs, files).run(shots);
+                       SceneTimes& times, SceneInputs& inputs, FilesInUse& files) {
+    return shots.empty() ? 0 : Batch(options, times, inputs, files).run(shots);
 }
 
 double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
-                  Moments& moments) {
+                  SceneTimes& times) {
     using Clock = std::chrono::steady_clock;
     const auto seconds_since = [](Clock::time_point began) {
         return std::chrono::duration<double>(Clock::now() - began).count();
@@ -266,7 +266,7 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     Options session_options;
     session_options.device = options.device;
     session_options.audited = options.audit;
-    session_options.dem = moments.loaded(shots.front().scene);
+    session_options.dem = times.loaded(shots.front().scene);
     Session session(of_any_view(shots.front().scene), session_options, files);
     const auto draw = [&](const scene::Shot& shot) {
         const auto began = Clock::now();

@@ -10,8 +10,8 @@
 #include "base/files_in_use.h"
 #include "scene/job.h"
 #include "session/audit.h"
-#include "session/moments.h"
 #include "session/scene_inputs.h"
+#include "session/scene_times.h"
 
 /// Draws many pictures, one after the other.
 namespace relevo::session {
@@ -20,7 +20,7 @@ namespace relevo::session {
 /// installed effects only.
 /// @throws Error (BadInput) for unknown effects and parameters; the message names the first picture
 ///     that uses them
-void settle(std::vector<scene::Shot>& shots, Moments& moments, SceneInputs& inputs);
+void settle(std::vector<scene::Shot>& shots, SceneTimes& times, SceneInputs& inputs);
 
 /// Sorts shots so that DEMs and effects are loaded as rarely as possible. Shots that share both
 /// keep their order.
@@ -52,17 +52,17 @@ struct BatchOptions {
 /// BatchOptions::failed or ::blank reports a picture that could not be written, and the batch
 /// continues.
 /// @param shots    settled and ordered
-/// @param moments  holds the DEMs that are already open
+/// @param times  holds the DEMs that are already open
 /// @param inputs   what pictures record of their input files
 /// @returns the number of pictures that failed
 /// @throws Error if the first session cannot be opened, as Session's constructor
 std::size_t draw_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
-                       Moments& moments, SceneInputs& inputs, FilesInUse& files);
+                       SceneTimes& times, SceneInputs& inputs, FilesInUse& files);
 
 /// Estimates the duration of draw_batch() [s] from opening a session and drawing three of the
 /// shots. Writes nothing.
 /// @throws Error as Session's constructor, and if those shots cannot be drawn
 double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
-                  Moments& moments);
+                  SceneTimes& times);
 
 }  // namespace relevo::session

@@ -30,14 +30,14 @@ double middle_height_m(double lowest_m, double highest_m) {
 }
 
 ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic& place,
-                             sun::Instant moment) {
+                             sun::Instant utc) {
     const climate::CoverColumn column(map.at(place));
     const climate::Months temperature = column.temperature_c(place.height_m);
     ClimateReport report{.height_m = place.height_m,
                          .january_c = temperature[0],
                          .july_c = temperature[6],
                          .year_mm = column.year_mm(),
-                         .date = moment.utc().date};
+                         .date = utc.utc().date};
     const int day = climate::day_of_year(report.date.month, report.date.day);
     report.cover = column.cover(place.height_m, day);
     report.tree_line_m = column.tree_line_m();

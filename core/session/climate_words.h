@@ -29,7 +29,7 @@ double middle_height_m(double lowest_m, double highest_m);
 /// @param place  temperatures and cover are those at its height
 /// @throws Error (BadInput) as climate::ClimateMap
 ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic& place,
-                             sun::Instant moment);
+                             sun::Instant utc);
 
 /// "January -4.1, July 13.2 degC at 1960 m, 1320 mm of rain a year".
 std::string climate_text(const ClimateReport& report);

@@ -33,6 +33,8 @@ DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
     drawn.effects_ =
         ActiveEffects::of(compared ? with(asked.effects, asked.compared) : asked.effects,
                           /*report=*/true, asked.ground);
+    const std::vector<std::string>& refused = drawn.effects_->loaded.selection.refused;
+    if (!asked.allow_unmet && !refused.empty()) bad_input(refused.front());
     if (asked.overlay_has_time)
         for (const std::string& id : drawn.effects_->switch_off_unasked("shadow"))
             if (report)

@@ -19,9 +19,10 @@ struct EffectsRequest {
     scene::Effects effects;
     std::vector<std::string> compared{};  ///< effects to compare, as in Options
     effect::GroundWords ground{};         ///< facts about the DEM; empty while it is unknown
-    bool overlay_raster = false;                  ///< an overlay covers the ground
+    bool overlay_raster = false;          ///< an overlay covers the ground
     /// The overlay holds sunlight of its own time: cast shadows are off unless enabled by id.
     bool overlay_has_time = false;
+    bool allow_unmet = false;  ///< as in Options
 
     /// True if only parameter values may differ.
     bool has_selection_of(const EffectsRequest& other) const;
@@ -36,7 +37,8 @@ class DrawnEffects {
 
     /// Reads plugins, presets and their files. Needs no device.
     /// @param report  logs differences from what was asked for
-    /// @throws Error (BadInput) as ActiveEffects
+    /// @throws Error (BadInput) as ActiveEffects, and for an effect that the request names and that
+    ///     lacks a requirement, unless `allow_unmet`
     static DrawnEffects load(EffectsRequest request, bool report);
 
     /// Switches effects by facts about the DEM. Call it before compile().

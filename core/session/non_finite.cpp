@@ -23,7 +23,7 @@ int non_finite_of(const FaultyPicture& picture, const ActiveEffects& effects) {
     if (picture.options.radiance)
         renderer.read_radiance(&count);
     else
-        renderer.read_picture(&count);
+        renderer.read_output(&count);
     return count;
 }
 

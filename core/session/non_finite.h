@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <glm/vec2.hpp>
@@ -22,6 +23,18 @@ struct FaultyPicture {
 
 /// Message about a picture with non-finite pixels.
 std::string non_finite_text(int pixels, glm::ivec2 size_px);
+
+/// Where an effect makes pixels NaN or infinite.
+struct NonFiniteCause {
+    std::string file;      ///< of the hook
+    int line = 0;          ///< that first writes the value; else that of the hook
+    std::string function;  ///< "dust_on_material"
+    std::string value;     ///< "s.diffuse", "radiance"; empty: the returned value, or unknown
+};
+
+/// Finds the hook of an effect, and of a Surface the first member, without which fewer pixels are
+/// NaN or infinite.
+std::optional<NonFiniteCause> find_cause(const FaultyPicture& picture, const std::string& id);
 
 /// Finds the effect that makes pixels non-finite by drawing the picture without each effect in
 /// turn.

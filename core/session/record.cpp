@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 ordered_json sun_json(const Session& session) {
     const geo::Geodetic middle = session.ground().frame.origin();
-    const sun::Position at = sun::position(session.moment(), middle);
+    const sun::Position at = sun::position(session.time(), middle);
     const sun::Refraction air =
         refraction_at(session.scene().refraction,
                       {middle.lat_rad, middle.lon_rad, session.ground().air_height_m()});
@@ -73,8 +73,8 @@ scene::Scene drawn(scene::Scene scene, const Session& session) {
 
 scene::Scene settled_scene(const Session& session) {
     scene::Scene scene = scene::with_absolute_paths(session.scene());
-    scene.moment.time = sun::exact_iso(session.moment());
-    scene.moment.date.clear();
+    scene.time.at = sun::exact_iso(session.time());
+    scene.time.date.clear();
     return scene;
 }
 
@@ -113,7 +113,7 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
     image::Metadata metadata{
         {"Software", "Relevo " + inputs.version()},
         {"Description", fmt::format("{}; {}; sun at {}", session.place_text(),
-                                    sun::to_iso(session.moment()), session.sun_text())},
+                                    sun::to_iso(session.time()), session.sun_text())},
         {kInputsKeyword, inputs.record(drawn(scene, session))}};
     if (where == SceneIn::Picture)
         metadata[kSceneKeyword] = line;
@@ -159,7 +159,7 @@ std::string sidecar_text(const Session& session, SceneInputs& inputs, const std:
     const scene::Scene scene = settled_scene(session);
     ordered_json json;
     json["picture"] = picture;
-    json["utc"] = sun::exact_iso(session.moment());
+    json["utc"] = sun::exact_iso(session.time());
     json["sun"] = sun_json(session);
     json["camera"] = camera_json(session);
     json["effects"] = ordered_json::array();

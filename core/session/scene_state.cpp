@@ -47,7 +47,7 @@ void SceneState::set_time(sun::Instant utc) {
 }
 
 sun::Instant SceneState::default_time() {
-    const scene::DefaultMoment chosen = day_->moment(scene::side_of_deg(inputs.camera));
+    const scene::DefaultTime chosen = day_->time(scene::side_of_deg(inputs.camera));
     time_reason_ = chosen.reason();
     return chosen.utc;
 }
@@ -69,10 +69,9 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
 }
 
 void SceneState::warn_of_eye(const DrawnShape& shape) const {
-    const auto drawn_m = [&](const geo::Geodetic&) {
-        const std::optional<double> height_m = shape.height_m(inputs.camera);
-        return height_m ? *height_m / scene.exaggeration : std::nan("");
-    };
+    const std::optional<double> height_m = shape.height_m(inputs.camera);
+    if (!height_m) return;  // above all ground, or beside it
+    const auto drawn_m = [&](const geo::Geodetic&) { return *height_m / scene.exaggeration; };
     scene::warn_of_eye_below_ground(scene.view, drawn_m, ground_->frame, scene.exaggeration);
 }
 

@@ -8,7 +8,7 @@
 
 #include "render/frame_block.h"
 #include "render/ground.h"
-#include "scene/moment.h"
+#include "scene/default_time.h"
 #include "scene/scene.h"
 #include "session/session.h"
 #include "sun/position.h"
@@ -21,7 +21,7 @@ struct DrawnShape {
     render::Displacement displacement;
     bool shows_block = false;  ///< a block below the ground, if the eye is outside of it
     /// Height of the drawn ground on the vertical through the camera's eye [m], exaggerated;
-    /// nullopt without ground.
+    /// nullopt without ground, and for an eye above all of it.
     std::function<std::optional<double>(const scene::Camera&)> height_m;
 };
 

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "session/climate_words.h"
 #include "session/colour_legends.h"
+#include "session/non_finite.h"
 #include "session/session_impl.h"
 #include "session/stamps.h"
 #include "session/standing.h"
@@ -40,17 +41,17 @@ scene::GroundHeight Session::heights_to_aim_at() const {
     return session::heights_to_aim_at(impl_->state.dem(), impl_->drawn->renderer().displacement());
 }
 
-void Session::set_moment(sun::Instant utc) {
+void Session::set_time(sun::Instant utc) {
     impl_->state.set_time(utc);
-    impl_->state.scene.moment.time = sun::exact_iso(utc);
-    impl_->state.scene.moment.date.clear();
+    impl_->state.scene.time.at = sun::exact_iso(utc);
+    impl_->state.scene.time.date.clear();
 }
 
 void Session::take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
     impl_->take(dem, given);
 }
 
-sun::Instant Session::moment() const {
+sun::Instant Session::time() const {
     return impl_->state.utc();
 }
 
@@ -108,7 +109,7 @@ std::vector<chart::Legend> Session::legends() const {
 
 std::optional<chart::Legend> Session::overlay_legend() const {
     if (!impl_->overlay) return std::nullopt;
-    return dated_legend(*impl_->overlay, scene().moment.zone, ground().frame.origin());
+    return dated_legend(*impl_->overlay, scene().time.zone, ground().frame.origin());
 }
 
 const std::vector<std::string>& Session::compared() const {
@@ -117,6 +118,16 @@ const std::vector<std::string>& Session::compared() const {
 
 const std::optional<OverlayTime>& Session::overlay_time() const {
     return impl_->overlay_time;
+}
+
+render::NonFinite Session::non_finite() const {
+    impl_->context->make_current();
+    return impl_->drawn->renderer().non_finite();
+}
+
+std::optional<NonFiniteCause> Session::non_finite_cause(const std::string& id) const {
+    impl_->context->make_current();
+    return find_cause(impl_->faulty(impl_->drawn->effects(), non_finite().count), id);
 }
 
 const std::vector<std::string>& Session::stamp_notes() const {
@@ -144,7 +155,7 @@ void Session::draw_alone() {
 
 image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
-        [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
+        [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
     impl_->stamp_notes = add_stamps(*this, legends(), picture);
     return picture;
@@ -157,7 +168,7 @@ image::ImageF Session::radiance() const {
 }
 
 const gl::Texture& Session::texture() const {
-    return impl_->drawn->renderer().picture();
+    return impl_->drawn->renderer().output();
 }
 
 const gl::Texture& Session::depth() const {
@@ -217,7 +228,7 @@ std::string Session::place_text() const {
 }
 
 std::string Session::clock_text() const {
-    return session::clock_text(moment(), scene().moment.zone, ground().frame.origin());
+    return session::clock_text(time(), scene().time.zone, ground().frame.origin());
 }
 
 std::string Session::sun_text() const {
@@ -228,7 +239,7 @@ std::string Session::view_reason() const {
     return impl_->state.view_reason();
 }
 
-const std::string& Session::moment_reason() const {
+const std::string& Session::time_reason() const {
     return impl_->state.time_reason();
 }
 
@@ -236,7 +247,7 @@ std::string Session::climate_text() const {
     if (!impl_->drawn->renderer().reads_climate()) return {};
     impl_->context->make_current();
     const ClimateReport report =
-        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), moment());
+        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), time());
     return session::climate_text(report) + "; " + ground_text(report);
 }
 

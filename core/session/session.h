@@ -76,6 +76,9 @@ struct Options {
     bool radiance = false;  ///< keep linear radiance, for Session::radiance()
     /// Keep the data that Session::read_sun_seen() reads.
     bool audited = false;
+    /// Effects that the scene switches on by name may lack what they require: they are off, with a
+    /// notice. Otherwise that is an error.
+    bool allow_unmet = false;
     /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
     /// Called with the shader sources before they are compiled.
@@ -83,6 +86,7 @@ struct Options {
 };
 
 struct ActiveEffects;
+struct NonFiniteCause;
 
 /// Durations of stages [ms]: "device", "compile", "load", "upload". "load" runs concurrently with
 /// the first two.
@@ -110,7 +114,7 @@ class Session {
     /// keeps the DEM alive.
     scene::GroundHeight heights_to_aim_at() const;
     /// Sets the time, and with it the sun.
-    void set_moment(sun::Instant utc);
+    void set_time(sun::Instant utc);
     /// Shows another scene of the same DEM and reuses what both share. The resulting frames do not
     /// depend on earlier ones: they are equal byte by byte.
     /// @param utc  the scene's time
@@ -150,7 +154,7 @@ class Session {
     /// @throws Error as those that open; the session is then unusable
     void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given);
 
-    sun::Instant moment() const;
+    sun::Instant time() const;
 
     /// Draws a complete frame, waiting for its terrain.
     /// @param times  if not null, receives the duration of each pass
@@ -167,6 +171,11 @@ class Session {
     /// The last frame with the scene's stamps; both halves of a comparison.
     /// @throws Error (Failed) if pixels are not finite, naming the effect at fault
     image::Image8 picture() const;
+    /// Pixels of the last frame that are NaN or infinite.
+    render::NonFinite non_finite() const;
+    /// Which hook of an active effect makes pixels of the last frame NaN or infinite, by drawing it
+    /// without each hook; nullopt if none does. Slow.
+    std::optional<NonFiniteCause> non_finite_cause(const std::string& id) const;
     /// Sentences on stamps that the last picture() omitted.
     const std::vector<std::string>& stamp_notes() const;
     /// As picture(), as linear radiance without stamps. Requires Options::radiance.
@@ -206,8 +215,8 @@ class Session {
 
     /// Reason for the default view angles; empty if all were given.
     std::string view_reason() const;
-    /// Reason for the default time, as scene::DefaultMoment::reason(); empty if one was given.
-    const std::string& moment_reason() const;
+    /// Reason for the default time, as scene::DefaultTime::reason(); empty if one was given.
+    const std::string& time_reason() const;
     /// climate_text() and ground_text() at the DEM's centre and middle height; empty if no active
     /// effect depends on climate.
     std::string climate_text() const;

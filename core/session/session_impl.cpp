@@ -37,8 +37,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
         overlay_time = time_of(*scene.overlay);
     }
     std::optional<sun::ParsedTime> time;
-    const bool timed = !scene.moment.time.empty();
-    if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
+    const bool timed = !scene.time.at.empty();
+    if (timed && !needs_dem(scene.time)) time = parse(scene.time);
     // Deferred to get() if no thread can be created.
     auto loading = std::async(std::launch::async | std::launch::deferred,
                               [this] { return options.dem ? options.dem : load_own(); });
@@ -51,7 +51,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     compile(*drawn, loaded.get());
     stages.emplace_back("compile", milliseconds_since(began));
     stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
-    if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
+    if (timed && !time) time = parse_over(scene.time, *loaded->source, loaded->field);
     upload(loaded);
     look(scene.view);
     warn_of_eye();
@@ -59,8 +59,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
-    const bool timed = !state.scene.moment.time.empty();
-    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.moment)));
+    const bool timed = !state.scene.time.at.empty();
+    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.time)));
 }
 
 void Session::Impl::open_device(FilesInUse& files) {
@@ -76,6 +76,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
+    request.allow_unmet = options.allow_unmet;
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
     request.overlay_has_time = overlay_time.has_value();
@@ -115,8 +116,8 @@ void Session::Impl::compute_sky(const LoadedDem& dem,
         return std::ranges::any_of(text.stitched.textures,
                                    [](const auto& unit) { return unit.resource == "light_sky"; });
     };
-    if (!sky_ahead.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
-        sky_ahead = render::find_sky_ahead(dem.to_draw(), state.scene.exaggeration);
+    if (!sky_view.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
+        sky_view = render::compute_sky_view_async(dem.to_draw(), state.scene.exaggeration);
 }
 
 void Session::Impl::set_effects(const scene::Effects& asked) {
@@ -169,7 +170,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
         state.take_shape(other_shape);
     }
     scene.stamps = next.stamps;
-    scene.moment = next.moment;
+    scene.time = next.time;
     state.set_time(utc);
     look(next.view);
     warn_of_eye();
@@ -186,7 +187,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
-                        .sky = std::exchange(sky_ahead, {}),
+                        .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
                                                                       : render::ShadowsOn::Device},
                     dem->source.get());
@@ -203,7 +204,7 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     context->make_current();
     upload(dem);
     look(given.view);
-    state.set_time(given.moment.time.empty() ? state.default_time() : state.utc());
+    state.set_time(given.time.at.empty() ? state.default_time() : state.utc());
     const scene::Effects effects = drawn->request().effects;
     if (request(effects).ground != drawn->request().ground) set_effects(effects);
 }
@@ -213,8 +214,8 @@ void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wan
     std::swap(overlay_raster, wanted);
     terrain->set_overlay(overlay_raster);
     try {
-        const EffectsRequest with_drape = request(drawn->request().effects);
-        if (with_drape != drawn->request()) switch_to(with_drape);
+        const EffectsRequest with_overlay = request(drawn->request().effects);
+        if (with_overlay != drawn->request()) switch_to(with_overlay);
     } catch (...) {
         std::swap(overlay_raster, wanted);
         terrain->set_overlay(overlay_raster);
@@ -251,10 +252,13 @@ void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
     drawn->render(*terrain, state.ground(), frame, times);
 }
 
+FaultyPicture Session::Impl::faulty(const ActiveEffects& shown, int count) {
+    return {state.scene.effects, shown,        *context, renderer_options(), *terrain,
+            state.ground(),      state.inputs, count};
+}
+
 void Session::Impl::check_numbers(int count, const ActiveEffects& shown) {
-    if (count > 0)
-        report_non_finite({state.scene.effects, shown, *context, renderer_options(), *terrain,
-                           state.ground(), state.inputs, count});
+    if (count > 0) report_non_finite(faulty(shown, count));
 }
 
 }  // namespace relevo::session

@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "render/terrain.h"
 #include "session/drawn_effects.h"
+#include "session/non_finite.h"
 #include "session/overlay.h"
 #include "session/scene_state.h"
 #include "session/session.h"
@@ -42,7 +43,7 @@ struct Session::Impl {
     // In order of dependency.
     std::optional<gl::Context> context;
     render::SharedResources shared;
-    render::SkyAhead sky_ahead;  // for the first DEM
+    render::SkyViewFuture sky_view;  // for the first DEM
     RecentEffects recent;
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
@@ -79,6 +80,7 @@ struct Session::Impl {
     /// For scenes as given, not while a user moves the eye.
     void warn_of_eye() { state.warn_of_eye(shape()); }
     void draw(render::Loading loading, render::PassTimes* times = nullptr);
+    FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);
     template <typename Read, typename Value>

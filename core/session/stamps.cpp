@@ -161,7 +161,7 @@ std::vector<std::string> add_stamps(const Session& session,
     const std::optional<OverlayTime>& laid = session.overlay_time();
     if (wanted.date)
         stamped.clock =
-            laid ? clock_text(*laid, session.scene().moment.zone, session.ground().frame.origin())
+            laid ? clock_text(*laid, session.scene().time.zone, session.ground().frame.origin())
                  : session.clock_text();
     if (wanted.sun) stamped.sun = laid ? sun_text(*laid) : session.sun_text();
     return add_stamps(std::move(stamped), legends, picture);

@@ -16,38 +16,37 @@ namespace relevo::session {
 namespace {
 
 /// A time's words, parsed as far as possible without a place.
-struct ReadMoment {
+struct ReadTime {
     std::optional<sun::Date> date;
     std::optional<sun::EventTime> event;  ///< nullopt: a time of day
     std::optional<sun::Zone> zone;        ///< if given by name
     bool zone_by_place = false;           ///< needs a zone that depends on the place
 };
 
-ReadMoment read(const scene::Moment& moment) {
-    ReadMoment result;
-    const bool named = !sun::is_zone_by_place(moment.zone);
-    if (named) result.zone = sun::Zone::named(moment.zone);
-    if (!sun::is_event_time(moment.time)) {
-        if (!moment.date.empty())
+ReadTime read(const scene::TimeSpec& spec) {
+    ReadTime result;
+    const bool named = !sun::is_zone_by_place(spec.zone);
+    if (named) result.zone = sun::Zone::named(spec.zone);
+    if (!sun::is_event_time(spec.at)) {
+        if (!spec.date.empty())
             bad_usage(
                 "--date: needs an event in --time, such as sunrise@46.55,8.56; write a time of day "
                 "as 2026-06-21T18:30");
         result.zone_by_place =
-            !named && (sun::is_wall_time(moment.time) || sun::is_solar_zone(moment.zone));
+            !named && (sun::is_wall_time(spec.at) || sun::is_solar_zone(spec.zone));
         return result;
     }
-    if (!moment.date.empty()) result.date = sun::parse_date(moment.date);
-    result.event = sun::parse_event_time(moment.time);
+    if (!spec.date.empty()) result.date = sun::parse_date(spec.date);
+    result.event = sun::parse_event_time(spec.at);
     result.zone_by_place = !named;
     // Checks the day before anything is loaded; whether there is one is independent of the zone.
     sun::day_of(*result.event, result.date, result.zone.value_or(sun::Zone()));
     return result;
 }
 
-std::optional<geo::Geodetic> place_of_zone(const ReadMoment& moment,
-                                           const light::TerrainAccess& dem,
+std::optional<geo::Geodetic> place_of_zone(const ReadTime& words, const light::TerrainAccess& dem,
                                            const std::optional<geo::PlaceText>& here) {
-    if (moment.event && moment.event->place) return moment.event->place->place;
+    if (words.event && words.event->place) return words.event->place->place;
     if (here) return here->place;
     if (dem.middle) return dem.middle();
     return std::nullopt;
@@ -65,8 +64,8 @@ sun::ChosenZone zone_of(const std::string& words, const geo::Geodetic& place) {
     return chosen;
 }
 
-bool needs_dem(const scene::Moment& moment) {
-    const ReadMoment words = read(moment);
+bool needs_dem(const scene::TimeSpec& spec) {
+    const ReadTime words = read(spec);
     if (words.event) return !words.event->event || !words.event->place;
     return words.zone_by_place;
 }
@@ -75,47 +74,47 @@ namespace {
 
 using ChooseZone = std::function<sun::ChosenZone(const std::string&, const geo::Geodetic&)>;
 
-sun::ParsedTime parse_with(const ChooseZone& choose, const scene::Moment& moment,
+sun::ParsedTime parse_with(const ChooseZone& choose, const scene::TimeSpec& spec,
                            const light::TerrainAccess& dem,
                            const std::optional<geo::PlaceText>& here) {
-    ReadMoment words = read(moment);
+    ReadTime words = read(spec);
     std::string assumption;
     if (const auto place = place_of_zone(words, dem, here); place && words.zone_by_place) {
-        sun::ChosenZone chosen = choose(moment.zone, *place);
+        sun::ChosenZone chosen = choose(spec.zone, *place);
         words.zone = std::move(chosen.zone);
         assumption = std::move(chosen.assumption);
     }
-    sun::ParsedTime parsed = light::parse_time(moment.time, words.date, words.zone, dem, here);
+    sun::ParsedTime parsed = light::parse_time(spec.at, words.date, words.zone, dem, here);
     parsed.assumption = std::move(assumption);
     return parsed;
 }
 
 }  // namespace
 
-sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem,
+sun::ParsedTime parse(const scene::TimeSpec& spec, const light::TerrainAccess& dem,
                       const std::optional<geo::PlaceText>& here) {
-    sun::ParsedTime parsed = parse_with(zone_of, moment, dem, here);
+    sun::ParsedTime parsed = parse_with(zone_of, spec, dem, here);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
 }
 
-sun::ParsedTime parse_quietly(const scene::Moment& moment, const light::TerrainAccess& dem,
+sun::ParsedTime parse_quietly(const scene::TimeSpec& spec, const light::TerrainAccess& dem,
                               const std::optional<geo::PlaceText>& here) {
-    return parse_with(sun::choose_zone, moment, dem, here);
+    return parse_with(sun::choose_zone, spec, dem, here);
 }
 
-sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,
+sun::ParsedTime parse_over(const scene::TimeSpec& spec, const dem::Source& source,
                            const dem::Heightfield& loaded) {
     std::optional<dem::Posts> posts;
-    return parse(moment, {.middle = [&] { return source.grid().center(); },
-                          .posts = [&]() -> const dem::Posts& {
-                              if (loaded.reduction == 1)
-                                  posts.emplace(loaded);
-                              else  // at most as many posts as the means have
-                                  posts.emplace(source,
-                                                static_cast<std::int64_t>(loaded.height_m.size()));
-                              return *posts;
-                          }});
+    return parse(spec, {.middle = [&] { return source.grid().center(); },
+                        .posts = [&]() -> const dem::Posts& {
+                            if (loaded.reduction == 1)
+                                posts.emplace(loaded);
+                            else  // at most as many posts as the means have
+                                posts.emplace(source,
+                                              static_cast<std::int64_t>(loaded.height_m.size()));
+                            return *posts;
+                        }});
 }
 
 sun::Refraction refraction_at(const std::string& model, const geo::Geodetic& place) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace relevo::shader {
 
@@ -16,6 +17,8 @@ class CoreTexts {
     virtual std::optional<std::string> text(std::string_view name) const = 0;
     /// The file's name for messages.
     virtual std::string file(std::string_view name) const = 0;
+    /// The files that plugins may include: "lib/noise.glsl", sorted.
+    virtual std::vector<std::string> libraries() const { return {}; }
 };
 
 /// The files of a folder, read at every call.
@@ -25,6 +28,7 @@ class FolderTexts : public CoreTexts {
 
     std::optional<std::string> text(std::string_view name) const override;
     std::string file(std::string_view name) const override;
+    std::vector<std::string> libraries() const override;
 
   private:
     std::filesystem::path folder_;

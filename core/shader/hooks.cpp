@@ -32,7 +32,13 @@ constexpr std::array kHooks = {
     Hook{"side", kFragment, HookKind::Exclusive, "vec3 side(in Surface s, in float down)"},
     Hook{"backdrop", kFragment, HookKind::Exclusive,
          "vec3 backdrop(in vec3 direction, in vec2 at)"},
+    Hook{"image", HookStage::Post, kChain, "void image(in Pixel p, inout vec3 radiance)"},
     Hook{"tonemap", HookStage::Post, HookKind::Exclusive, "void tonemap(inout vec3 colour)"},
+    Hook{"finish", HookStage::Post, kChain, "void finish(in Pixel p, inout vec3 colour)"},
+    Hook{"overlay", HookStage::Post, kChain, "void overlay(in Pixel p, inout vec4 over)"},
+    Hook{"sky", HookStage::Any, kChain,
+         "void sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance)",
+         /*modifies=*/"background_radiance"},
     Hook{"background_radiance", HookStage::Any, HookKind::Service,
          "vec3 background_radiance(in vec3 direction, in bool with_disc)"},
 };

@@ -20,7 +20,8 @@ struct Hook {
     std::string_view name;  ///< "albedo": plugin haze registers by defining `haze_on_albedo`
     HookStage stage;
     HookKind kind;
-    std::string_view signature;  ///< exact GLSL, "void albedo(inout Surface s)"
+    std::string_view signature;   ///< exact GLSL, "void albedo(inout Surface s)"
+    std::string_view modifies{};  ///< of a chain: the service whose result it changes
 };
 
 /// All hooks, in the order in which a frame runs them. Append-only: plugins depend on names and

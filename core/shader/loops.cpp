@@ -45,7 +45,7 @@ class Reader {
     }
 
     bool is_constant(std::size_t i) const {
-        if (const std::optional<double> number = parse_number(str(i))) return *number <= kMaxTurns;
+        if (const std::optional<double> value = number(str(i))) return *value <= kMaxTurns;
         const std::string_view name = str(i);
         for (const Param& param : source_.params)
             if (param.name == name)
@@ -68,6 +68,42 @@ class Reader {
         return false;
     }
 
+    /// Whether the step in [first, last) brings a variable to its bound within kMaxTurns.
+    /// @param rises  the condition is < or <=
+    /// @param way    from the first value to the bound; none if one of them is not a number
+    bool approaches(std::size_t first, std::size_t last, std::string_view name, bool rises,
+                    std::optional<double> way) const {
+        const std::string_view single = rises ? "++" : "--";
+        if (last - first == 2 && (str(first) == single || str(first + 1) == single))
+            return !way || *way <= kMaxTurns;
+        if (last - first != 3 || str(first) != name) return false;
+        const std::string_view mark = str(first + 1);
+        const std::optional<double> by = number(str(first + 2));
+        if (mark == (rises ? "+=" : "-=")) {
+            if (!by) return is_constant(first + 2);
+            return *by > 0 && way.value_or(*by) / *by <= kMaxTurns;
+        }
+        if (mark == (rises ? "*=" : "/=")) return by && *by > 1;
+        return mark == (rises ? "<<=" : ">>=") && by && *by >= 1;
+    }
+
+    /// A number of GLSL, without its suffix.
+    static std::optional<double> number(std::string_view text) {
+        while (!text.empty() && (text.back() == 'f' || text.back() == 'F' || text.back() == 'u' ||
+                                 text.back() == 'U'))
+            text.remove_suffix(1);
+        if (text.ends_with('.')) text.remove_suffix(1);
+        return parse_number(text);
+    }
+
+    /// The number from which `int i = 0;` starts, up to the token `last`.
+    std::optional<double> start_before(std::size_t last) const {
+        if (str(last - 2) == "=") return number(str(last - 1));
+        if (str(last - 2) == "-" && str(last - 3) == "=")
+            if (const auto value = number(str(last - 1))) return -*value;
+        return std::nullopt;
+    }
+
     /// @param head  of a for
     bool is_bounded(std::size_t head) const {
         const std::size_t close = after_brackets(head + 1);  // after the )
@@ -81,13 +117,19 @@ class Reader {
         if (!compares || semicolons[1] != condition + 3 || !is_constant(condition + 2))
             return false;
         const std::size_t step = semicolons[1] + 1;
+        const bool rises = mark == "<" || mark == "<=";
+        const std::optional<double> from = start_before(semicolons[0]),
+                                    to = number(str(condition + 2));
+        std::optional<double> way;
+        if (from && to) way = rises ? *to - *from : *from - *to;
+        if (!approaches(step, close - 1, name, rises, way)) return false;
         std::size_t end = close;  // of the body
         if (str(close) == "{")
             end = after_brackets(close);
         else
             while (end < source_.tokens.size() && str(end) != ";")
                 ++end;
-        return writes(name, step, close) && !writes(name, close, end);
+        return !writes(name, close, end);
     }
 
     const Source& source_;

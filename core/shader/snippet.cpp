@@ -47,6 +47,21 @@ void read_hook(Snippet& snippet, const Item& item) {
     snippet.hooks.push_back({hook, function, item.name_line});
 }
 
+void read_pass(Snippet& snippet, const Item& item) {
+    const std::string& function = item.names[0];
+    const std::string prefix = snippet.id + "_pass_";
+    if (function.substr(0, prefix.size()) != prefix) return;
+    Signature expected = parse_signature("vec4 pass(in Texel t)");
+    expected.name = function;
+    const Signature found = snippet.source.signature(item);
+    if (!found.matches(expected))
+        source_error(snippet.file, item.name_line,
+                     fmt::format("{}: wrong signature, expected {} but got {}", function,
+                                 expected.text(), found.text()));
+    if (item.kind == Item::Kind::Function)
+        snippet.passes.push_back({function.substr(prefix.size()), item.name_line});
+}
+
 void read_wanted(Snippet& snippet, const Token& word) {
     const std::string_view text = snippet.source.str(word);
     if (word.kind != TokenKind::Word || text.substr(0, kHasPrefix.size()) != kHasPrefix) return;
@@ -101,8 +116,10 @@ Snippet parse_snippet(std::string_view id, std::string_view file, std::string_vi
     snippet.file = file;
     snippet.source = parse_source(SourceKind::Snippet, id, file, text);
     for (const Item& item : snippet.source.items)
-        if (item.kind == Item::Kind::Function || item.kind == Item::Kind::Prototype)
+        if (item.kind == Item::Kind::Function || item.kind == Item::Kind::Prototype) {
             read_hook(snippet, item);
+            read_pass(snippet, item);
+        }
     for (const Token& token : snippet.source.tokens) {
         if (token.kind != TokenKind::Directive) {
             read_wanted(snippet, token);

@@ -16,6 +16,12 @@ struct HookFunction {
     int line = 0;
 };
 
+/// A function `<id>_pass_<name>` that a snippet defines, for PluginPass.
+struct PassFunction {
+    std::string name;  ///< "blur"
+    int line = 0;
+};
+
 /// A capability word that a snippet uses as the macro `HAS_<word>`: 1 if an enabled effect provides
 /// it, else 0.
 struct Wanted {
@@ -29,8 +35,9 @@ struct Snippet {
     std::string id;
     std::string file;
     std::vector<HookFunction> hooks;  ///< in the order of the file
-    std::vector<Wanted> wanted;       ///< each word once
-    Source source;                    ///< text, parameters, samplers, varyings, includes
+    std::vector<PassFunction> passes;
+    std::vector<Wanted> wanted;  ///< each word once
+    Source source;               ///< text, parameters, samplers, varyings, includes
 
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };
@@ -38,6 +45,7 @@ struct Snippet {
 /// Reads a plugin's GLSL. The rules are docs/plugin-guide.md's; in short:
 /// - every global (function, constant, struct, macro, variable) begins with `<id>_`;
 /// - `<id>_on_<hook>` with the hook's exact types is the registration;
+/// - `vec4 <id>_pass_<name>(in Texel t)` computes the texture of the pass `name`;
 /// - `uniform` is a parameter (`= default; //@ annotation`) or a sampler, `out` a varying: one a
 ///   line, never under #if;
 /// - `//@ include lib/NAME.glsl` includes core's shared functions.

@@ -8,6 +8,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "shader/annotation.h"
 
 namespace relevo::shader {
@@ -33,6 +34,21 @@ const Source* CoreLibrary::find(SourceKind kind, const std::string& name) {
     if (!text) return nullptr;
     auto source = std::make_unique<Source>(parse_source(kind, "core", texts_.file(name), *text));
     return sources_.emplace(name, std::move(source)).first->second.get();
+}
+
+std::string CoreLibrary::library_of(const std::string& function) {
+    if (!functions_) {
+        functions_.emplace();
+        for (const std::string& name : texts_.libraries())
+            for (const Item& item : find(SourceKind::Lib, name)->items)
+                if (item.kind == Item::Kind::Function) functions_->emplace(item.names[0], name);
+    }
+    const auto found = functions_->find(function);
+    return found == functions_->end() ? "" : found->second;
+}
+
+std::optional<std::string> CoreLibrary::nearest_library(const std::string& name) const {
+    return nearest(name, texts_.libraries());
 }
 
 Stage::Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInput& input,
@@ -85,13 +101,17 @@ void Stage::add_core(UnitRole role, SourceKind kind, const std::string& name) {
     add_unit(role, source, name);
 }
 
+std::string Stage::no_library(const Source& source, const Include& include) const {
+    const std::optional<std::string> near = library_.nearest_library(include.name);
+    return fmt::format("shader: {}:{}: {}: core has no such file{}", source.file, include.line,
+                       include.name, near ? fmt::format("; did you mean {}?", *near) : "");
+}
+
 // Depth first: a file comes after its includes.
 void Stage::add_includes(const Source& source, std::vector<std::string>& pending) {
     for (const Include& include : source.includes) {
         const Source* const lib = library_.find(SourceKind::Lib, include.name);
-        if (!lib)
-            throw AuthorError(source.owner, fmt::format("shader: {}:{}: {}: core has no such file",
-                                                        source.file, include.line, include.name));
+        if (!lib) throw AuthorError(source.owner, no_library(source, include));
         if (contains(pending, include.name))
             failed(fmt::format("shader: {}:{}: {} includes itself", source.file, include.line,
                                include.name));
@@ -231,6 +251,11 @@ bool Stage::is_foreign(const Sampler& sampler) {
 
 bool Stage::needs_prototype(const Hook& hook) const {
     return calls(hook) && (is_service(hook) || early_hooks_.count(hook.name) > 0);
+}
+
+const Hook* Stage::chain_after(const Hook& service) const {
+    const auto chain = std::ranges::find(hooks(), service.name, &Hook::modifies);
+    return chain == hooks().end() || providers(*chain).empty() ? nullptr : &*chain;
 }
 
 std::string Stage::head(const Hook& hook) const {
@@ -381,6 +406,10 @@ void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by
         if (function.substr(0, 5) == "core_") check_default(function, hook);
         need(function, name);
         calls.calls.insert(function);
+    }
+    if (const Hook* const chain = chain_after(hook)) {
+        call_hook(*chain, from, name);
+        calls.calls.insert(std::string(kHookPrefix) + std::string(chain->name));
     }
     functions_.try_emplace(name, calls);
 }

@@ -3,6 +3,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -37,9 +38,14 @@ class CoreLibrary {
 
     /// Null if there is no such file.
     const Source* find(SourceKind kind, const std::string& name);
+    /// The file of lib/ that defines a function; empty without one.
+    std::string library_of(const std::string& function);
+    /// The file of lib/ with the nearest name.
+    std::optional<std::string> nearest_library(const std::string& name) const;
 
   private:
     const CoreTexts& texts_;
+    std::optional<std::map<std::string, std::string>> functions_;  // and their files
     std::map<std::string, std::unique_ptr<Source>> sources_;
 };
 
@@ -78,6 +84,8 @@ class Stage {
     std::string head(const Hook& hook) const;  ///< of the generated function
     std::vector<std::string> called_functions(
         const Hook& hook) const;  ///< functions that it calls, in order
+    /// The chain that modifies what a service returns; null if it has none, or no provider.
+    const Hook* chain_after(const Hook& service) const;
     std::vector<std::string> providers(const Hook& hook) const;  ///< ids of the plugins among them
 
   private:
@@ -95,6 +103,7 @@ class Stage {
 
     void add_core(UnitRole role, SourceKind kind, const std::string& name);
     void add_includes(const Source& source, std::vector<std::string>& pending);
+    std::string no_library(const Source& source, const Include& include) const;
     void add_unit(UnitRole role, const Source* source, std::string title);
     void index(Macros macros);
     void lift(const std::string& name, Lifted lifted);
@@ -110,6 +119,7 @@ class Stage {
     void read(const Place& place);
     void call_hook(const Hook& hook, const Place& from, const std::string& by);
     void check_name(const Place& place, const std::string& name, bool called) const;
+    void check_library(const Place& place, const std::string& name) const;
     void check_stage(const Place& place, const Uses& uses) const;
     void check_recursion() const;
     void check_displace() const;

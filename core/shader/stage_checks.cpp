@@ -61,7 +61,10 @@ void Stage::check_name(const Place& place, const std::string& name, bool called)
                                     item(place).names[0], name, lifted->second.owner));
     }
     const auto places = places_.find(name);
-    if (places == places_.end()) return;
+    if (places == places_.end()) {
+        if (called) check_library(place, name);
+        return;
+    }
     const Place& target = places->second[0];
     const Unit& owner = unit_of(target);
     if (owner.role == UnitRole::Snippet) {
@@ -83,6 +86,15 @@ void Stage::check_name(const Place& place, const std::string& name, bool called)
     if (owner.role == UnitRole::Lib && !included)
         fail(place, fmt::format("{} uses {} of {}; add //@ include {}", item(place).names[0], name,
                                 owner.title, owner.title));
+}
+
+// GLSL's own functions have no underscore, those of lib/ that plugins call have one.
+void Stage::check_library(const Place& place, const std::string& name) const {
+    if (name.find('_') == std::string::npos || find_hook(name)) return;
+    const std::string library = library_.library_of(name);
+    if (library.empty()) return;
+    fail(place, fmt::format("{} uses {} of {}; add //@ include {}", item(place).names[0], name,
+                            library, library));
 }
 
 void Stage::check_stage(const Place& place, const Uses& uses) const {

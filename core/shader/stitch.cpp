@@ -77,6 +77,7 @@ class Stitcher {
         for (const Stage* stage : {&vertex_, &fragment_})
             for (const Hook& hook : hooks())
                 note_use(*stage, hook);
+        add_names();
         return std::move(result_);
     }
 
@@ -251,12 +252,28 @@ class Stitcher {
         const std::string answer = signature.type == "void" ? "    " : "    return ";
 
         out.line(stage.head(hook) + " {");
+        if (const Hook* const chain = stage.chain_after(hook))
+            return write_with_chain(out, stage.called_functions(hook).front(), *chain);
         if (hook.name == "vertex")
             for (const Varying* varying : stage.varyings())
                 if (stage.owner_of(varying->name) != "core" && is_handed_on(*varying))
                     out.line(fmt::format("    {} = {};", varying->name, zero_of(varying->type)));
         for (const std::string& function : stage.called_functions(hook))
             out.line(answer + function + arguments);
+        out.line("}");
+    }
+
+    /// Body of background_radiance(): the chain gets the sky without disc and stars, and dims these
+    /// by the transmittance.
+    static void write_with_chain(TextBuilder& out, const std::string& provider, const Hook& chain) {
+        out.line(fmt::format("    vec3 radiance = {}(direction, false);", provider));
+        out.line("    vec3 transmittance = vec3(1.0);");
+        out.line(
+            fmt::format("    vec3 behind = with_disc ? {}(direction, true) - radiance : "
+                        "vec3(0.0);",
+                        provider));
+        out.line(fmt::format("    hook_{}(direction, radiance, transmittance);", chain.name));
+        out.line("    return radiance + transmittance * behind;");
         out.line("}");
     }
 
@@ -277,6 +294,22 @@ class Stitcher {
     std::optional<Stage> shading_;
     StoredVaryings stored_;
     TextureUnits units_;
+    void add_names() {
+        for (const Snippet* snippet : input_.snippets) {
+            const Source& source = snippet->source;
+            for (const Item& item : source.items)
+                result_.names.insert(result_.names.end(), item.names.begin(), item.names.end());
+            for (const Param& param : source.params) {
+                result_.names.push_back(param.name);
+                if (!param.is_static) result_.values.push_back(param.name);
+            }
+            for (const Sampler& sampler : source.samplers)
+                result_.names.push_back(sampler.name);
+            for (const Varying& varying : source.varyings)
+                result_.names.push_back(varying.name);
+        }
+    }
+
     Stitched result_;
 };
 

@@ -9,6 +9,7 @@
 #include "shader/core_texts.h"
 #include "shader/line_map.h"
 #include "shader/param_store.h"
+#include "shader/plugin_pass.h"
 #include "shader/snippet.h"
 
 namespace relevo::shader {
@@ -37,6 +38,7 @@ struct ProgramRecipe {
 struct StitchInput {
     std::vector<const Snippet*> snippets;   ///< of the enabled plugins, in calling order
     std::vector<std::string> capabilities;  ///< that they provide: HAS_<word> is 1
+    std::vector<PluginPass> passes{};       ///< of the enabled plugins
     const ParamStore* values = nullptr;     ///< of static parameters; null: their defaults
     int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
     /// Textures equal to another one, with the name of that one on the device.
@@ -74,6 +76,8 @@ struct Stitched {
     BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
     bool uses_params = false;  ///< whether this program has the block
     std::vector<HookUse> hooks;
+    std::vector<std::string> names;   ///< of all globals of the plugins, for suggestions
+    std::vector<std::string> values;  ///< of their parameters that are not static
     /// Number of RGBA32F targets with the stored varyings of a geometry or shading program. The
     /// shading program reads them as the layers of `varyings`.
     int varying_targets = 0;

@@ -1,6 +1,6 @@
 //! provides  shadow: how much of the sun's disc a point of the ground sees past the ground sunward of it
 //! hook      visibility
-//! reads     margins of every post over the edge of the shadow (core/render/ground_light.h)
+//! reads     shadow clearances of all posts (core/render/ground_light.h)
 //! writes    factor
 
 //@ include lib/sun_share.glsl

@@ -40,8 +40,8 @@ layout(std140, binding = 0) uniform Frame {
                               // latitudes [rad], to the table's coordinates
     vec4 climate_height;      // xy: likewise from heights [m], of the ground's half; zw: its first and last coordinate
     vec4 posts;               // xy: columns and rows of the DEM, zw: their inverses
-    vec4 light_grid;          // of render/ground_light.h: x: texels of a post of the margins, y: of the sky's; z: 0
-                              // w: greatest margin [m]
+    vec4 light_grid;          // of render/ground_light.h: texels per post, x: of light_clearance, y: of light_sky; z: 0
+                              // w: limit of clearances [m]
     vec4 light_axes;          // xy: columns and rows of the DEM to a metre east, zw: north, at its centre
     vec4 light_map;           // x: 1 where these are so everywhere by the compass, 0 where they are by the frame's x, y
     vec4 sun_light_table[128];  // over the DEM, by the sine of the geometric elevation: as sun_light[0] (sun_light())

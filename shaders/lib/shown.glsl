@@ -1,5 +1,5 @@
 //! provides  shown: from radiance to the colours of the picture
-//! hook      tonemap
+//! hook      image, tonemap, finish, overlay
 
 //@ include lib/finite.glsl
 //@ include lib/srgb.glsl
@@ -12,14 +12,18 @@ vec3 dithered(in vec3 colour) {
     return colour + (noise - 0.5) / 255.0;
 }
 
+/// @param pixel     for hooks
 /// @param radiance  linear, exposed
 /// @param over      premultiplied sRGB that lies over the picture
 /// @param numbers   1 where both were numbers, 0 else
 /// @returns sRGB, and in alpha whether all were numbers up to here
-vec4 shown(in vec3 radiance, in vec4 over, in float numbers) {
+vec4 shown(in Pixel pixel, in vec3 radiance, in vec4 over, in float numbers) {
     vec3 colour = radiance;
+    hook_image(pixel, colour);
     hook_tonemap(colour);
-    numbers *= finite(vec4(colour, 0.0));
+    hook_finish(pixel, colour);
+    hook_overlay(pixel, over);
+    numbers *= finite(vec4(colour, 0.0)) * finite(over);
     colour = srgb_encoded(colour) * (1.0 - over.a) + over.rgb;
     return vec4(dithered(colour), numbers);
 }

@@ -1,4 +1,4 @@
-//! provides  VertexFrame, Surface: what hooks get. Append-only: plugins rely on every member.
+//! provides  VertexFrame, Surface, Pixel, Texel: what hooks and passes get. Append-only: plugins rely on every member.
 //!
 //! What tells the ground's kind is the DEM's own, whatever --exaggerate: height_m, height_unit,
 //! ground_m, ground_normal and the steps of these. What light needs is of the ground as it is drawn:
@@ -47,4 +47,19 @@ struct Surface {
     vec2 post;                // column and row of the DEM, with fractions
     float pixel_posts;        // posts along a side of the pixel on the ground
     vec2 anchored_m;          // ground_m.xy from a point near the eye, exact there: for lib/repeats.glsl [m]
+};
+
+/// A pixel of the picture, whatever it shows.
+struct Pixel {
+    vec2 at_px;        // its centre, from the picture's lower left corner, right and up [px]
+    vec2 at;           // the same as shares of the picture's width and height, 0..1
+    vec3 direction;    // of its ray in the local frame, unit
+    float distance_m;  // from the eye to the ground or a wall; 1e9 in the sky [m]
+};
+
+/// A texel of a plugin's pass.
+struct Texel {
+    vec2 at_px;    // its centre, from the texture's lower left corner, right and up [texels]
+    vec2 at;       // the same as shares of the texture's width and height, 0..1
+    vec2 size_px;  // of the texture [texels]
 };

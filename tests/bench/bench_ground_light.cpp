@@ -52,14 +52,15 @@ void moved_sun(benchmark::State& state, ShadowsOn where) {
             make_sun_light(position, sun::Refraction::standard(place), ground, field.grid);
         sun.direction = {level * std::cos(position.elevation_rad),
                          std::sin(position.elevation_rad)};
-        light.follow(sun, 1);
+        light.update_shadows(sun, 1);
         context.finish();
     };
     move();
     for (auto _ : state)
         move();
     state.SetLabel(context.info().renderer);
-    if (light.is_of_device() != (where == ShadowsOn::Device)) state.SkipWithError("fell back");
+    if (light.is_computed_on_device() != (where == ShadowsOn::Device))
+        state.SkipWithError("fell back");
 }
 BENCHMARK_CAPTURE(moved_sun, processor, ShadowsOn::Processor)
     ->Arg(1200)

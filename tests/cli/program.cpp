@@ -58,8 +58,11 @@ Result relevo(const std::vector<std::string>& arguments,
         return word.starts_with("--device");
     });
     if (capture != words.end() && !says_device) words.insert(capture + 1, {"--device", "software"});
+    // Without plugins of the user who runs the tests.
+    std::vector<std::string> whole{"XDG_DATA_HOME=/nonexistent", "RELEVO_PLUGIN_PATH="};
+    whole.insert(whole.end(), environment.begin(), environment.end());
     return run(given && *given ? std::filesystem::path(given) : build_dir() / "bin/relevo", words,
-               environment);
+               whole);
 }
 
 Measured measured(std::vector<std::string> arguments) {

@@ -203,7 +203,8 @@ TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture({"sun"}, 2,
                       "sun: no command given; there are position, day, horizon, carpet, when, "
                       "shadow, hours, sky-view, horizons, along; each has --help");
-    expect_no_picture({"plugins", "x"}, 2, "x: no such command; there are list, info");
+    expect_no_picture({"plugins", "x"}, 2,
+                      "x: no such command; there are list, info, new, check, test");
     expect_no_picture(
         {"capture"}, 2,
         "DEM is missing; write relevo capture DEM --output FILE; see relevo capture --help");

@@ -315,7 +315,9 @@ TEST_F(Plugins, OneBadByteLeavesTheListWhole) {
     std::ofstream(other / "early.glsl") << "void early_on_albedo(inout Surface s) {}\n";
     const Result run =
         relevo({"plugins", "--json", "--plugin-path", (folder_ / "plugins").string()});
-    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err,
+                ::testing::MatchesRegex("relevo: error: plugins: 1 of [0-9]+ cannot be used\n"));
     const nlohmann::json json = nlohmann::json::parse(run.out);
     ASSERT_EQ(json["broken"].size(), 1u);
     EXPECT_EQ(json["broken"][0]["id"], "odd");

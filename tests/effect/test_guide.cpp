@@ -50,6 +50,15 @@ TEST(PluginGuide, ItsContoursAreAPlugin) {
     EXPECT_TRUE(registry.effects()[0].answers("display"));
 }
 
+TEST(PluginGuide, ItsGlowIsAPlugin) {
+    const Plugins plugins;
+    plugins.add("glow", R"("passes": {"small": {"scale": 0.125}})",
+                block(guide(), "glsl glow.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    EXPECT_EQ(registry.effects()[0].manifest.passes.size(), 1U);
+}
+
 TEST(PluginGuide, ItsRampIsOne) {
     const Plugins plugins;
     const std::string glsl = block(guide(), "glsl rain.glsl");
@@ -119,7 +128,7 @@ TEST(PluginGuide, HasEveryKey) {
         relevo::test::error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
     const std::string list = error.substr(error.find("there are ") + 10);
     const std::vector<std::string> keys = split(list, ',');
-    EXPECT_EQ(keys.size(), 18u);
+    EXPECT_EQ(keys.size(), 20u);
     for (const std::string& key : keys)
         EXPECT_THAT(text, HasSubstr('`' + std::string(trimmed(key)) + '`'));
 }

@@ -181,7 +181,7 @@ std::string text(const std::string& members) {
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, default_where, provides, "
     "exclusive, requires, "
-    "wants, after, module, glsl, textures, texts, displaces, invents";
+    "wants, after, module, glsl, textures, passes, texts, displaces, invents, $schema";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -485,6 +485,45 @@ INSTANTIATE_TEST_SUITE_P(
                  "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
                  "plugin: plugins/haze/plugin.json:1: displaces: expected a parameter of "
                  "type float, not host, but got \"haze.tall_m\", which is host"},
+        Mismatch{"PassWithoutAFunction", R"("passes": {"blur": {}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur: expected one function vec4 "
+                 "haze_pass_blur(in Texel t) in the plugin's GLSL but got 0"},
+        Mismatch{"FunctionWithoutAPass", "",
+                 "\nvec4 haze_pass_blur(in Texel t) { return vec4(0.0); }\n" + kHook,
+                 "plugin: plugins/haze/haze.glsl:2: haze_pass_blur: plugins/haze/plugin.json has "
+                 "no pass blur; add \"passes\": {\"blur\": {}}"},
+        Mismatch{"PassOfAnotherSignature", R"("passes": {"blur": {}})",
+                 "vec4 haze_pass_blur(in vec2 at) { return vec4(0.0); }\n" + kHook,
+                 "shader: plugins/haze/haze.glsl:1: haze_pass_blur: wrong signature, expected "
+                 "vec4 haze_pass_blur(in Texel) but got vec4 haze_pass_blur(in vec2)"},
+        Mismatch{"PassOfTwoSizes", R"("passes": {"blur": {"scale": 0.5, "width": 4, "height": 4}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.scale: expected a scale of the "
+                 "frame's size, or width and height, not both"},
+        Mismatch{"PassOfAThird", R"("passes": {"blur": {"scale": 0.3}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.scale: expected 1, 0.5, 0.25 or "
+                 "another half of these down to 0.015625 but got 0.3"},
+        Mismatch{"PassTooLarge", R"("passes": {"blur": {"width": 1000000000, "height": 4}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.width: expected a whole number "
+                 "in [1, 4096] but got 1000000000"},
+        Mismatch{"PassChangedByNothing", R"("passes": {"blur": {"when": "changed"}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.parameters: expected the "
+                 "parameters that change it with \"when\": \"changed\", and only then"},
+        Mismatch{"PassChangedByAnothers",
+                 R"("passes": {"blur": {"when": "changed", "parameters": ["width"]}})",
+                 "vec4 haze_pass_blur(in Texel t) { return vec4(0.0); }\n" + kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur: parameters: the plugin has no "
+                 "haze.width"},
+        Mismatch{"SamplerOfAPass", R"("passes": {"blur": {}})",
+                 "uniform sampler3D haze_blur;\n"
+                 "vec4 haze_pass_blur(in Texel t) { return vec4(0.0); }\n" +
+                     kHook,
+                 "plugin: plugins/haze/haze.glsl:1: haze_blur: expected a sampler2D for the pass "
+                 "blur of plugins/haze/plugin.json:1 but got a sampler3D"},
+        Mismatch{"NothingOfCores", "",
+                 "uniform sampler2D haze_map; //@ from(core.colour)\n" + kHook,
+                 "plugin: plugins/haze/haze.glsl:1: haze_map: expected one of core.radiance, "
+                 "core.depth, core.ground_depth but got core.colour"},
         Mismatch{"HookInTwoFiles", R"("glsl": ["more.glsl", "haze.glsl"])", "\n" + kHook,
                  "plugin: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
                  "plugins/haze/more.glsl:1"}),

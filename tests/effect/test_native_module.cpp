@@ -48,6 +48,22 @@ TEST(NativeModule, AGoodOneIsLoaded) {
     EXPECT_EQ(instance, nullptr);
 }
 
+TEST(NativeModule, OneThatIsBuiltAgainIsLoadedAnew) {
+    const Native plugins("good");
+    const Registry registry = plugins.load();
+    const Manifest& manifest = registry.effect("native", "test").manifest;
+    const NativeModule before = NativeModule::load(manifest, {});
+    // As a linker does.
+    std::filesystem::remove(before.library());
+    std::filesystem::copy(relevo::test::build_dir() / "tests/modules/good.so", before.library());
+    const NativeModule after = NativeModule::load(manifest, {});
+    EXPECT_NE(after.functions().create, before.functions().create);
+    EXPECT_EQ(after.library(), before.library());
+    void* instance = &instance;
+    EXPECT_EQ(after.functions().create(nullptr, &instance), RELEVO_OK);
+    EXPECT_EQ(instance, nullptr);
+}
+
 TEST(NativeModule, TheGuidesExampleIsOne) {
     const Plugins plugins;
     plugins.add("tide", R"("module": "tide")");

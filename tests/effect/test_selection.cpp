@@ -349,15 +349,18 @@ TEST(Selection, OfTwoDefaultsThatExcludeEachOtherTheFirstIsOn) {
     EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("a"));
 }
 
-TEST(SelectionError, BothProvidersOfAnExclusiveWordAreAskedForAtOnce) {
+TEST(Selection, OfTwoExclusiveProvidersTheLastOneAskedForIsOn) {
     const Plugins plugins;
     add_shadows(plugins);
     const Registry registry = plugins.load();
-    EXPECT_EQ(error_of([&] {
-                  select(registry, {}, {.only = Words{"maps", "sweep"}});
-              }),
-              "exit 3: effects: shadow: expected one provider of it but got maps and sweep; "
-              "add --disable maps or --disable sweep");
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"maps", "sweep"}})), ElementsAre("sweep"));
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"sweep", "maps"}})), ElementsAre("maps"));
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"maps"}, .enable = {"sweep"}})),
+                ElementsAre("sweep"));
+    const Selection both = select(registry, {}, {.enable = {"sweep", "maps"}});
+    EXPECT_THAT(both.notices,
+                testing::Contains("sweep is off: maps provides shadow in its place; --disable maps "
+                                  "brings it back"));
 }
 
 // ---- what is refused

@@ -63,6 +63,7 @@ class Programs {
              const render::ProgramOptions& options) {
         shader::StitchInput input;
         input.snippets = selection.snippets();
+        input.passes = selection.passes();
         input.capabilities = selection.capabilities;
         input.values = &values;
         input.max_texture_units = 32;

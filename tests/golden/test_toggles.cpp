@@ -108,10 +108,6 @@ TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         for (std::size_t j = i + 1; j < ids.size(); ++j) {
             const Result run = take("pair.png", {"--only", ids[i] + "," + ids[j]});
-            // Of some one is enough, and asking for both is an error that says so.
-            if (run.status == 3 && run.err.find("expected one provider of it but got " + ids[i] +
-                                                " and " + ids[j]) != std::string::npos)
-                continue;
             EXPECT_EQ(run.status, 0) << ids[i] << " and " << ids[j] << ": " << run.err;
             // These two paint voids alone, and this DEM has none.
             if (ids[i] == "blank" && ids[j] == "infill") continue;

@@ -56,6 +56,8 @@ class Drawn {
                 textures.push_back(effect::load_texture(texture));
             inputs.stitch.capabilities.insert(inputs.stitch.capabilities.end(),
                                               manifest.provides.begin(), manifest.provides.end());
+            inputs.stitch.passes.insert(inputs.stitch.passes.end(), manifest.passes.begin(),
+                                        manifest.passes.end());
             if (manifest.displaces) inputs.displaces.push_back(*manifest.displaces);
         }
         snippets_.reserve(effects.size());

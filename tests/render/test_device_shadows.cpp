@@ -66,11 +66,11 @@ class OnDevice {
         : height_m_(field.height_m),
           clearances_(clearances),
           ground_(clearances.terrain()),
-          margins_(gl::TextureKind::D2, gl::Format::RG16F, size(1), 1, "margins"),
-          shares_(gl::TextureKind::D2, gl::Format::RG8, size(2), 1, "shares") {}
+          clearance_(gl::TextureKind::D2, gl::Format::RG16F, size(1), 1, "clearance"),
+          fraction_(gl::TextureKind::D2, gl::Format::RG8, size(2), 1, "fraction") {}
 
     DiscClearances find(const geo::Geodetic& place, const SunOverDem& sun) {
-        shadows_.find(clearances_, ground_, place, sun, margins_, shares_);
+        shadows_.find(clearances_, ground_, place, sun, clearance_, fraction_);
         DiscClearances found{clearance(Part::kUpper), clearance(Part::kLower)};
         const Array2d<float> middle_m = clearance(Part::kMiddle);
         light::straighten(found.upper_m.data(), middle_m.data(), static_cast<int>(middle_m.size()),
@@ -95,7 +95,7 @@ class OnDevice {
     const Clearances& clearances_;
     DeviceShadows shadows_;
     DeviceShadows::Ground ground_;
-    gl::Texture margins_, shares_;
+    gl::Texture clearance_, fraction_;
 };
 
 /// Posts whose figures are more than `most_m` apart, or of which one has none.
@@ -173,36 +173,36 @@ TEST(DeviceShadows, AreTheProcessorsOverRealGround) {
 
 /// The textures as shaders read them.
 struct Textures {
-    std::vector<float> margins;
-    std::vector<std::vector<std::uint8_t>> shares;
+    std::vector<float> clearances;
+    std::vector<std::vector<std::uint8_t>> fractions;
 
     explicit Textures(const GroundLight& light) {
-        const gl::Texture &margin = *light.texture("light_margins"),
-                          &share = *light.texture("light_shares");
+        const gl::Texture &clearance = *light.texture("light_clearance"),
+                          &fraction = *light.texture("light_fraction");
         const auto texels = [](const gl::Extent& size) {
             return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
         };
-        margins.resize(4 * texels(margin.extent()));
-        margin.read_floats(margins);
-        for (int level = 0; level < share.levels(); ++level) {
-            shares.emplace_back(2 * texels(share.level_extent(level)));
-            share.read(level, std::as_writable_bytes(std::span(shares.back())));
+        clearances.resize(4 * texels(clearance.extent()));
+        clearance.read_floats(clearances);
+        for (int level = 0; level < fraction.levels(); ++level) {
+            fractions.emplace_back(2 * texels(fraction.level_extent(level)));
+            fraction.read(level, std::as_writable_bytes(std::span(fractions.back())));
         }
     }
 };
 
 /// A half's last digit may differ where a device divides otherwise, and one of 255 steps a level.
 void expect_same(const Textures& expected, const Textures& found) {
-    int margins = 0, shares = 0;
-    for (std::size_t i = 0; i < expected.margins.size(); ++i)
-        margins += !(std::abs(expected.margins[i] - found.margins[i]) <=
-                     std::max(0.02F, std::abs(expected.margins[i]) / 1024));
-    ASSERT_EQ(expected.shares.size(), found.shares.size());
-    for (std::size_t level = 0; level < expected.shares.size(); ++level)
-        for (std::size_t i = 0; i < expected.shares[level].size(); ++i)
-            shares += std::abs(expected.shares[level][i] - found.shares[level][i]) > 1;
-    EXPECT_EQ(margins, 0);
-    EXPECT_EQ(shares, 0);
+    int clearances = 0, fractions = 0;
+    for (std::size_t i = 0; i < expected.clearances.size(); ++i)
+        clearances += !(std::abs(expected.clearances[i] - found.clearances[i]) <=
+                        std::max(0.02F, std::abs(expected.clearances[i]) / 1024));
+    ASSERT_EQ(expected.fractions.size(), found.fractions.size());
+    for (std::size_t level = 0; level < expected.fractions.size(); ++level)
+        for (std::size_t i = 0; i < expected.fractions[level].size(); ++i)
+            fractions += std::abs(expected.fractions[level][i] - found.fractions[level][i]) > 1;
+    EXPECT_EQ(clearances, 0);
+    EXPECT_EQ(fractions, 0);
 }
 
 SunLight sun_at(const char* utc, const Ground& ground, const dem::Grid& grid) {
@@ -218,23 +218,23 @@ TEST(DeviceShadows, HaveTheTexturesOfTheProcessorAsTheSunMoves) {
     GroundLight device(field, ground.frame, {}, ShadowsOn::Device),
         processor(field, ground.frame, {}, ShadowsOn::Processor);
     // Low, moved twice, night, the same again; then coarser posts and higher ground.
-    for (const auto& [utc, is_of_device] :
+    for (const auto& [utc, on_device] :
          {std::pair("2026-06-21T04:20Z", true), std::pair("2026-06-21T09:00Z", true),
           std::pair("2026-06-21T16:00Z", true), std::pair("2026-06-21T23:30Z", false),
           std::pair("2026-06-21T09:00Z", true)})
         for (const double exaggeration : {1.0, 2.5}) {
             SCOPED_TRACE(utc);
             const SunLight sun = sun_at(utc, ground, field.grid);
-            device.follow(sun, exaggeration);
-            processor.follow(sun, exaggeration);
-            EXPECT_EQ(device.is_of_device(), is_of_device);
-            EXPECT_FALSE(processor.is_of_device());
+            device.update_shadows(sun, exaggeration);
+            processor.update_shadows(sun, exaggeration);
+            EXPECT_EQ(device.is_computed_on_device(), on_device);
+            EXPECT_FALSE(processor.is_computed_on_device());
             expect_same(Textures(processor), Textures(device));
         }
     const SunLight sun = sun_at("2026-06-21T07:00Z", ground, field.grid);
-    device.follow(sun, 1, 5);
-    processor.follow(sun, 1, 5);
-    EXPECT_TRUE(device.is_of_device());
+    device.update_shadows(sun, 1, 5);
+    processor.update_shadows(sun, 1, 5);
+    EXPECT_TRUE(device.is_computed_on_device());
     expect_same(Textures(processor), Textures(device));
     context().check_errors();
 }
@@ -247,9 +247,9 @@ TEST(DeviceShadows, OfASunWithoutADiscAreTheProcessors) {
         processor(field, ground.frame, {}, ShadowsOn::Processor);
     SunLight sun = sun_at("2026-06-21T05:00Z", ground, field.grid);
     sun.semidiameter_rad = 0;
-    device.follow(sun, 1);
-    processor.follow(sun, 1);
-    EXPECT_TRUE(device.is_of_device());
+    device.update_shadows(sun, 1);
+    processor.update_shadows(sun, 1);
+    EXPECT_TRUE(device.is_computed_on_device());
     expect_same(Textures(processor), Textures(device));
 }
 
@@ -263,9 +263,9 @@ TEST(DeviceShadows, AreTheProcessorsWhereTheDeviceFails) {
     testing::internal::CaptureStderr();
     for (const char* const utc : {"2026-06-21T09:00Z", "2026-06-21T10:00Z"}) {
         const SunLight sun = sun_at(utc, ground, field.grid);
-        device.follow(sun, 1);
-        processor.follow(sun, 1);
-        EXPECT_FALSE(device.is_of_device());
+        device.update_shadows(sun, 1);
+        processor.update_shadows(sun, 1);
+        EXPECT_FALSE(device.is_computed_on_device());
         expect_same(Textures(processor), Textures(device));
     }
     ::unsetenv("RELEVO_SHARE");
@@ -281,8 +281,8 @@ TEST(DeviceShadows, AreLeftToTheProcessorOnASoftwareDevice) {
     const dem::Heightfield field = hills(64, 64, {500000, 25, 0, 5200000, 0, -25}, "EPSG:32632");
     const Ground ground = make_ground(field);
     GroundLight light(field, ground.frame);
-    light.follow(sun_at("2026-06-21T09:00Z", ground, field.grid), 1);
-    EXPECT_FALSE(light.is_of_device());
+    light.update_shadows(sun_at("2026-06-21T09:00Z", ground, field.grid), 1);
+    EXPECT_FALSE(light.is_computed_on_device());
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(GroundLight, MeansOfALargeDemAreOfThePostsThatAreThere) {
     const dem::Heightfield field = test::field_of(
         640, 600, {500000, 10, 0, 3000, 0, -10}, "EPSG:32631",
         [](int x, int y) { return (3 * x + 5 * y) % 11 == 0 ? std::nan("") : 100.0; });
-    ASSERT_GT(640 * 600, GroundLight::kMostSkyPosts);
+    ASSERT_GT(640 * 600, GroundLight::kMaxSkyPosts);
     const auto [least, most] = open_sky(field, 4000);
     EXPECT_GT(least, 0.98);
     EXPECT_LE(most, 1.001);
@@ -98,7 +98,7 @@ TEST(GroundLight, IsOfTheSunAsItIsWhereGroundIsInSight) {
     const auto draw = [&](double pitch_deg) {
         drawn.stand(0.5, 0.5, 3000, 0, pitch_deg);
         drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame());
-        return drawn.terrain().light().followed();
+        return drawn.terrain().light().shadow_sun();
     };
     const glm::dvec3 morning = drawn.frame().sun.direction;
     EXPECT_EQ(draw(-40), morning);
@@ -116,7 +116,7 @@ TEST(GroundLight, IsThereWhereTheFirstPictureIsOfTheSky) {
                 shadows);
     drawn.stand(0.5, 0.5, 3000, 0, 60);
     drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame());
-    EXPECT_TRUE(drawn.terrain().light().followed());
+    EXPECT_TRUE(drawn.terrain().light().shadow_sun());
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ class Flight {
     }
     image::Image8 picture() {
         renderer_->render_frame(*terrain_, ground_, inputs_);
-        return renderer_->read_picture();
+        return renderer_->read_output();
     }
     /// Row of the highest ground in each column of the last frame; the picture's height for none.
     std::vector<int> silhouette() const {

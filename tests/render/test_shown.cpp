@@ -43,7 +43,7 @@ struct Bundled {
 
     image::Image8 picture(Renderer& renderer) {
         renderer.render_frame(terrain, ground, inputs);
-        return renderer.read_picture();
+        return renderer.read_output();
     }
 };
 
@@ -117,7 +117,7 @@ TEST(Picture, ReadsNothingThatNoPassHasWritten) {
                 int non_finite = 0;
                 bundled.picture(renderer);
                 pictures.push_back(bundled.picture(renderer));
-                renderer.read_picture(&non_finite);
+                renderer.read_output(&non_finite);
                 EXPECT_EQ(non_finite, 0);
                 ++frames;
             }

@@ -63,7 +63,7 @@ TEST(Framing, StandsBeside25And40DegreesAndBesideTheGridsAxes) {
             EXPECT_TRUE(framing.by_relief);
             EXPECT_GE(*framing.orbit.elevation_deg, kLowestView_deg);
             EXPECT_LE(*framing.orbit.elevation_deg, kHighestView_deg);
-            EXPECT_TRUE(day_at(lat_deg).moment(*framing.orbit.azimuth_deg).within_bounds)
+            EXPECT_TRUE(day_at(lat_deg).time(*framing.orbit.azimuth_deg).within_bounds)
                 << lat_deg << " " << *framing.orbit.azimuth_deg;
             const double off = std::remainder(*framing.orbit.azimuth_deg - turned_deg, 90);
             EXPECT_GE(std::abs(off), 9) << turned_deg << " " << lat_deg;

@@ -33,11 +33,10 @@ class JobFile : public testing::Test {
     }
     /// Clocks of Greenwich, events at noon. Sunsets do not happen in December.
     static sun::ParsedTime resolve(const Scene& scene) {
-        if (scene.moment.time.empty()) return {};
-        if (!sun::is_event_time(scene.moment.time))
-            return sun::parse_time(scene.moment.time, sun::Zone());
-        const sun::EventTime event = sun::parse_event_time(scene.moment.time);
-        const std::string date = event.date ? sun::to_string(*event.date) : scene.moment.date;
+        if (scene.time.at.empty()) return {};
+        if (!sun::is_event_time(scene.time.at)) return sun::parse_time(scene.time.at, sun::Zone());
+        const sun::EventTime event = sun::parse_event_time(scene.time.at);
+        const std::string date = event.date ? sun::to_string(*event.date) : scene.time.date;
         if (date.substr(5, 2) == "12" && event.event == sun::EventKind::Sunset)
             bad_input("sun: no sunset on " + date);
         return sun::parse_time(date + "T12:00Z");
@@ -139,7 +138,7 @@ TEST_F(JobFile, TheEyeIsAtEachSiteAndSoAreEvents) {
     EXPECT_EQ(view.heading_deg, 90);
     EXPECT_EQ(view.pitch_deg, 5);
     EXPECT_NEAR(degrees(view.fov_y_rad), 60, 1e-12);
-    EXPECT_EQ(drawn[0].scene.moment.time, "sunset@46.5,8.25");
+    EXPECT_EQ(drawn[0].scene.time.at, "sunset@46.5,8.25");
 }
 
 TEST_F(JobFile, ASceneOfAFileMayBeginIt) {
@@ -243,7 +242,7 @@ TEST_F(JobFile, EventsThatDoNotHappenLeaveTheirPictureOut) {
         " no picture is left: none of its events happens; the first: sun: no sunset on 2026-12-01");
 }
 
-TEST(NameTemplate, HasTheMomentByTheClocksOfItsZone) {
+TEST(NameTemplate, HasTheLocalTimeOfItsZone) {
     const NameParts parts{7,
                           "alps",
                           sun::parse_time("2026-06-21T22:30Z").utc,

@@ -57,7 +57,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     scene.dem.encoding = dem::Encoding::Terrarium;
     scene.dem.bounds = dem::Bounds{8, 46, 9, 47};
     scene.dem.max_posts = 1 << 20;
-    scene.moment = {"sunset-30min", "2026-06-21", "Europe/Zurich"};
+    scene.time = {"sunset-30min", "2026-06-21", "Europe/Zurich"};
     scene.refraction = "saemundsson";
     scene.view.eye = Standpoint{geo::geodetic_deg(46.97, 8.03, 2), true};
     scene.view.look_at = Standpoint{geo::geodetic_deg(46.5, 8.1, 4000), false};
@@ -79,7 +79,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     EXPECT_EQ(back.dem.nodata, -9999);
     EXPECT_EQ(back.dem.bounds, scene.dem.bounds);
     EXPECT_EQ(back.dem.max_posts, 1 << 20);
-    EXPECT_EQ(back.moment.date, "2026-06-21");
+    EXPECT_EQ(back.time.date, "2026-06-21");
     EXPECT_EQ(back.view.eye->place.lat_rad, radians(46.97));  // to the last bit
     EXPECT_TRUE(back.view.eye->above_ground);
     EXPECT_EQ(back.view.look_at->place.height_m, 4000);
@@ -188,17 +188,17 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
 }
 
 TEST_F(SceneFile, ATimeMayLeaveItsZoneToThePlace) {
-    const auto moment_of = [&](const std::string& time) {
+    const auto time_of = [&](const std::string& time) {
         return read_scene(
                    write(R"({"format": 1, "dem": {"files": ["a"]}, "time": {)" + time + "}}"))
-            .moment;
+            .time;
     };
     for (const std::string zone : {"", "auto", "solar"}) {
         const std::string words = zone.empty() ? "" : ", \"zone\": \"" + zone + "\"";
-        EXPECT_EQ(moment_of("\"at\": \"2026-06-21T12:00\"" + words).zone, zone);
-        EXPECT_EQ(moment_of("\"at\": \"2026-06-21T12:00-05:00\"" + words).zone, zone);
-        EXPECT_EQ(moment_of("\"at\": \"2026-06-21 sunset\"" + words).zone, zone);
-        EXPECT_EQ(moment_of(R"("at": "sunset", "date": "2026-06-21")" + words).zone, zone);
+        EXPECT_EQ(time_of("\"at\": \"2026-06-21T12:00\"" + words).zone, zone);
+        EXPECT_EQ(time_of("\"at\": \"2026-06-21T12:00-05:00\"" + words).zone, zone);
+        EXPECT_EQ(time_of("\"at\": \"2026-06-21 sunset\"" + words).zone, zone);
+        EXPECT_EQ(time_of(R"("at": "sunset", "date": "2026-06-21")" + words).zone, zone);
     }
 }
 
@@ -207,7 +207,7 @@ TEST_F(SceneFile, TheDocumentsExampleIsOne) {
     const std::string fence = "```json scene.json\n";
     const std::size_t begin = page.find(fence) + fence.size();
     const Scene scene = read_scene(write(page.substr(begin, page.find("```", begin) - begin)));
-    EXPECT_EQ(scene.moment.zone, "Europe/Zurich");
+    EXPECT_EQ(scene.time.zone, "Europe/Zurich");
     EXPECT_EQ(scene.effects.settings.at(0).address, "layering.texture_m");
 }
 

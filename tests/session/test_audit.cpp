@@ -42,7 +42,7 @@ std::filesystem::path broken_shadows() {
 scene::Scene morning(const std::string& effect) {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.moment.time = "2026-06-21T11:00Z";
+    scene.time.at = "2026-06-21T11:00Z";
     scene.width_px = 900;
     scene.height_px = 700;
     scene.effects.switches.only = std::vector<std::string>{};
@@ -108,7 +108,7 @@ TEST(Audit, GroundThatIsAlwaysLitIsNoBetterThanNoShadows) {
 TEST(Audit, ExaggeratedGroundHasTheShadowsOfItsOwnHeights) {
     for (const char* const effect : {"shadows", "vsm"}) {
         scene::Scene scene = morning(effect);
-        scene.moment.time = "2026-06-21T13:00Z";  // some 30 degrees
+        scene.time.at = "2026-06-21T13:00Z";  // some 30 degrees
         const ShadowAudit flat = audit_of(scene);
         scene.exaggeration = 4;
         const ShadowAudit high = audit_of(scene);
@@ -171,7 +171,7 @@ TEST(Audit, MeansOfManyPostsAreComparedWithTheirOwnPixels) {
 
 TEST(Audit, AtNightThereIsNothingToCompare) {
     scene::Scene scene = morning("shadows");
-    scene.moment.time = "2026-06-21T05:00Z";
+    scene.time.at = "2026-06-21T05:00Z";
     const ShadowAudit audit = audit_of(scene);
     EXPECT_EQ(audit.pixels(), 0);
     EXPECT_EQ(audit.text(),

@@ -16,7 +16,7 @@ namespace {
 scene::Scene scene_of(double exaggeration) {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.moment.time = "2026-06-21T15:30Z";
+    scene.time.at = "2026-06-21T15:30Z";
     scene.width_px = 320;
     scene.height_px = 240;
     scene.exaggeration = exaggeration;
@@ -59,7 +59,7 @@ Lines lines_of(scene::Scene scene) {
     session.read_depths(lines.depths_m);
     scene = session.scene();
     scene.stamps.graticule = true;
-    session.show(scene, session.moment());
+    session.show(scene, session.time());
     session.draw();
     const image::Image8 stamped = session.picture();
     for (int y = plain.height - 1; y >= 0; --y)

@@ -202,7 +202,7 @@ TEST(Frame, TheBackdropIsLighterAboveThanBelow) {
 /// one.
 std::pair<double, double> wall_light(double azimuth_deg) {
     scene::Scene scene = scene_of(bundled("jacksboro.tif"), {"block"});
-    scene.moment.time = "2026-12-21T17:40Z";  // noon: in the south, 30 degrees high
+    scene.time.at = "2026-12-21T17:40Z";  // noon: in the south, 30 degrees high
     scene.view.orbit = {azimuth_deg, 12, 1};
     FilesInUse files;
     Session session(scene, {.device = "software"}, files);
@@ -273,32 +273,32 @@ TEST(Frame, TheSunOfTheDefaultHourRakesTheGround) {
                              "srtm_bigtujunga30m_utm11.tif", "swellendam/srtm_41_19_4326.tif"}) {
         FilesInUse files;
         Session session(scene_of(data / "dem" / name, {}), {.device = "software"}, files);
-        const sun::Position sun = sun::position(session.moment(), session.ground().frame.origin());
+        const sun::Position sun = sun::position(session.time(), session.ground().frame.origin());
         EXPECT_GE(degrees(sun.elevation_rad), 20) << name;
         EXPECT_LE(degrees(sun.elevation_rad), 35) << name;
         const double aside = std::remainder(
             degrees(sun.azimuth_rad) - session.scene().view.orbit.azimuth_deg.value(), 360);
         EXPECT_GE(std::abs(aside), 50) << name;
         EXPECT_LE(std::abs(aside), 100) << name;
-        EXPECT_EQ(session.moment_reason().find("time: 2026-"), 0u);
+        EXPECT_EQ(session.time_reason().find("time: 2026-"), 0u);
         EXPECT_EQ(session.view_reason().find("view: from azimuth "), 0u);
     }
 }
 
 TEST(Frame, WhatIsGivenIsLeft) {
     scene::Scene scene = scene_of(bundled("jacksboro.tif"), {});
-    scene.moment.time = "2026-03-01T12:00Z";
+    scene.time.at = "2026-03-01T12:00Z";
     scene.view.orbit = {77, 20, 1};
     FilesInUse files;
     Session session(scene, {.device = "software"}, files);
-    EXPECT_EQ(session.moment_reason(), "");
+    EXPECT_EQ(session.time_reason(), "");
     EXPECT_EQ(session.view_reason(), "");
-    EXPECT_EQ(sun::to_iso(session.moment()), "2026-03-01T12:00:00Z");
+    EXPECT_EQ(sun::to_iso(session.time()), "2026-03-01T12:00:00Z");
     // The view of a DEM is the same at all times and in all sizes.
     scene.view.orbit = {};
     FilesInUse others;
     Session first(scene, {.device = "software"}, others);
-    scene.moment.time = "2026-12-01T20:00Z";
+    scene.time.at = "2026-12-01T20:00Z";
     scene.height_px = 700;
     Session second(scene, {.device = "software"}, others);
     EXPECT_EQ(first.scene().view.orbit.azimuth_deg, second.scene().view.orbit.azimuth_deg);

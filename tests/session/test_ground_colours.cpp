@@ -34,7 +34,7 @@ scene::Scene scene_of(const std::string& name, const std::function<double(int, i
     raster.value = [&](int column, int row, int) { return height_m(column, row); };
     scene::Scene scene;
     scene.dems = {test::write_raster(test::scratch_dir("ground_colours") / name, raster)};
-    scene.moment.time = "2026-06-21T10:00Z";
+    scene.time.at = "2026-06-21T10:00Z";
     scene.view.orbit = {180, 90, 1};
     scene.width_px = 260;
     scene.height_px = 240;
@@ -280,7 +280,7 @@ TEST(ExaggeratedPicture, IsThatOfGroundAsHigh) {
                                 (60 + 40 * std::sin(column / 7.0) * std::sin(row / 11.0) + column);
                      },
                      {"haze", "sky", "shadows", "skylight"});
-        scene.moment.time = "2026-06-21T07:30Z";
+        scene.time.at = "2026-06-21T07:30Z";
         scene.exaggeration = exaggeration;
         scene.effects.settings = {{"haze.density", "0.4"}, {"haze.scale_height", "500"}};
         scene.view = {.eye = scene::Standpoint{geo::geodetic_deg(0.001, 2.997, 900 / exaggeration)},

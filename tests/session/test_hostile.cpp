@@ -21,7 +21,7 @@ std::string error_of(const scene::Scene& scene) {
 scene::Scene scene_of(const std::filesystem::path& dem) {
     scene::Scene scene;
     scene.dems = {dem.string()};
-    scene.moment.time = "2026-06-21T12:00Z";
+    scene.time.at = "2026-06-21T12:00Z";
     scene.width_px = scene.height_px = 16;
     scene.effects.switches.only = std::vector<std::string>{};
     return scene;

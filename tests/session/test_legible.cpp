@@ -207,7 +207,7 @@ Explained explained_of(const std::string& dem) {
     const SeenGround seen(session.camera(), kSide_px, kSide_px, std::move(depths_m));
     const geo::LocalFrame& frame = session.ground().frame;
     const Predictors predictors(*session.dem(), frame,
-                                sun::position(session.moment(), frame.origin()));
+                                sun::position(session.time(), frame.origin()));
     std::array<Values, kPredictors> by;
     by.fill(Values(kSide_px, kSide_px, kNone));
     const glm::dvec2 spacing_m = session.dem()->field.grid.post_spacing_m();
@@ -229,7 +229,7 @@ Explained explained_of(const std::string& dem) {
     paper.effects.presets = {"paper"};
     FilesInUse more_files;
     Session of_paper(paper, {.device = "software", .dem = session.dem()}, more_files);
-    of_paper.set_moment(session.moment());
+    of_paper.set_time(session.time());
     const Values before = lightness_of(picture_of(of_paper));
     const auto of_ground = [&](const Values& values) {
         return explained(narrow(only_where(values, ground)), by);
@@ -277,7 +277,7 @@ TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
     scene = lit.scene();
     scene.effects.switches.disable = {"shadows"};
     Session bare(scene, {.device = "software", .dem = lit.dem()}, more_files);
-    bare.set_moment(lit.moment());
+    bare.set_time(lit.time());
     const Values without = lightness_of(picture_of(bare));
     int darker = 0;
     for (int y = 0; y < scene.height_px; ++y)

@@ -83,11 +83,12 @@ TEST(Overlay, UsualRampsAreOfWhatTheBandSaysItIs) {
     EXPECT_EQ(ends("slope", "degrees"), std::pair(3.0, 14.0));
 }
 
-/// Where the picture shows a red mark of a drape, from above, off the place of its middle [posts].
+/// Where the picture shows a red mark of an overlay, from above, off the place of its middle
+/// [posts].
 double off_the_mark(const glm::ivec2& at, int size, double above_m) {
     scene::Scene scene;
     scene.dems = {jacksboro()};
-    scene.moment.time = "2026-06-21T16:00Z";
+    scene.time.at = "2026-06-21T16:00Z";
     scene.effects.switches.only = std::vector<std::string>{};
     scene.width_px = 320;
     scene.height_px = 256;
@@ -99,14 +100,14 @@ double off_the_mark(const glm::ivec2& at, int size, double above_m) {
     scene.view.fov_y_rad = radians(20);
     FilesInUse files;
     Session session(scene, {.device = "software"}, files);
-    const auto drape = std::make_shared<render::OverlayRaster>();
-    drape->rgba = Array2d<std::uint32_t>(grid.columns(), grid.rows());
-    for (std::uint32_t& texel : drape->rgba)
+    const auto raster = std::make_shared<render::OverlayRaster>();
+    raster->rgba = Array2d<std::uint32_t>(grid.columns(), grid.rows());
+    for (std::uint32_t& texel : raster->rgba)
         texel = render::overlay_texel(0, 0, 0, 1);
     for (int row = 0; row < size; ++row)
         for (int column = 0; column < size; ++column)
-            drape->rgba.at(at.x + column, at.y + row) = render::overlay_texel(1, 0, 0, 1);
-    session.set_overlay(drape);
+            raster->rgba.at(at.x + column, at.y + row) = render::overlay_texel(1, 0, 0, 1);
+    session.set_overlay(raster);
     session.draw();
     const image::Image8 picture = session.picture();
     std::vector<float> depths_m;

@@ -103,7 +103,7 @@ Found off_the_reference(const std::string& dem, const std::string& photo,
     constexpr int kSide = 256;
     scene::Scene scene;
     scene.dems = {dem};
-    scene.moment.time = "2026-06-21T18:00Z";
+    scene.time.at = "2026-06-21T18:00Z";
     scene.effects.switches.only = std::vector<std::string>{};
     scene.width_px = scene.height_px = kSide;
     scene.overlay = scene::Overlay{.file = photo};
@@ -201,7 +201,7 @@ std::string write_half(const char* type) {
 image::Image8 from_above(const scene::Overlay& overlay, const char* time) {
     scene::Scene scene;
     scene.dems = {jacksboro()};
-    scene.moment.time = time;
+    scene.time.at = time;
     scene.effects.switches.only = std::vector<std::string>{};
     scene.width_px = 320;
     scene.height_px = 256;

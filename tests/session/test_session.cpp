@@ -48,7 +48,7 @@ std::filesystem::path plugin_folder() {
 scene::Scene bundled_scene() {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.moment.time = "2026-06-21T22:30Z";
+    scene.time.at = "2026-06-21T22:30Z";
     scene.width_px = 200;
     scene.height_px = 160;
     scene.effects.switches.only = std::vector<std::string>{"film", "paint"};
@@ -63,7 +63,7 @@ image::Image8 picture_of(const scene::Scene& scene) {
     return session.picture();
 }
 
-TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
+TEST(Session, CameraTimeParametersAndSizeChangeWithoutANewProgram) {
     FilesInUse files;
     int stitched = 0;
     Options options{.device = "software"};
@@ -75,11 +75,11 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
 
     scene::Scene later = bundled_scene();
     later.view.orbit = {100, 20, 1.5};
-    later.moment.time = "2026-12-21T15:00Z";
+    later.time.at = "2026-12-21T15:00Z";
     later.effects.settings = {{"film.density", "0.7"}};
     later.width_px = 320;
     session.look(later.view);
-    session.set_moment(sun::Instant::from_utc({.date = {2026, 12, 21}, .hour = 15}));
+    session.set_time(sun::Instant::from_utc({.date = {2026, 12, 21}, .hour = 15}));
     session.set("film.density", "0.7");
     session.resize(later.width_px, later.height_px);
     session.draw();
@@ -92,7 +92,7 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     // And back.
     const scene::Scene first = bundled_scene();
     session.look(first.view);
-    session.set_moment(sun::Instant::from_utc({.date = {2026, 6, 21}, .hour = 22, .minute = 30}));
+    session.set_time(sun::Instant::from_utc({.date = {2026, 6, 21}, .hour = 22, .minute = 30}));
     session.set("film.density", "0.2");
     session.resize(first.width_px, first.height_px);
     session.draw();
@@ -121,8 +121,8 @@ TEST(Session, AToggleThereAndBackLinksNothing) {
     Session session(scene, {.device = "software"}, files);
     scene::Effects fewer;
     fewer.switches.disable = {"haze", "bump"};
-    const auto colours =
-        std::make_shared<render::OverlayRaster>(render::OverlayRaster{Array2d<std::uint32_t>(2, 2, 0x80ff0000u)});
+    const auto colours = std::make_shared<render::OverlayRaster>(
+        render::OverlayRaster{Array2d<std::uint32_t>(2, 2, 0x80ff0000u)});
     std::vector<image::Image8> pictures;
     int linked = 0;
     for (const bool again : {false, true}) {
@@ -247,7 +247,7 @@ TEST(Session, LinksProgramsOfNightsInTheBackground) {
             }
         }
         const int before = session.linked_programs();
-        session.set_moment(sun::parse_time("2026-06-21T06:00Z").utc);
+        session.set_time(sun::parse_time("2026-06-21T06:00Z").utc);
         first_ms[ahead] = least_ms(1, [&] { session.draw_alone(); });
         EXPECT_EQ(session.linked_programs() == before, ahead);
         pictures[ahead] = session.picture();
@@ -384,7 +384,7 @@ TEST(Session, SaysOnceThatAnEyeIsBelowTheGround) {
     }
     EXPECT_EQ(said.size(), 1u);
     // Another scene's eye is spoken of, too.
-    session.show(scene, session.moment());
+    session.show(scene, session.time());
     log::set_sink({});
     ASSERT_EQ(said.size(), 2u);
     for (const std::string& text : said)
@@ -395,7 +395,7 @@ TEST(Session, SaysOnceThatAnEyeIsBelowTheGround) {
 
 TEST(Words, NeedTheDemWhereItsPlaceMatters) {
     struct Case {
-        scene::Moment moment;
+        scene::TimeSpec time;
         bool needs_dem;
     };
     for (const Case& c : {Case{{"2026-06-21T18:30Z", "", ""}, false},
@@ -409,12 +409,12 @@ TEST(Words, NeedTheDemWhereItsPlaceMatters) {
                           {{"sunrise@46.55,8.56", "2026-06-21", ""}, false},
                           {{"sunrise@46.55,8.56", "2026-06-21", "solar"}, false},
                           {{"2026-06-21 first-light@46.55,8.56", "", "UTC"}, true}})
-        EXPECT_EQ(needs_dem(c.moment), c.needs_dem) << c.moment.time << ' ' << c.moment.zone;
+        EXPECT_EQ(needs_dem(c.time), c.needs_dem) << c.time.at << ' ' << c.time.zone;
 }
 
 TEST(Words, AreReadBeforeAnythingIsLoaded) {
-    const auto error = [](const scene::Moment& moment) {
-        return test::error_of([&] { needs_dem(moment); });
+    const auto error = [](const scene::TimeSpec& spec) {
+        return test::error_of([&] { needs_dem(spec); });
     };
     EXPECT_EQ(error({"2026-06-21T18:30", "", "Europe/Zurick"}),
               "exit 3: time zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");

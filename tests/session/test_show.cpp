@@ -15,7 +15,7 @@ namespace {
 scene::Scene evening() {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.moment.time = "2026-06-21T23:30:00Z";
+    scene.time.at = "2026-06-21T23:30:00Z";
     scene.view.orbit = {250, 30, 1};
     scene.width_px = 200;
     scene.height_px = 160;
@@ -33,7 +33,7 @@ const std::vector<Change>& changes() {
         {"exaggeration", [](scene::Scene& s) { s.exaggeration = 3; }},
         {"exaggeration below 1", [](scene::Scene& s) { s.exaggeration = 0.4; }},
         {"refraction", [](scene::Scene& s) { s.refraction = "none"; }},
-        {"time", [](scene::Scene& s) { s.moment.time = "2026-12-21T14:00:00Z"; }},
+        {"time", [](scene::Scene& s) { s.time.at = "2026-12-21T14:00:00Z"; }},
         {"camera",
          [](scene::Scene& s) {
              s.view.orbit = {60, 20, 2};
@@ -61,14 +61,14 @@ image::Image8 alone(const scene::Scene& scene) {
 /// @param begin  of which each change is made, shown, and taken back
 void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& changes) {
     const image::Image8 first = alone(begin);
-    const sun::Instant begin_utc = sun::parse_time(begin.moment.time).utc;
+    const sun::Instant begin_utc = sun::parse_time(begin.time.at).utc;
     FilesInUse files;
     Session session(begin, {.device = "software"}, files);
     ASSERT_EQ(picture_of(session).values, first.values);
     for (const Change& change : changes) {
         scene::Scene scene = begin;
         change.make(scene);
-        session.show(scene, sun::parse_time(scene.moment.time).utc);
+        session.show(scene, sun::parse_time(scene.time.at).utc);
         const image::Image8 next = picture_of(session);
         EXPECT_EQ(next.values, alone(scene).values) << change.what;
         EXPECT_NE(next.values, first.values) << change.what << " changes nothing";
@@ -86,7 +86,7 @@ TEST(Show, ShadowMapsAreOfTheGroundAndTheSunThatAreShown) {
     scene.effects.switches.only = std::vector<std::string>{"vsm"};
     expect_nothing_kept(scene,
                         {{"exaggeration", [](scene::Scene& s) { s.exaggeration = 3; }},
-                         {"time", [](scene::Scene& s) { s.moment.time = "2026-06-21T22:00:00Z"; }},
+                         {"time", [](scene::Scene& s) { s.time.at = "2026-06-21T22:00:00Z"; }},
                          {"camera", [](scene::Scene& s) {
                               s.view.orbit = {60, 20, 2};
                           }}});

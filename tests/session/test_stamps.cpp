@@ -18,7 +18,7 @@ namespace {
 scene::Scene scene_of(double azimuth_deg, double elevation_deg) {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.moment.time = "2026-06-21T15:30Z";
+    scene.time.at = "2026-06-21T15:30Z";
     scene.view.orbit.azimuth_deg = azimuth_deg;
     scene.view.orbit.elevation_deg = elevation_deg;
     scene.width_px = 480;
@@ -224,7 +224,7 @@ TEST(Stamps, FollowASceneThatIsShownNext) {
     scene = session.scene();
     scene.stamps.title = true;
     scene.stamps.title_text = "Next";
-    session.show(scene, session.moment());
+    session.show(scene, session.time());
     session.draw();
     EXPECT_GT(image::compare(plain, session.picture()).share_over_1, 0.002);
 }

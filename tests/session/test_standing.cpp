@@ -31,7 +31,7 @@ float depth_ahead_m(Session& session, const scene::View& view, Taken taken = Tak
     if (taken == Taken::InJob) {
         scene::Scene next = session.scene();
         next.view = view;
-        session.show(next, session.moment());
+        session.show(next, session.time());
     } else {
         session.look(view);
     }
@@ -101,7 +101,7 @@ int expect_all_to_stand(const std::string& name, const scene::Scene& scene, int 
 scene::Scene scene_of(const std::filesystem::path& dem) {
     scene::Scene scene;
     scene.dems = {dem.string()};
-    scene.moment.time = "2026-06-21T12:00Z";
+    scene.time.at = "2026-06-21T12:00Z";
     scene.width_px = scene.height_px = kSide_px;
     scene.effects.switches.only = std::vector<std::string>{};
     if (dem.extension() == ".asc") scene.dem.crs = "EPSG:32633";
@@ -233,6 +233,19 @@ TEST(Standing, ZoomComesNearerToWhatIsInTheMiddleOfTheBundledDem) {
     session.look(view);
     const geo::Geodetic eye = session.ground().frame.to_geodetic(session.camera().eye_m);
     EXPECT_NEAR(eye.height_m - session.dem()->height_m(eye), scene::kClearance_m, 1);
+}
+
+TEST(Standing, ASessionMayBeginFarAboveTheGround) {
+    scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
+    const geo::Geodetic place{radians(36.35), radians(-84.24), 3000};
+    scene.view.eye = scene::Standpoint{place, /*above_ground=*/true};
+    scene.view.pitch_deg = -90;
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    std::vector<float> depths_m;
+    session.read_depths(depths_m);
+    EXPECT_NEAR(depths_m[depths_m.size() / 2], 3000, 20);
 }
 
 TEST(Standing, NoEyeIsUnderTheDrawnGroundOfRealDems) {

@@ -69,7 +69,7 @@ class Map {
         scene.dems = {coast().string()};
         scene.dem.crs = "EPSG:32633";
         scene.view = scene::parse_view("top");
-        scene.moment.time = "2026-06-21T12:00Z";
+        scene.time.at = "2026-06-21T12:00Z";
         scene.width_px = scene.height_px = 400;
         scene.stamps.legend = false;
         scene.effects.presets = {preset};

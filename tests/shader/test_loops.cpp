@@ -24,7 +24,9 @@ std::vector<int> loops(const std::string& body) {
 TEST(Loops, WithAConstantBoundEnd) {
     for (const char* head :
          {"int i = 0; i < 8; ++i", "int i = 0; i < haze_N; i++", "int i = 0; i <= haze_M; i += 2",
-          "int i = 9; i > 0; --i", "int i = 0; i < haze_s; ++i"}) {
+          "int i = 9; i > 0; --i", "int i = 0; i < haze_s; ++i", "uint i = 0u; i < 8u; ++i",
+          "float f = 0.0; f < 1.0; f += 0.25", "int i = 64; i > 0; i /= 2",
+          "int i = k; i < 8; i += haze_N", "int i = -4; i <= 4; i++"}) {
         EXPECT_THAT(loops(std::string("for (") + head + ") { x += float(i); }"), IsEmpty()) << head;
         EXPECT_THAT(loops(std::string("for (") + head + ") x += float(i);"), IsEmpty()) << head;
     }
@@ -38,7 +40,11 @@ TEST(Loops, OthersAreOpen) {
           "for (int i = 0; i < k; ++i) x += 1.0;", "for (int i = 0; i < haze_u; ++i) x += 1.0;",
           "for (int i = 0; i < 20000; ++i) x += 1.0;", "for (int i = 0; i < 8; x += 1.0) {}",
           "for (int i = 0; i < 8; ++i) { i = 0; }", "for (int i = 0; i < 8; ++i) --i;",
-          "for (int i = 0; i != 8; ++i) {}", "for (int i = 0; i < 8 || x > 0.0; ++i) {}"})
+          "for (int i = 0; i != 8; ++i) {}", "for (int i = 0; i < 8 || x > 0.0; ++i) {}",
+          "for (float f = 0.0; f < 10.0; f += 0.0) {}", "for (int i = 0; i < 8; --i) {}",
+          "for (int i = 0; i >= 0; i = (i + 1) % 1000) {}", "for (int i = 8; i > 0; ++i) {}",
+          "for (float f = 0.0; f < 10.0; f += 1e-6) {}", "for (int i = 1; i < 8; i *= 1) {}",
+          "for (int i = -20000; i < 8; ++i) {}", "for (int i = 0; i < 8; i -= 1) {}"})
         EXPECT_THAT(loops(loop), ElementsAre(6)) << loop;
 }
 

@@ -36,7 +36,11 @@ TEST(Hooks, TheirNamesAndSignaturesAreAPromise) {
               "void display(in Surface s, inout vec4 overlay)\n"
               "vec3 side(in Surface s, in float down)\n"
               "vec3 backdrop(in vec3 direction, in vec2 at)\n"
+              "void image(in Pixel p, inout vec3 radiance)\n"
               "void tonemap(inout vec3 colour)\n"
+              "void finish(in Pixel p, inout vec3 colour)\n"
+              "void overlay(in Pixel p, inout vec4 over)\n"
+              "void sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance)\n"
               "vec3 background_radiance(in vec3 direction, in bool with_disc)\n");
     for (const Hook& hook : hooks())
         EXPECT_EQ(parse_signature(hook.signature).name, hook.name);
@@ -141,7 +145,8 @@ TEST_P(SnippetError, NamesFileAndLine) {
 
 constexpr const char* kAmongHooks =
     "; hooks are displace, vertex, albedo, normal, material, facing, visibility, brdf, ambient, "
-    "lit, atmosphere, display, side, backdrop, tonemap, background_radiance";
+    "lit, atmosphere, display, side, backdrop, image, tonemap, finish, overlay, sky, "
+    "background_radiance";
 const std::string kNoHook = std::string("1: haze_on_xyz: there is no hook xyz") + kAmongHooks;
 
 INSTANTIATE_TEST_SUITE_P(

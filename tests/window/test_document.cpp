@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/folder_watch.h"
 #include "base/units.h"
 #include "dem/load.h"
 #include "light/fields.h"
@@ -22,7 +23,6 @@
 #include "viewer/document.h"
 #include "viewer/export.h"
 #include "viewer/file_watch.h"
-#include "viewer/folder_watch.h"
 #include "viewer/fonts.h"
 #include "viewer/history.h"
 #include "viewer/navigation.h"
@@ -108,7 +108,7 @@ TEST(Command, IsQuotedForAShell) {
     scene.view.heading_deg = 12.5;
     scene.view.pitch_deg = -3;
     scene.view.fov_y_rad = radians(40.0);
-    scene.moment.time = "2026-06-21T18:30:00+02:00";
+    scene.time.at = "2026-06-21T18:30:00+02:00";
     scene.effects.switches.disable = {"haze"};
     scene.effects.settings = {{"sea.colour", "0,0.1,0.2"}};
     EXPECT_EQ(capture_command(scene, "picture.png"),

@@ -73,7 +73,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     FilesInUse files;
     session::Session session(scene, {.device = "software"}, files);
     EXPECT_FALSE(session.dem()->is_preview);  // captures wait
-    EXPECT_EQ(session.moment(), whole->utc);
+    EXPECT_EQ(session.time(), whole->utc);
     const scene::Camera camera = whole->camera(whole->scene.view, 320.0 / 200, {});
     EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
     // As the window draws it, upright at its eye.
@@ -86,7 +86,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
 TEST_F(Viewer, NoEyeIsUnderTheDrawnGround) {
     scene::Scene scene;
     scene.dems = {dem_};
-    scene.moment.time = "2026-06-21T12:00Z";
+    scene.time.at = "2026-06-21T12:00Z";
     scene.exaggeration = 5;  // slopes of 45 degrees between posts of 80 m
     constexpr int kSide_px = 33, kSites = 40;
     constexpr double kEye_m = 2;

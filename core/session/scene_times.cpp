@@ -1,4 +1,4 @@
-#include "session/moments.h"
+#include "session/scene_times.h"
 
 #include <optional>
 #include <utility>
@@ -8,8 +8,8 @@
 #include "base/log.h"
 #include "dem/posts.h"
 #include "render/ground.h"
+#include "scene/default_time.h"
 #include "scene/framing.h"
-#include "scene/moment.h"
 #include "session/words.h"
 #include "sun/event_time.h"
 
@@ -34,7 +34,7 @@ std::string dem_key(const scene::Scene& scene) {
 }
 
 /// What default view angles depend on.
-struct Moments::Shown {
+struct SceneTimes::Shown {
     scene::GroundNet net;
     scene::DefaultDay day;
     /// Framed views by the given angles (azimuth, elevation). Framing takes milliseconds, and many
@@ -43,7 +43,7 @@ struct Moments::Shown {
     std::map<Given, scene::Orbit> framed{};
 };
 
-struct Moments::Dem {
+struct SceneTimes::Dem {
     std::shared_ptr<const dem::Source> source;
     std::shared_ptr<const LoadedDem> loaded;
     std::optional<dem::Posts> posts;  ///< of `loaded`
@@ -54,14 +54,14 @@ struct Moments::Dem {
     const dem::Source& open() const { return *source; }
 };
 
-Moments::Moments() = default;
-Moments::~Moments() = default;
+SceneTimes::SceneTimes() = default;
+SceneTimes::~SceneTimes() = default;
 
-void Moments::before_reading(std::function<void(const scene::Scene&)> call) {
+void SceneTimes::before_reading(std::function<void(const scene::Scene&)> call) {
     before_reading_ = std::move(call);
 }
 
-scene::Scene Moments::with_absolute_paths(scene::Scene scene) {
+scene::Scene SceneTimes::with_absolute_paths(scene::Scene scene) {
     std::vector<std::string> given = std::exchange(scene.dems, {});
     scene = scene::with_absolute_paths(std::move(scene));
     const auto [known, fresh] = absolute_.try_emplace(std::move(given));
@@ -74,11 +74,11 @@ scene::Scene Moments::with_absolute_paths(scene::Scene scene) {
     return scene;
 }
 
-std::string Moments::key_of(const scene::Scene& scene) {
+std::string SceneTimes::key_of(const scene::Scene& scene) {
     return scene::whole_scene_line(with_absolute_paths(dem_of_scene(scene)));
 }
 
-Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
+SceneTimes::Dem& SceneTimes::dem_of(const scene::Scene& scene) {
     std::unique_ptr<Dem>& dem = dems_[key_of(scene)];
     if (!dem) {
         auto opened = std::make_unique<Dem>();
@@ -89,7 +89,7 @@ Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
     return *dem;
 }
 
-std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
+std::shared_ptr<const LoadedDem> SceneTimes::loaded(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
     if (dem.loaded) return dem.loaded;
     // Jobs process their DEMs one after the other; only small results of earlier ones are kept.
@@ -103,7 +103,7 @@ std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
     return dem.loaded;
 }
 
-Moments::Shown& Moments::shown_of(const scene::Scene& scene) {
+SceneTimes::Shown& SceneTimes::shown_of(const scene::Scene& scene) {
     const auto heights = loaded(scene);
     auto& known = dem_of(scene).shown;
     const auto found = known.find(scene.exaggeration);
@@ -114,7 +114,7 @@ Moments::Shown& Moments::shown_of(const scene::Scene& scene) {
     return known.emplace(scene.exaggeration, std::move(shown)).first->second;
 }
 
-scene::View Moments::settled_view(const scene::Scene& scene) {
+scene::View SceneTimes::settled_view(const scene::Scene& scene) {
     scene::View view = scene.view;
     if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
     auto& known = dem_of(scene).shown;
@@ -129,7 +129,7 @@ scene::View Moments::settled_view(const scene::Scene& scene) {
 }
 
 /// Default time of a scene.
-sun::Instant Moments::usual_moment(const scene::Scene& scene) {
+sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
     const auto heights = loaded(scene);
     const render::Ground ground = ground_of(*heights);
     const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
@@ -139,15 +139,15 @@ sun::Instant Moments::usual_moment(const scene::Scene& scene) {
         settled_view(scene), [&](const geo::Geodetic& at) { return heights->height_m(at); },
         ground.frame, {to_show.points, {}}, static_cast<double>(scene.width_px) / scene.height_px,
         scene.exaggeration);
-    return day.moment(scene::side_of_deg(camera)).utc;
+    return day.time(scene::side_of_deg(camera)).utc;
 }
 
-void Moments::keep_only(const scene::Scene& scene) {
+void SceneTimes::keep_only(const scene::Scene& scene) {
     std::erase_if(dems_, [key = key_of(scene)](const auto& dem) { return dem.first != key; });
 }
 
 /// Time zone at the DEM's centre, by a name that needs no map of zones.
-std::string Moments::zone_of_middle(const std::string& words, Dem& dem) {
+std::string SceneTimes::zone_of_middle(const std::string& words, Dem& dem) {
     const auto [known, fresh] = dem.zones.try_emplace(words);
     if (!fresh) return known->second;
     const sun::ChosenZone chosen = sun::choose_zone(words, dem.open().grid().center());
@@ -162,32 +162,31 @@ std::string Moments::zone_of_middle(const std::string& words, Dem& dem) {
     return known->second;
 }
 
-sun::ParsedTime Moments::of(const scene::Scene& scene) {
+sun::ParsedTime SceneTimes::of(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
-    scene::Moment moment = scene.moment;
-    const bool event = sun::is_event_time(moment.time);
-    const bool of_middle = !event || moment.time.find('@') == std::string::npos;
-    if (sun::is_zone_by_place(moment.zone) && of_middle)
-        moment.zone = zone_of_middle(moment.zone, dem);
-    if (moment.time.empty()) {
+    scene::TimeSpec spec = scene.time;
+    const bool event = sun::is_event_time(spec.at);
+    const bool of_middle = !event || spec.at.find('@') == std::string::npos;
+    if (sun::is_zone_by_place(spec.zone) && of_middle) spec.zone = zone_of_middle(spec.zone, dem);
+    if (spec.at.empty()) {
         sun::ParsedTime morning;
         const geo::Geodetic middle = dem.open().grid().center();
-        morning.utc = usual_moment(scene);
-        morning.zone = sun::choose_zone(moment.zone, middle).zone;
+        morning.utc = default_time(scene);
+        morning.zone = sun::choose_zone(spec.zone, middle).zone;
         return morning;
     }
     sun::ParsedTime time = parse_quietly(
-        moment, {.middle = [&] { return dem.open().grid().center(); },
-                 .posts = [&]() -> const dem::Posts& {
-                     const auto heights = loaded(scene);
-                     if (dem.posts) return *dem.posts;
-                     if (heights->field.reduction == 1)
-                         dem.posts.emplace(heights->field);
-                     else
-                         dem.posts.emplace(*heights->source, static_cast<std::int64_t>(
-                                                                 heights->field.height_m.size()));
-                     return *dem.posts;
-                 }});
+        spec, {.middle = [&] { return dem.open().grid().center(); },
+               .posts = [&]() -> const dem::Posts& {
+                   const auto heights = loaded(scene);
+                   if (dem.posts) return *dem.posts;
+                   if (heights->field.reduction == 1)
+                       dem.posts.emplace(heights->field);
+                   else
+                       dem.posts.emplace(*heights->source,
+                                         static_cast<std::int64_t>(heights->field.height_m.size()));
+                   return *dem.posts;
+               }});
     if (!time.note.empty()) log::info(time.note);
     return time;
 }

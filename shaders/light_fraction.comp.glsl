@@ -1,5 +1,5 @@
 #version 450 core
-//! computes  a level of light_shares: the means of 2 x 2 texels of the finer one
+//! computes  a level of light_fraction: the means of 2 x 2 texels of the finer one
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

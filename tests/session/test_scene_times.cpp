@@ -6,13 +6,13 @@
 #include "base/units.h"
 #include "dem/fixture.h"
 #include "session/climate_words.h"
-#include "session/moments.h"
+#include "session/scene_times.h"
 #include "support/support.h"
 
 namespace relevo::session {
 namespace {
 
-TEST(Moments, ADemThatIsReadOtherwiseIsAnotherDem) {
+TEST(SceneTimes, ADemThatIsReadOtherwiseIsAnotherDem) {
     test::Raster raster;
     raster.columns = raster.rows = 20;
     raster.value = [](int column, int row, int) {
@@ -24,21 +24,21 @@ TEST(Moments, ADemThatIsReadOtherwiseIsAnotherDem) {
     feet.dem.unit = "feet";
     holed.dem.nodata = 7;
     elsewhere.dem.crs = "EPSG:32633";
-    Moments moments;
+    SceneTimes times;
     const auto height_m = [&](const scene::Scene& scene, int column, int row) {
-        return double{moments.loaded(scene)->field.height_m.at(column, row)};
+        return double{times.loaded(scene)->field.height_m.at(column, row)};
     };
     EXPECT_EQ(height_m(plain, 10, 3), 110);
     EXPECT_NEAR(height_m(feet, 10, 3), 110 * 0.3048, 1e-4);
     EXPECT_EQ(height_m(plain, 5, 5), 7);
     EXPECT_TRUE(std::isnan(height_m(holed, 5, 5)));
-    EXPECT_NEAR(degrees(moments.loaded(elsewhere)->field.grid.center().lon_rad -
-                        moments.loaded(plain)->field.grid.center().lon_rad),
+    EXPECT_NEAR(degrees(times.loaded(elsewhere)->field.grid.center().lon_rad -
+                        times.loaded(plain)->field.grid.center().lon_rad),
                 6, 0.01);
     // And the same one is read once.
     scene::Scene later = feet;
-    later.moment.time = "2026-06-21T12:00Z";
-    EXPECT_EQ(moments.loaded(later), moments.loaded(feet));
+    later.time.at = "2026-06-21T12:00Z";
+    EXPECT_EQ(times.loaded(later), times.loaded(feet));
 }
 
 TEST(ClimateWords, AreOfTheHeightAndTheMonthsThatTheyName) {

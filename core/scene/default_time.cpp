@@ -1,4 +1,4 @@
-#include "scene/moment.h"
+#include "scene/default_time.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,11 @@ namespace relevo::scene {
 namespace {
 
 constexpr int kMinutesApart = 5;
-/// Light as it is liked best, and how many degrees away from it count as much as one another.
+/// The best light, and the deviations that cost the same.
 constexpr double kBestElevation_deg = 28, kBestAside_deg = 70;
 constexpr double kGlobeElevation_deg = 60;  // in the middle of the map
 constexpr double kElevationScale_deg = 30, kAsideScale_deg = 80;
-/// The hours are told by a fixed declination; within the bounds by as much as that is off.
+/// Margin of the limits, for the error of a declination that is constant over the day.
 constexpr double kInside_deg = 0.5;
 
 double wrapped_deg(double angle_deg) {
@@ -28,7 +28,7 @@ double outside(double value, double low, double high) {
     return std::max({low - value, value - high, 0.0});
 }
 
-/// The less the better; what is outside of the bounds counts above all, the height of the sun most.
+/// Lower is better. Light outside the limits costs most, above all by the sun's elevation.
 double cost(double elevation_deg, double aside_deg) {
     const double away = std::abs(aside_deg);
     const double in = kInside_deg;
@@ -40,7 +40,7 @@ double cost(double elevation_deg, double aside_deg) {
 
 }  // namespace
 
-std::string DefaultMoment::reason() const {
+std::string DefaultTime::reason() const {
     if (globe)
         return fmt::format("time: {}, chosen because most of the visible side of the globe is lit",
                            sun::to_iso(utc));
@@ -68,8 +68,8 @@ DefaultDay::DefaultDay(const geo::Geodetic& place, bool globe)
     }
 }
 
-DefaultMoment DefaultDay::made(const Hour& hour, double camera_deg) const {
-    DefaultMoment result;
+DefaultTime DefaultDay::made(const Hour& hour, double camera_deg) const {
+    DefaultTime result;
     // Fifteen degrees of longitude are an hour.
     result.utc = sun::Instant::from_utc({.date = date_}) + hour.hours * 3600 -
                  degrees(place_.lon_rad) / 15 * 3600;
@@ -82,9 +82,9 @@ DefaultMoment DefaultDay::made(const Hour& hour, double camera_deg) const {
     return result;
 }
 
-DefaultMoment DefaultDay::estimate(double camera_deg) const {
+DefaultTime DefaultDay::estimate(double camera_deg) const {
     const auto cost_of = [&](const Hour& hour) {
-        // In the afternoon, with the light from the left as on maps.
+        // In the afternoon: light from the left, as on maps.
         if (globe_)
             return std::abs(hour.elevation_deg - kGlobeElevation_deg) + (hour.hours < 12 ? 5 : 0);
         return cost(hour.elevation_deg, wrapped_deg(hour.azimuth_deg - camera_deg));
@@ -99,19 +99,19 @@ DefaultMoment DefaultDay::estimate(double camera_deg) const {
     return made(*best, camera_deg);
 }
 
-DefaultMoment DefaultDay::moment(double camera_deg) const {
-    const DefaultMoment near = estimate(camera_deg);
+DefaultTime DefaultDay::time(double camera_deg) const {
+    const DefaultTime near = estimate(camera_deg);
     const sun::Position sun = sun::position(near.utc, place_);
-    DefaultMoment result = made({(near.utc - made({0, 0, 0}, 0).utc) / 3600,
-                                 degrees(sun.azimuth_rad), degrees(sun.elevation_rad)},
-                                camera_deg);
+    DefaultTime result = made({(near.utc - made({0, 0, 0}, 0).utc) / 3600, degrees(sun.azimuth_rad),
+                               degrees(sun.elevation_rad)},
+                              camera_deg);
     result.utc = near.utc;
     return result;
 }
 
 double side_of_deg(const Camera& camera) {
     const glm::dvec2 level(camera.forward);
-    // Leaning forward the picture's top lies ahead; leaning back it is the other way.
+    // The picture's top points ahead if the camera looks down, and back if it looks up.
     const glm::dvec2 ahead =
         length(level) > 0.1 ? level : glm::dvec2(camera.up) * (camera.forward.z > 0 ? -1.0 : 1.0);
     const double side = degrees(std::atan2(-ahead.x, -ahead.y));

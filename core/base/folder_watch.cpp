@@ -1,4 +1,4 @@
-#include "viewer/folder_watch.h"
+#include "base/folder_watch.h"
 
 #include <array>
 #include <cerrno>
@@ -12,7 +12,7 @@
 #include "base/contains.h"
 #include "base/log.h"
 
-namespace relevo::viewer {
+namespace relevo {
 
 namespace fs = std::filesystem;
 
@@ -42,7 +42,8 @@ void FolderWatch::add(const fs::path& folder) {
     if (number < 0) {
         if (errno != ENOENT)
             log::warning(fmt::format(
-                "view: {}: changes of its files are not noticed ({}); F5 reads effects again",
+                "{}: changes of its files are not noticed ({}); F5 in the window reads effects "
+                "again",
                 folder.string(), std::strerror(errno)));
         return;
     }
@@ -75,4 +76,4 @@ bool FolderWatch::changed() {
     return rests && std::exchange(pending_, false);
 }
 
-}  // namespace relevo::viewer
+}  // namespace relevo

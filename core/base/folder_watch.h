@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace relevo::viewer {
+namespace relevo {
 
 /// Reports changes of files in folders and their subfolders by inotify. A folder is listed once,
 /// when it is new.
@@ -19,7 +19,9 @@ class FolderWatch {
     /// Warns if the system refuses to watch a folder. Ignores folders that do not exist.
     /// @param endings  of file names: ".glsl"
     void watch(const std::vector<std::filesystem::path>& folders, std::vector<std::string> endings);
-    /// As FileWatch::changed().
+    /// Whether a file was written, created or removed since the last call that returned true.
+    /// Returns true only once nothing has changed since the call before, so that files are
+    /// complete.
     bool changed();
 
   private:
@@ -33,4 +35,4 @@ class FolderWatch {
     bool pending_ = false;
 };
 
-}  // namespace relevo::viewer
+}  // namespace relevo

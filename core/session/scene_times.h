@@ -17,12 +17,12 @@ std::string dem_key(const scene::Scene& scene);
 
 /// Determines the times and views of many scenes from their DEMs. Opens each DEM once and logs each
 /// assumption once.
-class Moments {
+class SceneTimes {
   public:
-    Moments();
-    ~Moments();
-    Moments(const Moments&) = delete;
-    Moments& operator=(const Moments&) = delete;
+    SceneTimes();
+    ~SceneTimes();
+    SceneTimes(const SceneTimes&) = delete;
+    SceneTimes& operator=(const SceneTimes&) = delete;
 
     /// Sets a function that is called before the heights of a scene's DEM are read. The scene has
     /// absolute paths.
@@ -51,7 +51,7 @@ class Moments {
     Dem& dem_of(const scene::Scene& scene);
     std::string key_of(const scene::Scene& scene);
     Shown& shown_of(const scene::Scene& scene);
-    sun::Instant usual_moment(const scene::Scene& scene);
+    sun::Instant default_time(const scene::Scene& scene);
     std::string zone_of_middle(const std::string& words, Dem& dem);
 
     std::function<void(const scene::Scene&)> before_reading_;

@@ -1,0 +1,145 @@
+// The copy of an effect under another id.
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "effect/new_plugin.h"
+
+namespace relevo::effect {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Renames an effect in its files.
+class Renaming {
+  public:
+    Renaming(const Effect& effect, const std::string& id) : from_(effect.id()), to_(id) {
+        for (const shader::Snippet& snippet : effect.snippets)
+            add_globals(snippet.source);
+    }
+
+    /// haze.glsl -> mist.glsl
+    std::string file(const std::string& name) const {
+        return name.starts_with(from_ + ".") ? to_ + name.substr(from_.size()) : name;
+    }
+
+    std::string glsl(const shader::Source& source) const {
+        std::vector<Edit> edits;
+        for (std::size_t i = 0; i < source.tokens.size(); ++i) {
+            const shader::Token& token = source.tokens[i];
+            if (token.kind == shader::TokenKind::Directive) {
+                for (const shader::Token& word :
+                     shader::directive_tokens(source.text, token, source.file))
+                    add_edit(source, word, edits);
+            } else if (i == 0 || source.str(source.tokens[i - 1]) != ".") {
+                add_edit(source, token, edits);
+            }
+        }
+        for (const shader::Comment& comment : shader::tokenize(source.text, source.file).comments)
+            edits.push_back({comment.offset, comment.length,
+                             prose(std::string(shader::text_of(source.text, comment)))});
+        std::ranges::sort(edits, std::ranges::greater(), &Edit::offset);
+        std::string text = source.text;
+        for (const Edit& edit : edits)
+            text.replace(edit.offset, edit.length, edit.text);
+        return text;
+    }
+
+    /// haze.density and haze_density in a text for people.
+    std::string prose(const std::string& text) const {
+        return std::regex_replace(text, std::regex("\\b" + from_ + "(?=[._][a-z])"), to_);
+    }
+
+    /// The manifest, which keeps its lines.
+    std::string manifest(std::string text, const std::string& name) const {
+        const auto replace = [&](const std::string& pattern, const std::string& by) {
+            text = std::regex_replace(text, std::regex(pattern), by,
+                                      std::regex_constants::format_first_only);
+        };
+        text = std::regex_replace(text, std::regex("\"" + from_ + "\\."), "\"" + to_ + ".");
+        replace("(\"id\"\\s*:\\s*)\"" + from_ + "\"", "$1\"" + to_ + "\"");
+        replace("(\"name\"\\s*:\\s*)\"[^\"]*\"", "$1\"" + name + "\"");
+        // Two of one kind would both draw.
+        replace("\\s*\"enabled_by_default\"\\s*:\\s*(true|false)\\s*,", "");
+        replace(",\\s*\"enabled_by_default\"\\s*:\\s*(true|false)", "");  // the last member
+        replace("(\\s*)(\"version\"\\s*:)", "$1\"enabled_by_default\": false,$1$2");
+        return text;
+    }
+
+    /// README.md without pictures and links, which the copy does not have.
+    std::string readme(const std::string& text, const std::string& name) const {
+        std::string result;
+        for (const std::string& line : split(text, '\n')) {
+            if (line.starts_with("![")) continue;
+            result += result.empty() ? "# " + name : line;
+            result += '\n';
+        }
+        while (result.ends_with("\n\n"))
+            result.pop_back();
+        result =
+            std::regex_replace(result, std::regex("\\[([^\\]]*)\\]\\((?!https?:)[^)]*\\)"), "$1");
+        return prose(result);
+    }
+
+  private:
+    struct Edit {
+        std::size_t offset, length;
+        std::string text;
+    };
+
+    void add_globals(const shader::Source& source) {
+        for (const shader::Item& item : source.items)
+            names_.insert(item.names.begin(), item.names.end());
+        for (const shader::Param& param : source.params)
+            names_.insert(param.name);
+        for (const shader::Sampler& sampler : source.samplers)
+            names_.insert(sampler.name);
+        for (const shader::Varying& varying : source.varyings)
+            names_.insert(varying.name);
+    }
+
+    void add_edit(const shader::Source& source, const shader::Token& token,
+                  std::vector<Edit>& edits) const {
+        if (token.kind == shader::TokenKind::Word && names_.contains(source.str(token)))
+            edits.push_back({token.offset, from_.size(), to_});
+    }
+
+    std::string from_, to_;
+    std::set<std::string, std::less<>> names_;  // globals of the effect
+};
+
+}  // namespace
+
+PluginFiles copied_plugin(const std::string& id, const Effect& effect) {
+    const Renaming renaming(effect, id);
+    std::string name = id;
+    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    const fs::path folder = effect.manifest.folder;
+    PluginFiles files{
+        {"plugin.json", renaming.manifest(read_text(effect.manifest.file, "plugins new"), name)}};
+    std::set<std::string> done{"plugin.json", "README.md", "CMakeLists.txt", "golden.png"};
+    for (const shader::Snippet& snippet : effect.snippets) {
+        const std::string file = fs::path(snippet.file).lexically_relative(folder).string();
+        files.emplace_back(renaming.file(file), renaming.glsl(snippet.source));
+        done.insert(file);
+    }
+    std::string readme = fmt::format("# {}\n", name);
+    std::error_code error;
+    if (fs::is_regular_file(folder / "README.md", error))
+        readme = renaming.readme(read_text(folder / "README.md", "plugins new"), name);
+    files.emplace_back("README.md",
+                       fmt::format("{}\nA copy of {} {}.\n\n{}", readme, effect.id(),
+                                   effect.manifest.version, usage_section(id, /*is_on=*/false)));
+    for (const TextureSpec& texture : effect.manifest.textures)
+        for (const fs::path& path : texture.files) {
+            const std::string file = path.lexically_relative(folder).string();
+            if (!file.starts_with("..") && done.insert(file).second)
+                files.emplace_back(renaming.file(file), read_text(path, "plugins new"));
+        }
+    return files;
+}
+
+}  // namespace relevo::effect

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shader/core_texts.h"
+#include "shader/plugin_pass.h"
+
+namespace relevo::render {
+
+/// Core's shader files, and the main functions of plugins' passes.
+class PassTexts : public shader::CoreTexts {
+  public:
+    /// @param files, passes  must outlive this
+    PassTexts(const shader::CoreTexts& files, const std::vector<shader::PluginPass>& passes)
+        : files_(files), passes_(passes) {}
+
+    /// Name of the file with a pass's main function.
+    static std::string name_of(const shader::PluginPass& pass);
+
+    std::optional<std::string> text(std::string_view name) const override;
+    std::string file(std::string_view name) const override;
+    std::vector<std::string> libraries() const override { return files_.libraries(); }
+
+  private:
+    const shader::PluginPass* find(std::string_view name) const;
+
+    const shader::CoreTexts& files_;
+    const std::vector<shader::PluginPass>& passes_;
+};
+
+}  // namespace relevo::render

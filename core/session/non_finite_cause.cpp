@@ -1,0 +1,156 @@
+// Which hook and which value of it is NaN or infinite: the picture is drawn without each in turn.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/contains.h"
+#include "base/error.h"
+#include "session/non_finite.h"
+
+namespace relevo::session {
+namespace {
+
+using shader::HookFunction;
+using shader::Snippet;
+
+/// A hook's function in a file.
+struct Place {
+    const Snippet* snippet;
+    const HookFunction* hook;
+
+    const shader::Item& item() const {
+        return *std::ranges::find_if(snippet->source.items, [&](const shader::Item& item) {
+            return item.kind == shader::Item::Kind::Function && item.names[0] == hook->name;
+        });
+    }
+};
+
+/// Number of such pixels with another file in the place of one.
+int pixels_with(const FaultyPicture& picture, const Snippet* replaced, const Snippet& by) {
+    render::EffectInputs inputs = picture.effects.inputs();
+    std::ranges::replace(inputs.stitch.snippets, replaced, &by);
+    render::Renderer renderer(picture.context, inputs, picture.options);
+    renderer.render_frame(picture.terrain, picture.ground, picture.frame);
+    return renderer.non_finite().count;
+}
+
+int pixels_without(const FaultyPicture& picture, const Place& place) {
+    Snippet without = *place.snippet;
+    std::erase_if(without.hooks,
+                  [&](const HookFunction& hook) { return hook.name == place.hook->name; });
+    // The hook is a function that nothing calls.
+    return pixels_with(picture, place.snippet, without);
+}
+
+/// The name of the hook's argument of type Surface that it may write; else empty.
+std::string surface_of(const Place& place) {
+    for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
+        if (argument.type == "Surface" && argument.qualifier == "inout") return argument.name;
+    return {};
+}
+
+/// The value that a hook without a Surface to write makes; empty: what it returns.
+std::string output_of(const Place& place) {
+    for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
+        if (argument.qualifier == "inout") return argument.name;
+    return {};
+}
+
+/// Members that some line of the file names after a dot, in order.
+std::vector<std::string> members_in(const shader::Source& source) {
+    std::vector<std::string> members;
+    for (std::size_t i = 1; i < source.tokens.size(); ++i) {
+        const std::string member(source.str(source.tokens[i]));
+        if (source.tokens[i].kind == shader::TokenKind::Word &&
+            source.str(source.tokens[i - 1]) == "." && member.size() > 1 &&
+            !contains(members, member))
+            members.push_back(member);
+    }
+    return members;
+}
+
+/// The file with a hook that leaves one member of its Surface unchanged.
+Snippet keeping(const Place& place, const std::string& surface, const std::string& member) {
+    const shader::Source& source = place.snippet->source;
+    const shader::Item& item = place.item();
+    std::string text = source.text;
+    const std::string inner = place.snippet->id + "_kept_" + std::string(place.hook->hook->name);
+    for (std::size_t i = item.first; i < item.last; ++i)
+        if (source.str(source.tokens[i]) == place.hook->name) {
+            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
+            break;
+        }
+    text += fmt::format(
+        "\nvoid {}(inout Surface {}) {{\n    Surface before = {};\n    {}({});\n    {}.{} = "
+        "before.{};\n}}\n",
+        place.hook->name, surface, surface, inner, surface, surface, member, member);
+    return shader::parse_snippet(place.snippet->id, place.snippet->file, text);
+}
+
+/// The first line of a hook that writes a value, such as `s.diffuse`; 0: none.
+int line_of_write(const Place& place, const std::string& variable, const std::string& member) {
+    constexpr std::array<std::string_view, 5> kWriting = {"=", "+=", "-=", "*=", "/="};
+    const shader::Source& source = place.snippet->source;
+    const shader::Item& item = place.item();
+    const auto str = [&](std::size_t i) {
+        return i < item.last ? source.str(source.tokens[i]) : std::string_view();
+    };
+    for (std::size_t i = item.first; i < item.last; ++i) {
+        if (str(i) != variable) continue;
+        std::size_t next = i + 1;
+        if (!member.empty()) {
+            if (str(next) != "." || str(next + 1) != member) continue;
+            next += 2;
+        }
+        if (str(next) == ".") next += 2;  // a swizzle
+        if (contains(kWriting, str(next))) return source.tokens[i].line;
+    }
+    return 0;
+}
+
+NonFiniteCause cause_at(const FaultyPicture& picture, const Place& place, int without) {
+    NonFiniteCause cause{place.snippet->file, place.hook->line, place.hook->name, {}};
+    const std::string surface = surface_of(place);
+    std::string variable = output_of(place), member;
+    if (!surface.empty()) {
+        for (const std::string& candidate : members_in(place.snippet->source)) {
+            try {
+                if (pixels_with(picture, place.snippet, keeping(place, surface, candidate)) >
+                    without)
+                    continue;
+            } catch (const Error&) {
+                continue;  // no member of a Surface
+            }
+            member = candidate;
+            break;
+        }
+        variable = surface;
+        if (member.empty()) return cause;
+    }
+    if (variable.empty()) return cause;
+    cause.value = member.empty() ? variable : variable + "." + member;
+    if (const int line = line_of_write(place, variable, member)) cause.line = line;
+    return cause;
+}
+
+}  // namespace
+
+std::optional<NonFiniteCause> find_cause(const FaultyPicture& picture, const std::string& id) {
+    std::optional<Place> worst;
+    int fewest = picture.pixels;
+    for (const Snippet* snippet : picture.effects.loaded.selection.snippets()) {
+        if (snippet->id != id) continue;
+        for (const HookFunction& hook : snippet->hooks) {
+            const Place place{snippet, &hook};
+            const int without = pixels_without(picture, place);
+            if (without >= fewest) continue;
+            fewest = without;
+            worst = place;
+        }
+    }
+    if (!worst) return std::nullopt;
+    return cause_at(picture, *worst, fewest);
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,14 @@
+//! provides  pixels of full-screen programs: their rays, and what hooks get of them
+
+const float kSky_m = 1e9;  // distance of what shows no ground
+
+/// The ray through a point of the picture [px], in the local frame, at view depth 1.
+vec3 pixel_ray_at(in vec2 at_px) {
+    return frame.pixel_ray.xyz + at_px.x * frame.pixel_ray_dx.xyz + at_px.y * frame.pixel_ray_dy.xyz;
+}
+
+/// This pixel. @param distance_m  from the eye to what it shows, or kSky_m
+Pixel pixel_with(in float distance_m) {
+    return Pixel(gl_FragCoord.xy, gl_FragCoord.xy * frame.viewport.zw, normalize(pixel_ray_at(gl_FragCoord.xy)),
+                 distance_m);
+}

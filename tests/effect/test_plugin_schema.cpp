@@ -1,0 +1,67 @@
+// docs/plugin.schema.json has the keys that the loader takes, and no others.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/text.h"
+#include "effect/plugins.h"
+#include "json/value.h"
+
+namespace relevo::effect::test {
+namespace {
+
+using relevo::test::error_of;
+
+const json::Value& member(const json::Value& value, std::string_view name) {
+    for (const auto& [key, inner] : value.members)
+        if (key == name) return inner;
+    throw std::runtime_error(fmt::format("no member {}", name));
+}
+
+std::vector<std::string> keys(const json::Value& object) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : member(object, "properties").members)
+        names.push_back(key);
+    return names;
+}
+
+/// The keys that the loader lists for an unknown one.
+std::vector<std::string> known_keys(const std::string& members) {
+    const Plugins plugins;
+    plugins.add("dust", members);
+    const std::string error =
+        error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
+    const std::size_t list = error.find("there are ");
+    if (list == std::string::npos) return {error};
+    std::vector<std::string> names;
+    for (const std::string& name : split(error.substr(list + 10), ','))
+        names.emplace_back(trimmed(name));
+    return names;
+}
+
+TEST(PluginSchema, HasTheLoadersKeys) {
+    using ::testing::UnorderedElementsAreArray;
+    const auto file = relevo::test::source_dir() / "docs/plugin.schema.json";
+    const json::Value schema = json::parse("test", "schema", read_text(file, "test"));
+    const json::Value& objects = member(schema, "definitions");
+    const json::Value& properties = member(schema, "properties");
+    const std::string unknown = R"("qqqqqqqqqqqq": 0)";
+    EXPECT_THAT(keys(schema), UnorderedElementsAreArray(known_keys(unknown)));
+    EXPECT_THAT(keys(member(properties, "displaces")),
+                UnorderedElementsAreArray(known_keys(R"("displaces": {)" + unknown + "}")));
+    EXPECT_THAT(keys(member(properties, "invents")),
+                UnorderedElementsAreArray(
+                    known_keys(R"("invents": {"what": "w", "by": "b", )" + unknown + "}")));
+    EXPECT_THAT(keys(member(objects, "text")),
+                UnorderedElementsAreArray(
+                    known_keys(R"("module": "dust", "texts": {"a": {)" + unknown + "}}")));
+    // Each kind of texture takes some of these.
+    std::vector<std::string> texture =
+        known_keys(R"("textures": {"a": {"kind": "3d", "file": "dust.glsl", "encoding": "srgb", )" +
+                   unknown + "}}");
+    texture.emplace_back("files");
+    EXPECT_THAT(keys(member(objects, "texture")), UnorderedElementsAreArray(texture));
+}
+
+}  // namespace
+}  // namespace relevo::effect::test
