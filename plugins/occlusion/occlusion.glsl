@@ -8,14 +8,14 @@
 //@ include lib/screen.glsl
 
 uniform float occlusion_radius_m = 60.0; //@ range(0.1, 10000) unit(m) label("Radius") description("How far away ground hides the sky; far from the camera at least as far as 16 pixels")
-uniform float occlusion_amount = 1.0; //@ range(0, 4) label("Amount")
+uniform float occlusion_amount = 1.5; //@ range(0, 4) label("Amount")
 
 uniform sampler2D occlusion_depth; //@ from(core.ground_depth)
 uniform sampler2D occlusion_raw;
 uniform sampler2D occlusion_smooth;
 
 const int occlusion_samples = 12;
-const float occlusion_bias = 0.08;     // sine: what is less steep hides nothing
+const float occlusion_bias = 0.02;     // sine: what is less steep hides nothing
 const float occlusion_narrowest_px = 16.0;  // of the radius in the picture
 const float occlusion_widest_px = 96.0;
 
