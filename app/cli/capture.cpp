@@ -287,11 +287,13 @@ void capture_and_watch(Arguments arguments) {
             capture(arguments);
             log::info(fmt::format("{} is written; waiting for changes of plugins, Ctrl+C ends",
                                   printable(arguments.output)));
+            arguments.overwrite = true;  // what this command itself has written
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Usage || error.code() == ErrorCode::NoDevice) throw;
+            // No change of a plugin would end this mistake.
+            if (!arguments.overwrite && std::filesystem::exists(arguments.output)) throw;
             log::error(error.what());
         }
-        arguments.overwrite = true;
         while (!watch.changed())
             std::this_thread::sleep_for(kStep);
     }

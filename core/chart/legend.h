@@ -21,8 +21,9 @@ struct Legend {
         bool operator==(const Class&) const = default;
     };
     std::vector<Class> classes{};  ///< instead of the ramp's values
-    /// Values between which the ramp has one colour each, which has a stop at each edge but the
-    /// last. Drawn equally high, the edges' values beside them. Empty: by value.
+    /// Edges of classes, one more than the ramp has stops; each class has the colour of its stop.
+    /// The classes are drawn with equal heights and the values of their edges. Empty: a continuous
+    /// ramp.
     std::vector<double> edges{};
 
     bool operator==(const Legend&) const = default;

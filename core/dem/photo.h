@@ -31,9 +31,8 @@ PhotoKind photo_kind(const std::string& path);
 class Photo {
   public:
     /// @param dem   what it is laid over; kept as a copy
-    /// @throws Error (BadInput) for a file that is no image of 8 bits, one without georeference,
-    /// and
-    ///     one that does not reach the DEM
+    /// @throws Error (BadInput) if the file is not an image of 8 bits, has no georeference, or does
+    ///     not reach the DEM
     static std::shared_ptr<const Photo> open(const std::string& path, const Grid& dem);
     ~Photo();
     Photo(const Photo&) = delete;

@@ -7,6 +7,7 @@
 #include <gdal.h>
 #include <glm/common.hpp>
 
+#include "base/log.h"
 #include "dem/gdal_support.h"
 
 namespace relevo::dem {
@@ -198,6 +199,12 @@ void PhotoPixels::keep_reduced() {
     int times = 2;
     while (double{1} * columns_ * rows_ > kMostReduced * times * times)
         times *= 2;
+    constexpr double kMany = 4e8;  // some seconds
+    if (const double pixels = double{1} * columns_ * rows_; pixels > kMany)
+        log::info(
+            fmt::format("{}: it has no overviews, so all of its {:.0f} million pixels are read "
+                        "first; gdaladdo -r average makes some",
+                        path_, pixels / 1e6));
     reduced_ = read_level(levels_.front(), {0, 0, columns_, rows_}, times);
 }
 

@@ -115,8 +115,7 @@ class Renaming {
 
 PluginFiles copied_plugin(const std::string& id, const Effect& effect) {
     const Renaming renaming(effect, id);
-    std::string name = id;
-    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    const std::string name = name_of(id);
     const fs::path folder = effect.manifest.folder;
     PluginFiles files{
         {"plugin.json", renaming.manifest(read_text(effect.manifest.file, "plugins new"), name)}};

@@ -30,6 +30,7 @@ constexpr std::array<std::string_view, 49> kReserved = {
     "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
 
 constexpr int kMaxPassSide = 4096;
+constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
 constexpr double kMinPassScale = 1.0 / 64;
 constexpr std::array<std::pair<PixelFormat, std::string_view>, 7> kPassFormats = {
     std::pair(PixelFormat::RGBA16F, "rgba16f"),
@@ -233,6 +234,16 @@ class ManifestReader {
         named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
             manifest_.passes.push_back(pass(name, value));
         });
+        std::size_t bytes = 0;
+        for (const shader::PluginPass& pass : manifest_.passes)
+            bytes += static_cast<std::size_t>(pass.width) * static_cast<std::size_t>(pass.height) *
+                     static_cast<std::size_t>(layout_of(pass.format).bytes());
+        if (manifest_.passes.size() > kMaxPasses || bytes > kMaxPassBytes)
+            object.fail(object.line_of("passes"), "passes",
+                        fmt::format("expected at most {} passes and {} MiB of fixed size but got "
+                                    "{} and {}",
+                                    kMaxPasses, kMaxPassBytes >> 20, manifest_.passes.size(),
+                                    (bytes + (1 << 20) - 1) >> 20));
     }
 
     /// A fraction of the frame's size, or a fixed size.

@@ -1,6 +1,7 @@
 #include "effect/new_plugin.h"
 
 #include <cctype>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -11,11 +12,6 @@ namespace relevo::effect {
 namespace {
 
 constexpr std::string_view kWho = "plugins new";
-
-std::string name_of(std::string id) {
-    id.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(id.front())));
-    return id;
-}
 
 /// Replaces @ID@ and @NAME@.
 std::string filled(std::string text, const std::string& id) {
@@ -167,7 +163,25 @@ void check(const NewPlugin& plugin, const Registry& registry) {
                         kWho, plugin.copied));
 }
 
+/// Creates a folder, which must be new.
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (folder.has_parent_path()) std::filesystem::create_directories(folder.parent_path(), error);
+    const bool is_new = !error && std::filesystem::create_directory(folder, error);
+    if (!is_new && (!error || error == std::errc::file_exists))
+        bad_input(fmt::format("{}: {}: exists already; choose another id or --into", kWho,
+                              folder.string()));
+    if (error)
+        bad_input(fmt::format("{}: {}: the folder cannot be created, {}", kWho, folder.string(),
+                              error.message()));
+}
+
 }  // namespace
+
+std::string name_of(std::string id) {
+    id.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(id.front())));
+    return id;
+}
 
 std::string usage_section(const std::string& id, bool is_on) {
     std::string text = kUsage;
@@ -185,18 +199,17 @@ std::vector<std::filesystem::path> write_new_plugin(const NewPlugin& plugin,
                                   ? template_of(plugin)
                                   : copied_plugin(plugin.id, registry.effect(plugin.copied, kWho));
     const fs::path folder = into / plugin.id;
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(folder, error)))
-        bad_input(fmt::format("{}: {}: exists already; choose another id or --into", kWho,
-                              folder.string()));
-    fs::create_directories(folder, error);
-    if (error)
-        bad_input(fmt::format("{}: {}: the folder cannot be created, {}", kWho, folder.string(),
-                              error.message()));
+    make_folder(folder);
     std::vector<fs::path> written;
-    for (const auto& [name, text] : files) {
-        written.push_back(folder / name);
-        write_text(written.back(), text, /*overwrite=*/false, kWho);
+    try {
+        for (const auto& [name, text] : files) {
+            written.push_back(folder / name);
+            write_text(written.back(), text, /*overwrite=*/false, kWho);
+        }
+    } catch (const Error&) {
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+        throw;
     }
     return written;
 }

@@ -25,9 +25,11 @@ void update_light(PassContext& frame, bool with_walls) {
     const LodView view =
         LodView::of_camera(inputs.camera, frame.width_px, frame.height_px, 1, inputs.exaggeration);
     // If no ground is visible, shadows of an earlier sun are kept. If there are none, the coarsest
-    // are computed.
+    // are computed. While the sun stands still, tiles are a good enough answer.
+    const bool has_moved = light.shadow_sun() != inputs.sun.direction;
     const bool sees_ground =
-        with_walls ? frame.tiles.triangles() > 0 : frame.terrain.sees_ground(frame.tiles, view);
+        frame.tiles.triangles() > 0 &&
+        (with_walls || !has_moved || frame.terrain.sees_ground(frame.tiles, view));
     const double pixel_posts =
         sees_ground ? frame.tiles.nearest_m() * view.tolerance / frame.terrain.normal_spacing_m()
                     : std::numeric_limits<double>::infinity();

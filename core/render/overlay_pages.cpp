@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 
+#include "base/log.h"
 #include "render/pages.h"
 
 namespace relevo::render {
@@ -37,6 +38,10 @@ int pages_of_all_levels(const OverlayTexels& texels) {
 OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid,
                            double spacing_m, int slots)
     : overlay_(std::move(raster)), pyramid_(pyramid), texels_(overlay_texels(*overlay_, pyramid)) {
+    if (overlay_->photo && texels_.per_post != overlay_->photo->pixels_per_post())
+        log::info(
+            "overlay: it has more than 262144 pixels along a side, the limit; it is drawn "
+            "coarser");
     texel_m_ = spacing_m / std::sqrt(texels_.per_post.x * texels_.per_post.y);
     const glm::ivec2 finest = pages_of(texels_, 0);
     table_ = PageTable(std::max(finest.x, finest.y), "overlay table");
@@ -79,15 +84,7 @@ bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading,
         visit(tree, view, angle, {texels_.levels - 1, {0, 0}}, pages);
         if (static_cast<int>(pages.size()) <= cache_.slots()) break;
     }
-    bool came = false;
-    if (loading == Loading::Background && !pages.empty()) {
-        std::ranges::stable_sort(
-            pages, [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
-        came = cache_.require(std::span(pages).first(1));  // the coarsest page covers everything
-        came = cache_.request(pages) || came;
-    } else {
-        came = cache_.require(pages);
-    }
+    const bool came = cache_.load(pages, loading);
     if (came || deterministic || table_is_narrowed_)
         table_.write(cache_, deterministic ? &pages : nullptr);
     table_is_narrowed_ = deterministic;

@@ -12,7 +12,7 @@ namespace relevo::render {
 namespace {
 
 /// Along an axis: a page table of 1024 entries.
-constexpr double kMostTexels = 1024 * kNormalNodes;
+constexpr double kMaxTexels = 1024 * kNormalNodes;
 
 /// Texels along an axis that are nearest to a node, [first, end).
 struct Span {
@@ -83,9 +83,9 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
     texels.count = pyramid.size(0);
     if (raster.photo) {
         texels.first_post = raster.photo->first_post();
-        texels.per_post = raster.photo->pixels_per_post();
         const glm::dvec2 side = raster.photo->last_post() - texels.first_post;
-        texels.count = glm::ivec2(glm::min(glm::ceil(side * texels.per_post), kMostTexels)) + 1;
+        texels.per_post = glm::min(raster.photo->pixels_per_post(), kMaxTexels / side);
+        texels.count = glm::ivec2(glm::ceil(side * texels.per_post)) + 1;
     }
     const int side = std::max(texels.count.x, texels.count.y) - 1;
     while (kNormalNodes << (texels.levels - 1) < side)

@@ -22,7 +22,8 @@ struct OverlayRaster {
     bool lit = false;  ///< the colours are the ground's reflectance; else they are displayed as is
 };
 
-/// Where the texels of a raster's finest level lie on the DEM.
+/// Where the texels of a raster's finest level lie on the DEM. A photo of more than 262144 pixels
+/// along an axis has fewer texels than pixels, each a mean.
 struct OverlayTexels {
     glm::dvec2 first_post{0};  ///< of texel (0, 0), which is a point
     glm::dvec2 per_post{1};    ///< texels per post
@@ -31,7 +32,7 @@ struct OverlayTexels {
 };
 OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& pyramid);
 
-/// A texel of a OverlayRaster from sRGB and alpha, each 0 to 1.
+/// A texel of an OverlayRaster from sRGB and alpha, each 0 to 1.
 std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
 /// Colours at the nodes of a raster's page with its border, kNormalPage_px a side. Each is the mean

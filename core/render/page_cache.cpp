@@ -137,6 +137,14 @@ bool PageCache::request(std::span<const TileKey> keys) {
     return impl_->request(keys);
 }
 
+bool PageCache::load(std::vector<TileKey> keys, Loading loading) {
+    if (loading == Loading::Wait || keys.empty()) return require(keys);
+    std::ranges::stable_sort(keys,
+                             [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+    const bool came = require(std::span(keys).first(1));
+    return request(keys) || came;
+}
+
 bool PageCache::is_making() const {
     return impl_ && impl_->maker && impl_->maker->is_at_work();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "render/loading.h"
 #include "render/lod.h"
 
 namespace relevo::render {
@@ -46,6 +47,9 @@ class PageCache {
     /// missing ones in the order of `keys`.
     /// @throws what PageLayer::make threw
     bool request(std::span<const TileKey> keys);
+    /// With Loading::Wait as require(). Else as request(), from coarse to fine, but the coarsest
+    /// page is waited for: it covers everything.
+    bool load(std::vector<TileKey> keys, Loading loading);
     /// True if pages are being made that request() would not return yet.
     bool is_making() const;
 

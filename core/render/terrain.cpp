@@ -331,17 +331,10 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool determi
         });
         if (static_cast<int>(pages.size()) <= surface_.slots()) break;
     }
-    bool came = false;
-    if (loading == Loading::Background && !pages.empty()) {
-        std::ranges::stable_sort(
-            pages, [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
-        came = surface_.require(std::span(pages).first(1));  // the coarsest page covers everything
-        came = surface_.request(pages) || came;
-        for (const TileKey& page : pages)
-            complete_ = complete_ && surface_.slot(page) >= 0;
-    } else {
-        came = surface_.require(pages);
-    }
+    const bool came = surface_.load(pages, loading);
+    complete_ = complete_ && std::ranges::all_of(pages, [&](const TileKey& page) {
+                    return surface_.slot(page) >= 0;
+                });
     if (came || deterministic || table_is_narrowed_)
         page_table_.write(surface_, deterministic ? &pages : nullptr);
     table_is_narrowed_ = deterministic;

@@ -20,9 +20,7 @@ std::string id_of(const fs::path& folder) {
 }
 
 void write_picture(const fs::path& file, const image::Image8& picture) {
-    std::error_code ignored;
-    fs::remove(file, ignored);
-    image::write(file, picture);
+    image::write(file, picture, {}, /*overwrite=*/true);
 }
 
 }  // namespace

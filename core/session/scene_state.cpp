@@ -70,7 +70,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
 
 void SceneState::warn_of_eye(const DrawnShape& shape) const {
     const std::optional<double> height_m = shape.height_m(inputs.camera);
-    if (!height_m) return;  // above all ground, or beside it
+    if (!height_m) return;  // the eye is above all ground, or outside the DEM
     const auto drawn_m = [&](const geo::Geodetic&) { return *height_m / scene.exaggeration; };
     scene::warn_of_eye_below_ground(scene.view, drawn_m, ground_->frame, scene.exaggeration);
 }

@@ -19,6 +19,17 @@ std::vector<std::string> hook_names() {
     return names;
 }
 
+/// @param head  of the expected function, apart from its name
+void check_signature(const Snippet& snippet, const Item& item, std::string_view head) {
+    Signature expected = parse_signature(head);
+    expected.name = item.names[0];
+    const Signature found = snippet.source.signature(item);
+    if (!found.matches(expected))
+        source_error(snippet.file, item.name_line,
+                     fmt::format("{}: wrong signature, expected {} but got {}", item.names[0],
+                                 expected.text(), found.text()));
+}
+
 void read_hook(Snippet& snippet, const Item& item) {
     const std::string& function = item.names[0];
     const std::string prefix = snippet.id + "_on_";
@@ -33,13 +44,7 @@ void read_hook(Snippet& snippet, const Item& item) {
                         near ? fmt::format("did you mean {}{}?", prefix, *near)
                              : fmt::format("hooks are {}", fmt::join(hook_names(), ", "))));
     }
-    Signature expected = parse_signature(hook->signature);
-    expected.name = function;
-    const Signature found = snippet.source.signature(item);
-    if (!found.matches(expected))
-        source_error(snippet.file, item.name_line,
-                     fmt::format("{}: wrong signature, expected {} but got {}", function,
-                                 expected.text(), found.text()));
+    check_signature(snippet, item, hook->signature);
     if (item.kind != Item::Kind::Function) return;
     if (const HookFunction* other = snippet.find(name))
         source_error(snippet.file, item.name_line,
@@ -51,13 +56,7 @@ void read_pass(Snippet& snippet, const Item& item) {
     const std::string& function = item.names[0];
     const std::string prefix = snippet.id + "_pass_";
     if (function.substr(0, prefix.size()) != prefix) return;
-    Signature expected = parse_signature("vec4 pass(in Texel t)");
-    expected.name = function;
-    const Signature found = snippet.source.signature(item);
-    if (!found.matches(expected))
-        source_error(snippet.file, item.name_line,
-                     fmt::format("{}: wrong signature, expected {} but got {}", function,
-                                 expected.text(), found.text()));
+    check_signature(snippet, item, "vec4 pass(in Texel t)");
     if (item.kind == Item::Kind::Function)
         snippet.passes.push_back({function.substr(prefix.size()), item.name_line});
 }

@@ -19,29 +19,26 @@ uniform sampler2D bloom_to_eighth;
 uniform sampler2D bloom_to_quarter;
 uniform sampler2D bloom_to_half;
 
-/// A texel of half the size: the mean of 4 x 4 texels of `from`, with weights 1 3 3 1 both ways.
-vec4 bloom_halved(in sampler2D from, in Texel t) {
+/// The mean of four reads around a point. @param at_px, aside  in texels
+vec4 bloom_around(in sampler2D from, in vec2 at_px, in float aside) {
     vec2 texel = 1.0 / vec2(textureSize(from, 0));
-    vec2 at = 2.0 * t.at_px * texel;
-    // Each read is the mean of two texels each way with weights 1 and 3.
-    const float aside = 0.75;
-    vec4 sum = texture(from, at + vec2(-aside, -aside) * texel);
-    sum += texture(from, at + vec2(aside, -aside) * texel);
-    sum += texture(from, at + vec2(-aside, aside) * texel);
-    sum += texture(from, at + vec2(aside, aside) * texel);
+    vec4 sum = texture(from, (at_px + vec2(-aside, -aside)) * texel);
+    sum += texture(from, (at_px + vec2(aside, -aside)) * texel);
+    sum += texture(from, (at_px + vec2(-aside, aside)) * texel);
+    sum += texture(from, (at_px + vec2(aside, aside)) * texel);
     return 0.25 * sum;
+}
+
+/// A texel of half the size: the mean of 4 x 4 texels of `from`, with weights 1 3 3 1 both ways. Each
+/// read is the mean of two texels each way with weights 1 and 3.
+vec4 bloom_halved(in sampler2D from, in Texel t) {
+    return bloom_around(from, 2.0 * t.at_px, 0.75);
 }
 
 /// A level, and the next coarser one doubled. Linear filters twice: weights of a quadratic spline.
 vec4 bloom_doubled(in sampler2D fine, in sampler2D coarse, in Texel t) {
-    vec2 texel = 1.0 / vec2(textureSize(coarse, 0));
-    vec2 at = 0.5 * t.at_px * texel;
-    const float aside = 0.5;
-    vec4 sum = texture(coarse, at + vec2(-aside, -aside) * texel);
-    sum += texture(coarse, at + vec2(aside, -aside) * texel);
-    sum += texture(coarse, at + vec2(-aside, aside) * texel);
-    sum += texture(coarse, at + vec2(aside, aside) * texel);
-    return mix(texelFetch(fine, ivec2(t.at_px), 0), 0.25 * sum, bloom_spread);
+    return mix(texelFetch(fine, ivec2(t.at_px), 0), bloom_around(coarse, 0.5 * t.at_px, 0.5),
+               bloom_spread);
 }
 
 vec4 bloom_pass_half(in Texel t) {

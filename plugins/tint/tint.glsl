@@ -6,6 +6,7 @@
 //!           of lowlands over ochre to the white of heights, and blues that darken with depth
 
 //@ include lib/ground.glsl
+//@ include lib/srgb.glsl
 //@ include lib/water.glsl
 
 uniform int tint_by = 0; //@ enum(height, slope, aspect, plain) static label("Colour by") description("What the colour shows")
@@ -95,13 +96,9 @@ vec3 tint_colour(in Surface s) {
     return mix(tint_of_ground(s, water), tint_water, tint_flat_share(water));
 }
 
-/// sRGB to linear light.
-vec3 tint_linear(in vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-}
 
 void tint_on_material(inout Surface s) {
-    s.diffuse = s.ambient = tint_by == 3 ? tint_plain : tint_linear(tint_colour(s));
+    s.diffuse = s.ambient = tint_by == 3 ? tint_plain : srgb_decoded(tint_colour(s));
     s.specular = vec3(0.0);
     // Heights of water are noise of radar, or steps.
     s.normal = normalize(mix(s.normal, s.up, tint_flat_share(water_of(s))));

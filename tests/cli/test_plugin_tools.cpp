@@ -234,6 +234,17 @@ TEST_F(PluginTools, WatchingWritesThePictureAgainAfterAChange) {
     EXPECT_THAT(relative(result.err), HasSubstr("shader: dust/dust.glsl:1: "));
 }
 
+TEST_F(PluginTools, WatchingReplacesNoFileOfOthers) {
+    write("a.png", "precious");
+    const Result result =
+        run("/usr/bin/timeout",
+            {"-s", "INT", "20", (build_dir() / "bin/relevo").string(), "capture", bundled_dem(),
+             "-o", path("a.png"), "--size", "64x48", "--device", "software", "--watch"});
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("exists; pass --overwrite to replace it"));
+    EXPECT_EQ(read_text(path("a.png"), "test"), "precious");
+}
+
 // ---- set
 
 TEST_F(PluginTools, SeveralValuesOfOneSetAreExplained) {

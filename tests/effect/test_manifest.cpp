@@ -506,6 +506,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"PassTooLarge", R"("passes": {"blur": {"width": 1000000000, "height": 4}})", kHook,
                  "plugin: plugins/haze/plugin.json:1: passes.blur.width: expected a whole number "
                  "in [1, 4096] but got 1000000000"},
+        Mismatch{"PassesOfTooMuchMemory",
+                 R"("passes": {"a": {"width": 4096, "height": 4096, "format": "rgba32f"},)"
+                 R"("b": {"width": 64, "height": 64}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes: expected at most 32 passes and 256 "
+                 "MiB of fixed size but got 2 and 257"},
         Mismatch{"PassChangedByNothing", R"("passes": {"blur": {"when": "changed"}})", kHook,
                  "plugin: plugins/haze/plugin.json:1: passes.blur.parameters: expected the "
                  "parameters that change it with \"when\": \"changed\", and only then"},

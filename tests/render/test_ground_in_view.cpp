@@ -29,7 +29,7 @@ struct Counts {
     }
 };
 
-/// Compares with what is drawn, at random views from near the ground and some pixel errors.
+/// Compares sees_ground() with pictures of 60 random views from a height above the ground.
 Counts count(double agl_m, double pixel_error, double displaced_m = 0) {
     test::TestEffect paint = kPaint;
     if (displaced_m > 0) {

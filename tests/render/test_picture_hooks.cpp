@@ -24,6 +24,7 @@ class PictureHooks : public testing::TestWithParam<bool> {
   protected:
     struct Drawn {
         image::Image8 picture;
+        int non_finite = 0;           // pixels
         std::vector<float> depths_m;  // rows from the bottom
     };
 
@@ -45,7 +46,8 @@ class PictureHooks : public testing::TestWithParam<bool> {
                                           .radiance = GetParam()});
         renderer.render_frame(terrain_, ground_, frame());
         context_.check_errors();
-        Drawn drawn{renderer.read_output(), {}};
+        Drawn drawn;
+        drawn.picture = renderer.read_output(&drawn.non_finite);
         renderer.read_depths(drawn.depths_m);
         return drawn;
     }
@@ -176,25 +178,11 @@ TEST_P(PictureHooks, SeveralRunOneAfterAnother) {
 }
 
 TEST_P(PictureHooks, WhatIsNoNumberIsCounted) {
-    shader::Snippet snippet =
-        shader::parse_snippet("bad", "bad.glsl",
-                              "void bad_on_finish(in Pixel p, inout vec3 colour) {\n"
-                              "    colour /= p.at_px.x > 10.0 ? 1.0 : frame.exposure * 0.0;\n"
-                              "}\n");
-    EffectInputs inputs;
-    shader::ParamStore values;
-    values.declare(core_params());
-    inputs.stitch.values = &values;
-    inputs.stitch.snippets = {&snippet};
-    Renderer renderer(context_, inputs,
-                      RendererOptions{.width_px = kWidth_px,
-                                      .height_px = kHeight_px,
-                                      .antialias = false,
-                                      .radiance = GetParam()});
-    renderer.render_frame(terrain_, ground_, frame());
-    int count = 0;
-    renderer.read_output(&count);
-    EXPECT_EQ(count, 10 * kHeight_px);
+    const Drawn drawn = draw({{"bad",
+                               "void bad_on_finish(in Pixel p, inout vec3 colour) {\n"
+                               "    colour /= p.at_px.x > 10.0 ? 1.0 : frame.exposure * 0.0;\n"
+                               "}\n"}});
+    EXPECT_EQ(drawn.non_finite, 10 * kHeight_px);
 }
 
 INSTANTIATE_TEST_SUITE_P(, PictureHooks, testing::Bool(), [](const auto& mode) {

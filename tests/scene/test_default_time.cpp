@@ -28,7 +28,7 @@ TEST(DefaultTime, HasTheSunInItsBoundsFromSomeSidesAtAllLatitudes) {
             EXPECT_NEAR(degrees(sun.elevation_rad), time.elevation_deg, 1e-9);
             const double aside = degrees(sun.azimuth_rad) - camera_deg;
             EXPECT_NEAR(std::remainder(aside - time.aside_deg, 360), 0, 1e-9);
-            // The height of the sun always is; where it stands hangs on the side.
+            // The sun's elevation is right for any side; its azimuth depends on the side.
             EXPECT_GE(time.elevation_deg, kLowestSun_deg) << lat_deg << " " << camera_deg;
             EXPECT_LE(time.elevation_deg, kHighestSun_deg) << lat_deg << " " << camera_deg;
             const double away = std::abs(time.aside_deg);

@@ -12,7 +12,11 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem/fixture.h"
+#include "dem/photo.h"
+#include "dem/pyramid.h"
 #include "dem/source.h"
+#include "render/overlay_raster.h"
+#include "render/pages.h"
 #include "session/overlay.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
@@ -259,6 +263,32 @@ TEST(PhotoLight, ColoursOfMoreThan8BitsAreRefusedAndABandOfThemIsDrawn) {
                   "--overlay-colours");
     EXPECT_TRUE(read_overlay({.file = file, .colours = "grey"}, grid).legend);
     EXPECT_TRUE(read_overlay({.file = file, .band = 4}, grid).legend);
+}
+
+TEST(WidePhoto, OfMorePixelsThanTheLimitCoversAllOfItsGround) {
+    constexpr int kColumns = 300000;
+    const dem::Grid grid(41, 31, {500015, 30, 0, 5199985, 0, -30},
+                         geo::Crs::parse("EPSG:32632", "test"));
+    const std::string path = test::write_raster(
+        test::folder() / "wide.tif",
+        {.type = "Byte",
+         .columns = kColumns,
+         .rows = 4,
+         .bands = 3,
+         .geotransform = {{500000, 1230.0 / kColumns, 0, 5200000, 0, -232.5}},
+         .value = [](int column, int, int) { return column < kColumns / 2 ? 50.0 : 200.0; }});
+    const render::OverlayRaster raster{.photo = dem::Photo::open(path, grid)};
+    const Array2d<float> heights(41, 31, 100.0F);
+    const dem::Pyramid pyramid{heights};
+    const render::OverlayTexels texels = render::overlay_texels(raster, pyramid);
+    EXPECT_LE(texels.count.x, (1 << 18) + 1);
+    EXPECT_GT(texels.count.x, 1 << 17);
+    EXPECT_NEAR(texels.first_post.x + (texels.count.x - 1) / texels.per_post.x,
+                raster.photo->last_post().x, 1e-3);
+    // The last page of the finest level.
+    const int last = (texels.count.x - 2) / render::kNormalNodes;
+    const std::vector<std::uint32_t> page = render::overlay_page(raster, pyramid, 0, {last, 0});
+    EXPECT_EQ(page[render::kNormalPage_px + 1], 0xffc8c8c8U);
 }
 
 }  // namespace

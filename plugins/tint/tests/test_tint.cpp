@@ -114,7 +114,7 @@ TEST(Tint, LegendsShowTheColoursOfTheShader) {
 
 TEST(Tint, LitColoursAreThoseOfTheLegendAsLight) {
     test::GpuSnippet gpu("tint");
-    const auto results = gpu.run("result = vec4(tint_linear(vec3(float(x) / 16.0)), 1.0);", 17, 1);
+    const auto results = gpu.run("result = vec4(srgb_decoded(vec3(float(x) / 16.0)), 1.0);", 17, 1);
     for (int x = 0; x <= 16; ++x) {
         const double c = x / 16.0;
         const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
