@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <list>
 #include <optional>
@@ -40,6 +41,8 @@ constexpr float kText_px = 16;  // text height that sizes of panels refer to
 /// Xlib calls exit() when the X server is gone, while other threads still draw, so that destructors
 /// and exit handlers must not run. This ends the process at once with a message.
 void end_where_the_display_goes() {
+    // Writing to a server that is gone raises SIGPIPE before Xlib sees the error.
+    std::signal(SIGPIPE, SIG_IGN);
     // The library that GLFW loads; never unloaded.
     void* const xlib = dlopen("libX11.so.6", RTLD_LAZY);
     if (!xlib) return;

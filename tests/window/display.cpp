@@ -175,7 +175,7 @@ bool WindowedProgram::is_running() {
     int status = 0;
     if (waitpid(process_, &status, WNOHANG) == 0) return true;
     ended_ = true;
-    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     return false;
 }
 

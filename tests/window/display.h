@@ -62,7 +62,7 @@ class WindowedProgram {
     /// Waits until it holds. @returns whether it did within the time
     static bool wait(const std::function<bool()>& holds, double at_most_s = kPatience_s);
     bool is_running();
-    /// Waits for its end. @returns its exit status; -1 if it does not end in time or by a signal
+    /// Waits for its end. @returns its exit status; -1 if not in time, minus its signal
     int status(double at_most_s = kPatience_s);
     std::string output() const;  ///< standard output and error so far
     pid_t process() const { return process_; }
