@@ -116,8 +116,9 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 
 }  // namespace
 
-std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
+std::string save_picture(const Picture& picture, scene::Scene scene, const Opened& opened,
                          const Coloured& coloured) {
+    scene.seconds = picture.seconds;
     const std::vector<std::uint8_t> rgba = picture.read_rgba();
     if (const int pixels = render::count_non_finite(rgba); pixels > 0)
         failed(

@@ -45,7 +45,7 @@ struct Coloured {
 /// @param scene   of the picture, with an eye
 /// @param opened  its DEM
 /// Returns and throws as save_scene(); also throws Error if a pixel is not a number.
-std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
+std::string save_picture(const Picture& picture, scene::Scene scene, const Opened& opened,
                          const Coloured& coloured);
 
 }  // namespace relevo::viewer

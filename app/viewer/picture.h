@@ -49,6 +49,7 @@ struct Picture {
     scene::Camera camera;                 ///< possibly raised above the drawn ground
     scene::GroundHeight aim_m;            ///< Session::heights_to_aim_at()
     sun::Instant utc;
+    double seconds = 0;                  ///< of effects that move
     std::vector<chart::Legend> legends;  ///< of effects
     /// Full size, all tile pages, the complete DEM, current shadows.
     bool sharp = false;

@@ -40,6 +40,8 @@ constexpr auto kMorePages = std::chrono::milliseconds(400);
 /// Interval of checks for the thread's end while the device draws.
 constexpr auto kFrame = std::chrono::milliseconds(100);
 constexpr auto kLookAgain = std::chrono::milliseconds(10);
+/// Interval between frames of effects that move.
+constexpr auto kMoves = std::chrono::milliseconds(50);
 /// Greatest age of shadows while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
 
@@ -88,13 +90,15 @@ struct SceneThread::Impl {
     // Used only on the thread.
     bool reads_all_posts = false;  // the complete DEM replaces a preview
     bool awaits_pages = false;     // a frame without motion lacks tile pages
+    bool moves = false;            // effects move without requests
     std::unique_ptr<session::Session> session;
     std::optional<FrameExchange> exchange;  // if frames are shared with the window
     std::uint64_t published = 0;
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
-    Clock::time_point frame_began;  // start of the last published frame
-    double frame_px = 0;            // its pixels, until the device has finished it
+    Clock::time_point opened_at = Clock::now();  // when effects that move began
+    Clock::time_point frame_began;               // start of the last published frame
+    double frame_px = 0;                         // its pixels, until the device has finished it
     Clock::time_point shadows_at;
     bool shadows_lag = false;
     std::optional<Clock::time_point> new_pages_at;  // set while the complete DEM lacks tile pages
@@ -219,7 +223,10 @@ struct SceneThread::Impl {
                 changed.wait_for(lock, kLookAgain, is_asked);
             if (!awaits_pages && sharp) {
                 rests = !is_asked();
-                changed.wait(lock, is_asked);
+                if (moves)
+                    changed.wait_until(lock, frame_began + kMoves, is_asked);
+                else
+                    changed.wait(lock, is_asked);
             }
             rests = false;
             if (ends) return;
@@ -246,7 +253,7 @@ struct SceneThread::Impl {
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;
-                    awaits_pages = false;
+                    awaits_pages = moves = false;
                 }
                 finish_pictures(/*all=*/sharp || awaits_pages);
             } catch (const gl::DeviceLost&) {
@@ -324,6 +331,10 @@ struct SceneThread::Impl {
                           session->camera().eye_m == shadows_eye_m &&
                           Clock::now() - shadows_at < kShadowsAge;
         session->freeze_native(keep);
+        moves = session->is_animated();
+        if (moves)
+            session->set_seconds(std::fmod(scene.seconds + milliseconds_since(opened_at) / 1000,
+                                           scene::kMaxSeconds));
         const bool whole = session->draw_available();
         awaits_pages = !whole && !now.moving && !now.sun_moving;
         if (!keep) {
@@ -354,6 +365,7 @@ struct SceneThread::Impl {
         made->camera = session->camera();
         made->aim_m = session->heights_to_aim_at();
         made->utc = session->time();
+        made->seconds = session->scene().seconds;
         made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;

@@ -121,6 +121,7 @@ PluginFiles copied_plugin(const std::string& id, const Effect& effect) {
         {"plugin.json", renaming.manifest(read_text(effect.manifest.file, "plugins new"), name)}};
     std::set<std::string> done{"plugin.json", "README.md", "CMakeLists.txt", "golden.png"};
     for (const shader::Snippet& snippet : effect.snippets) {
+        if (snippet.file == effect.manifest.file) continue;  // core's, of a raster
         const std::string file = fs::path(snippet.file).lexically_relative(folder).string();
         files.emplace_back(renaming.file(file), renaming.glsl(snippet.source));
         done.insert(file);

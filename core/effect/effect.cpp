@@ -35,6 +35,8 @@ std::string_view sampler_of(TextureSpec::Kind kind) {
             return "sampler2D";
         case TextureSpec::Kind::D2Array:
             return "sampler2DArray";
+        case TextureSpec::Kind::Table:
+            return "sampler2D";
         default:
             return "sampler3D";
     }
@@ -66,6 +68,7 @@ void check_core_sampler(const shader::Sampler& sampler) {
 
 void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
     const Manifest& manifest = effect.manifest;
+    if (sampler.file == manifest.file) return;  // core's, of a raster
     if (sampler.resource.starts_with("core.")) return check_core_sampler(sampler);
     const std::string prefix = effect.id() + '.';
     if (sampler.resource.substr(0, prefix.size()) != prefix) return;  // another plugin's
@@ -288,6 +291,10 @@ std::vector<shader::ColourRamp> Effect::ramps() const {
 Effect load_effect(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
     Effect effect;
     effect.manifest = load_manifest(folder, data_dir);
+    const std::string manifest = effect.manifest.file.string();
+    for (const RasterSpec& raster : effect.manifest.rasters)
+        effect.snippets.push_back(
+            shader::parse_snippet(effect.id(), manifest, raster_glsl(raster, effect.id())));
     for (const std::filesystem::path& file : effect.manifest.glsl)
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), file.string(), glsl_text(file)));

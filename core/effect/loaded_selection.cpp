@@ -22,10 +22,13 @@ class Loader {
 
     /// @throws Error (BadInput) if the effect cannot be used
     void load(const Effect& effect) {
-        for (const TextureSpec& spec : effect.manifest.textures) {
+        for (TextureSpec spec : effect.manifest.textures) {
+            if (!spec.from.empty())
+                if (const std::string file = values_.text(spec.from); !file.empty())
+                    spec.files = {file};
             auto texture = textures_.find(spec.resource);
-            if (texture == textures_.end())
-                texture = textures_.emplace(spec.resource, load_texture(spec)).first;
+            if (texture == textures_.end() || texture->second.spec.files != spec.files)
+                texture = textures_.insert_or_assign(spec.resource, load_texture(spec)).first;
             if (limits_) check_limits(texture->second, *limits_);
         }
         if (!effect.manifest.module.empty() && modules_.count(effect.id()) == 0)

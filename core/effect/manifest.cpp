@@ -20,14 +20,14 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 49> kReserved = {
-    "all",       "antialias", "backdrop", "background", "camera",   "climate", "colour",
-    "copy",      "core",      "data",     "depth",      "east",     "edges",   "floor",
-    "footprint", "frame",     "gbuffer",  "geometry",   "gl",       "ground",  "height",
-    "hook",      "light",     "load",     "net",        "none",     "normal",  "overlay",
-    "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
-    "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
-    "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
+constexpr std::array<std::string_view, 50> kReserved = {
+    "all",     "antialias", "backdrop", "background", "camera",  "climate", "colour",    "copy",
+    "core",    "data",      "depth",    "east",       "edges",   "floor",   "footprint", "frame",
+    "gbuffer", "geometry",  "gl",       "ground",     "height",  "hook",    "light",     "load",
+    "net",     "none",      "normal",   "overlay",    "page",    "pixel",   "place",     "post",
+    "raster",  "scene",     "screen",   "select",     "side",    "slope",   "srgb",      "steps",
+    "store",   "stored",    "sun",      "surface",    "tangent", "terrain", "up",        "varyings",
+    "vertex",  "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
@@ -200,18 +200,48 @@ class ManifestReader {
 
     void textures(json::ObjectReader& object) {
         named(object, "textures", "texture",
-              [&](const std::string& name, const json::Value& value) {
-                  manifest_.textures.push_back(texture(name, value));
-              });
+              [&](const std::string& name, const json::Value& value) { texture(name, value); });
     }
 
-    TextureSpec texture(const std::string& name, const json::Value& value) {
+    void texture(const std::string& name, const json::Value& value) {
         json::ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
+        const std::size_t kind =
+            object.choice("kind", {"2d", "2d-array", "3d", "table", "cube", "raster"});
+        if (kind == 5)
+            manifest_.rasters.push_back(read_raster_spec(object, manifest_.id, name, value.line));
+        else if (kind >= 3)
+            manifest_.textures.push_back(
+                table_texture(object, static_cast<TextureSpec::Kind>(kind), name, value.line));
+        else
+            manifest_.textures.push_back(
+                file_texture(object, static_cast<TextureSpec::Kind>(kind), name, value.line));
+        object.finish();
+    }
+
+    /// A table in a file of the plugin, or in one that the user chooses.
+    TextureSpec table_texture(json::ObjectReader& object, TextureSpec::Kind kind,
+                              const std::string& name, int line) {
+        TextureSpec spec{.name = name, .resource = manifest_.id + '.' + name, .kind = kind};
+        spec.line = line;
+        spec.wrap = TextureSpec::Wrap::Clamp;
+        spec.mipmaps = false;
+        const std::string file = object.string("file", ""), from = object.string("from", "");
+        if (file.empty() == from.empty())
+            object.fail(line, "", "expected a \"file\" of the plugin, or a text \"from\"");
+        if (from.empty())
+            spec.files.push_back(data_file(object, "file", file));
+        else
+            spec.from = manifest_.id + '.' + from;
+        return spec;
+    }
+
+    TextureSpec file_texture(json::ObjectReader& object, TextureSpec::Kind kind,
+                             const std::string& name, int line) {
         TextureSpec spec;
         spec.name = name;
         spec.resource = manifest_.id + '.' + name;
-        spec.line = value.line;
-        spec.kind = static_cast<TextureSpec::Kind>(object.choice("kind", {"2d", "2d-array", "3d"}));
+        spec.line = line;
+        spec.kind = kind;
         if (spec.kind == TextureSpec::Kind::D2Array) {
             for (const std::string& file : object.strings("files"))
                 spec.files.push_back(data_file(object, "files", file));
@@ -226,7 +256,6 @@ class ManifestReader {
         spec.srgb = object.choice("encoding", {"linear", "srgb"}) == 1;
         spec.wrap = static_cast<TextureSpec::Wrap>(object.choice("wrap", {"repeat", "clamp"}, 0));
         spec.mipmaps = object.boolean("mipmaps", true);
-        object.finish();
         return spec;
     }
 
@@ -305,9 +334,31 @@ class ManifestReader {
         named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
-        if (manifest_.module.empty() && !manifest_.texts.empty())
+        bool reads_texts = !manifest_.module.empty() || !manifest_.rasters.empty();
+        for (const TextureSpec& texture : manifest_.textures)
+            if (!texture.from.empty()) {
+                check_text(object, "textures." + texture.name, texture.line, texture.from, true);
+                reads_texts = true;
+            }
+        for (const RasterSpec& raster : manifest_.rasters) {
+            check_text(object, "textures." + raster.name, raster.line, raster.file, true);
+            if (!raster.colours.empty())
+                check_text(object, "textures." + raster.name, raster.line, raster.colours, false);
+        }
+        if (!reads_texts && !manifest_.texts.empty())
             object.fail(object.line_of("texts"), "texts",
-                        "expected a \"module\" too: only modules read texts");
+                        "expected a \"module\", or data of \"textures\", that reads them");
+    }
+
+    /// Data names a text of the plugin.
+    void check_text(const json::ObjectReader& object, const std::string& key, int line,
+                    const std::string& address, bool is_file) const {
+        const auto text = std::ranges::find(manifest_.texts, address, &shader::TextParam::address);
+        if (text == manifest_.texts.end() || (is_file && !text->is_file))
+            object.fail(line, key,
+                        fmt::format("expected a text of \"texts\"{} but got \"{}\"",
+                                    is_file ? " with \"kind\": \"file\"" : "",
+                                    address.substr(address.find('.') + 1)));
     }
 
     shader::TextParam text(const std::string& name, const json::Value& value) {

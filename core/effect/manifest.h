@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "effect/ground_data.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 
@@ -14,13 +15,15 @@ namespace relevo::effect {
 
 /// A texture of a plugin. The sampler `<id>_<name>` reads it.
 struct TextureSpec {
-    enum class Kind { D2, D2Array, D3 };
+    /// Table and Cube are read by read_table() and read_cube().
+    enum class Kind { D2, D2Array, D3, Table, Cube };
     enum class Wrap { Repeat, Clamp };
 
     std::string name;      ///< "noise"
     std::string resource;  ///< "haze.noise": its name for the stitcher
     Kind kind = Kind::D2;
     std::vector<std::filesystem::path> files;  ///< one; of an array, its layers. They exist
+    std::string from;   ///< "grade.lut": the text that names the file instead; empty: none
     int slices = 1;     ///< of a volume in an image file: slices one below the other
     bool srgb = false;  ///< colours, linearised when read; else numbers
     Wrap wrap = Wrap::Repeat;
@@ -80,11 +83,12 @@ struct Manifest {
 
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
+    std::vector<RasterSpec> rasters;
     std::vector<shader::PluginPass> passes;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty
-    std::vector<shader::TextParam> texts;  ///< that the module reads
+    std::vector<shader::TextParam> texts;  ///< that the module reads, or that name data
 
     std::filesystem::path folder;
     std::filesystem::path file;  ///< folder / "plugin.json"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "effect/table_files.h"
 #include "image/image.h"
 
 namespace relevo::effect {
@@ -93,6 +94,13 @@ void check_alike(const TextureSpec& spec, const std::vector<image::TextureData>&
 
 LoadedTexture load_texture(const TextureSpec& spec) {
     LoadedTexture texture{.spec = spec};
+    if (spec.kind == TextureSpec::Kind::Table || spec.kind == TextureSpec::Kind::Cube) {
+        const std::filesystem::path file = spec.files.empty() ? "" : spec.files.front();
+        texture.layers.push_back(spec.kind == TextureSpec::Kind::Table ? read_table(file)
+                                                                       : read_cube(file));
+        if (!file.empty()) texture.stamps.add(file);
+        return texture;
+    }
     for (const std::filesystem::path& file : spec.files) {
         texture.layers.push_back(file.extension() == ".ktx2" ? image::read_ktx(file)
                                                              : decode(file, spec));
@@ -105,9 +113,10 @@ LoadedTexture load_texture(const TextureSpec& spec) {
 
 void check_limits(const LoadedTexture& texture, const TextureLimits& limits) {
     const image::TextureData& first = texture.layers.front();
-    const bool volume = texture.spec.kind == TextureSpec::Kind::D3;
+    const bool volume = first.depth() > 1;
     const int most_px = volume ? limits.volume_side_px : limits.side_px;
     const int longest_px = std::max({first.width(), first.height(), first.depth()});
+    if (texture.spec.files.empty()) return;
     const std::filesystem::path& file = texture.spec.files.front();
     if (longest_px > most_px)
         fail(file, fmt::format("expected at most {} texels a side, as this device takes, but got "

@@ -19,7 +19,8 @@ struct LoadedTexture {
     bool has_mipmaps() const { return spec.mipmaps && layers.front().levels() > 1; }
 };
 
-/// Loads a texture's files. KTX 2 files are mapped; image files are decoded.
+/// Loads a texture's files. KTX 2 files are mapped; image files are decoded; tables are read. A
+/// table that is to be chosen has no file until it is.
 /// @throws Error (BadInput) `plugin: FILE: ...` for a file that is missing or broken, is of
 ///         another kind than the manifest says, or does not fit the other layers
 LoadedTexture load_texture(const TextureSpec& spec);

@@ -68,6 +68,8 @@ constexpr std::array kFormats{
     FormatInfo{PixelFormat::Srgb8A8, 43, "VK_FORMAT_R8G8B8A8_SRGB"},
     FormatInfo{PixelFormat::R16, 70, "VK_FORMAT_R16_UNORM"},
     FormatInfo{PixelFormat::RGBA16F, 97, "VK_FORMAT_R16G16B16A16_SFLOAT"},
+    FormatInfo{PixelFormat::R32F, 100, "VK_FORMAT_R32_SFLOAT"},
+    FormatInfo{PixelFormat::RGBA32F, 109, "VK_FORMAT_R32G32B32A32_SFLOAT"},
 };
 
 const FormatInfo& info(PixelFormat format) {

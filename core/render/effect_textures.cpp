@@ -6,10 +6,12 @@ namespace {
 gl::TextureKind kind_of(effect::TextureSpec::Kind kind) {
     switch (kind) {
         case effect::TextureSpec::Kind::D2:
+        case effect::TextureSpec::Kind::Table:
             return gl::TextureKind::D2;
         case effect::TextureSpec::Kind::D2Array:
             return gl::TextureKind::D2Array;
         case effect::TextureSpec::Kind::D3:
+        case effect::TextureSpec::Kind::Cube:
             return gl::TextureKind::D3;
     }
     return gl::TextureKind::D2;
@@ -37,7 +39,7 @@ gl::Texture make(const effect::LoadedTexture& from, double anisotropy) {
     texture.set_sampling(
         spec.mipmaps ? gl::Filter::Mipmap : gl::Filter::Linear,
         spec.wrap == effect::TextureSpec::Wrap::Repeat ? gl::Wrap::Repeat : gl::Wrap::Clamp,
-        spec.kind == effect::TextureSpec::Kind::D3 ? 1 : anisotropy);
+        first.depth() > 1 ? 1 : anisotropy);
     return texture;
 }
 

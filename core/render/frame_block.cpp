@@ -76,6 +76,14 @@ SunLightTable sun_light_table(const SunLight& sun) {
     return table;
 }
 
+double time_of_year(double unix_s) {
+    const sun::Instant now = sun::Instant() + unix_s;
+    const int year = now.utc().date.year;
+    const int days = sun::days_between({year, 1, 1}, {year, 12, 31}) + 1;
+    const double since_s = unix_s - sun::kDay_s * sun::days_between({1970, 1, 1}, {year, 1, 1});
+    return std::clamp(since_s / (sun::kDay_s * days), 0.0, 1.0);
+}
+
 // In one piece: each member is assigned once.
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit) {
@@ -176,6 +184,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
+    block.seconds = static_cast<float>(inputs.seconds);
+    block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;
     const glm::dvec2 sides_m =
         footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());

@@ -62,8 +62,13 @@ struct FrameInputs {
     bool freeze_native = false;
     /// Native effects must not depend on earlier frames.
     bool deterministic = false;
-    double unix_s = 0;  ///< time of the sun, seconds since 1970-01-01T00:00Z, for native modules
+    double unix_s = 0;   ///< time of the sun, seconds since 1970-01-01T00:00Z
+    double seconds = 0;  ///< of effects that move
 };
+
+/// The part of its year that has passed, by UTC, from 0 to 1.
+/// @param unix_s  as FrameInputs
+double time_of_year(double unix_s);
 
 /// Coverage of a DEM from above: ground per square of a grid in the horizontal plane of the local
 /// frame, with a margin.

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
-#include <span>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include "base/log.h"
@@ -36,25 +35,26 @@ int pages_of_all_levels(const OverlayTexels& texels) {
 }  // namespace
 
 OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const dem::Pyramid& pyramid,
-                           double spacing_m, int slots)
-    : overlay_(std::move(raster)), pyramid_(pyramid), texels_(overlay_texels(*overlay_, pyramid)) {
+                           double spacing_m, int slots, std::string name)
+    : name_(std::move(name)),
+      overlay_(std::move(raster)),
+      pyramid_(pyramid),
+      texels_(overlay_texels(*overlay_, pyramid)) {
     if (overlay_->photo && texels_.per_post != overlay_->photo->pixels_per_post())
-        log::info(
-            "overlay: it has more than 262144 pixels along a side, the limit; it is drawn "
-            "coarser");
+        log::info(fmt::format(
+            "{}: it has more than 262144 pixels along a side, the limit; it is drawn coarser",
+            name_));
     texel_m_ = spacing_m / std::sqrt(texels_.per_post.x * texels_.per_post.y);
     const glm::ivec2 finest = pages_of(texels_, 0);
     table_ = PageTable(std::max(finest.x, finest.y), "overlay table");
     const auto make = [this](const TileKey& key) {
-        const std::vector<std::uint32_t> texels =
-            overlay_page(*overlay_, pyramid_, key.level, key.at);
-        std::vector<std::byte> bytes(texels.size() * sizeof(std::uint32_t));
-        std::memcpy(bytes.data(), texels.data(), bytes.size());
-        return bytes;
+        return overlay_->values.empty()
+                   ? bytes_of(overlay_page(*overlay_, pyramid_, key.level, key.at))
+                   : bytes_of(value_page(*overlay_, pyramid_, key.level, key.at));
     };
-    cache_ =
-        PageCache({{"overlay_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear, make}},
-                  std::min(slots, pages_of_all_levels(texels_)));
+    const gl::Format format = overlay_->values.empty() ? gl::Format::RGBA8 : gl::Format::RG32F;
+    cache_ = PageCache({{name_ + "_pages", format, kNormalPage_px, gl::Filter::Linear, make}},
+                       std::min(slots, pages_of_all_levels(texels_)));
 }
 
 /// Adds the visible pages of a page, from coarse to fine as far as a view shows them.
@@ -92,13 +92,8 @@ bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading,
 }
 
 const gl::Texture* OverlayPages::texture(std::string_view name) const {
-    return name == "overlay_table" ? &table_.texture() : cache_.find(name);
-}
-
-void OverlayPages::write(FrameBlock& block) const {
-    block.overlay_texels = glm::vec4(texels_.first_post, texels_.per_post);
-    block.overlay_shape = {texels_.count.x - 1, texels_.count.y - 1, texels_.levels,
-                           overlay_->lit ? 1 : 0};
+    if (!name.starts_with(name_)) return nullptr;
+    return name.substr(name_.size()) == "_table" ? &table_.texture() : cache_.find(name);
 }
 
 }  // namespace relevo::render

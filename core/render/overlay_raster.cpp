@@ -30,7 +30,7 @@ Span span_of(int post, int level, int posts, int texels) {
     return {first, end};
 }
 
-std::uint32_t mean(const Array2d<std::uint32_t>& rgba, const Span& columns, const Span& rows) {
+std::uint32_t mean_of(const Array2d<std::uint32_t>& rgba, const Span& columns, const Span& rows) {
     if (columns.end - columns.first == 1 && rows.end - rows.first == 1)
         return rgba.at(columns.first, rows.first);
     std::array<std::uint64_t, 4> sums{};
@@ -44,6 +44,38 @@ std::uint32_t mean(const Array2d<std::uint32_t>& rgba, const Span& columns, cons
     for (unsigned k = 0; k < 4; ++k)
         texel |= static_cast<std::uint32_t>((sums[k] + count / 2) / count) << 8 * k;
     return texel;
+}
+
+glm::vec2 mean_of(const Array2d<float>& values, const Span& columns, const Span& rows) {
+    double sum = 0;
+    int known = 0;
+    for (int row = rows.first; row < rows.end; ++row)
+        for (int column = columns.first; column < columns.end; ++column)
+            if (const float value = values.at(column, row); std::isfinite(value)) {
+                sum += double{value};
+                ++known;
+            }
+    const int count = (columns.end - columns.first) * (rows.end - rows.first);
+    return glm::vec2(glm::dvec2(sum, known) / double(count));
+}
+
+/// The means of a page's nodes, which are the DEM's posts.
+template <typename Texel>
+auto page_of(const Array2d<Texel>& texels, const dem::Pyramid& pyramid, int level,
+             glm::ivec2 page) {
+    const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
+    std::vector<Span> columns, rows;
+    for (int i = 0; i < kNormalPage_px; ++i) {
+        const glm::ivec2 post = pyramid.post(level, glm::clamp(first + i, glm::ivec2(0), last));
+        columns.push_back(span_of(post.x, level, pyramid.columns(), texels.width()));
+        rows.push_back(span_of(post.y, level, pyramid.rows(), texels.height()));
+    }
+    std::vector<decltype(mean_of(texels, columns[0], rows[0]))> means;
+    means.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
+    for (const Span& row : rows)
+        for (const Span& column : columns)
+            means.push_back(mean_of(texels, column, row));
+    return means;
 }
 
 std::uint32_t times_opacity(std::uint32_t texel, double opacity) {
@@ -96,19 +128,12 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
 std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
                                         int level, glm::ivec2 page) {
     if (raster.photo) return photo_page(raster, overlay_texels(raster, pyramid), level, page);
-    const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
-    std::vector<Span> columns, rows;
-    for (int i = 0; i < kNormalPage_px; ++i) {
-        const glm::ivec2 post = pyramid.post(level, glm::clamp(first + i, glm::ivec2(0), last));
-        columns.push_back(span_of(post.x, level, pyramid.columns(), raster.rgba.width()));
-        rows.push_back(span_of(post.y, level, pyramid.rows(), raster.rgba.height()));
-    }
-    std::vector<std::uint32_t> texels;
-    texels.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
-    for (const Span& row : rows)
-        for (const Span& column : columns)
-            texels.push_back(mean(raster.rgba, column, row));
-    return texels;
+    return page_of(raster.rgba, pyramid, level, page);
+}
+
+std::vector<glm::vec2> value_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                  int level, glm::ivec2 page) {
+    return page_of(raster.values, pyramid, level, page);
 }
 
 }  // namespace relevo::render

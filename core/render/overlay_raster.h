@@ -12,12 +12,14 @@
 
 namespace relevo::render {
 
-/// Colours over the ground of a DEM: an overlay.
+/// Colours or values over the ground of a DEM: an overlay, or a raster of an effect. It has a
+/// photo, or colours, or values.
 struct OverlayRaster {
     /// 0xAABBGGRR: sRGB, premultiplied by alpha. Rows from the north. The outer rows and columns
-    /// coincide with the DEM's; their number may differ. Empty with a photo.
+    /// coincide with the DEM's; their number may differ.
     Array2d<std::uint32_t> rgba{};
-    std::shared_ptr<const dem::Photo> photo{};  ///< drawn in its own resolution; null: `rgba`
+    Array2d<float> values{};                    ///< as rgba; NaN: none
+    std::shared_ptr<const dem::Photo> photo{};  ///< drawn in its own resolution
     double opacity = 1;                         ///< of the photo, 0 to 1
     bool lit = false;  ///< the colours are the ground's reflectance; else they are displayed as is
 };
@@ -40,5 +42,10 @@ std::uint32_t overlay_texel(double red, double green, double blue, double alpha)
 /// DEM's posts.
 std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
                                         int level, glm::ivec2 page);
+
+/// As overlay_page(), of a raster of values: x the sum of a node's values over the number of its
+/// texels, y the part of these that have one. The mean value is x / y.
+std::vector<glm::vec2> value_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
+                                  int level, glm::ivec2 page);
 
 }  // namespace relevo::render

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dem/pyramid.h"
@@ -17,6 +19,13 @@ inline constexpr int kNormalPage_px = kNormalNodes + 2;  ///< with a border of o
 /// A normal page covers a tile this many levels coarser.
 inline constexpr int kNormalPageLevels = 2;
 static_assert(kNormalNodes == kTileQuads << kNormalPageLevels);
+
+/// The texels of a page, as PageCache takes them.
+template <typename Texel>
+std::vector<std::byte> bytes_of(const std::vector<Texel>& texels) {
+    const auto bytes = std::as_bytes(std::span(texels));
+    return {bytes.begin(), bytes.end()};
+}
 
 /// Four floats a node, kHeightPage_px a side with a border of one: height [m] and coverage, then
 /// both interpolated on the next coarser level's triangles, towards which vertices morph. Coverage

@@ -269,14 +269,32 @@ struct Renderer::Impl : FrameServices {
     }
 
     /// Creates the page layers that programs read, and fills in the terrain's part of the block.
-    void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) const {
+    void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) {
         if (reads("surface_pages")) terrain.require_surface_pages();
         if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
+        write_places(terrain.rasters());
         if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};
+    }
+
+    /// Writes where effects' rasters lie, for the functions of effect::raster_glsl().
+    void write_places(const GroundRasters& rasters) {
+        bool changed = false;
+        const auto write = [&](const std::string& address, const glm::vec4& to) {
+            const shader::ParamValue value{to.x, to.y, to.z, to.w};
+            if (!values.find(address) || values.value(address) == value) return;
+            values.write_host(address, value);
+            changed = true;
+        };
+        for (const auto& [name, raster] : rasters.all()) {
+            const RasterPlace at = rasters.place(name);
+            write(name + "_place", at.place);
+            write(name + "_shape", at.shape);
+        }
+        if (changed && params_block.size() > 0) params_block.write(shader::pack(layout(), values));
     }
 
     const std::string& geometry_program() const {
@@ -409,6 +427,14 @@ std::vector<SunSeen> Renderer::read_sun_seen() const {
     assert(impl_->options.audited);
     return render::read_sun_seen(impl_->runner.texture("sun_seen"),
                                  impl_->runner.texture("gbuffer"), impl_->runner.texture("depth"));
+}
+
+bool Renderer::is_animated() const {
+    static constexpr std::string_view kSeconds = "frame.seconds";
+    return std::ranges::any_of(impl_->frames.programs, [](const ProgramText& text) {
+        return text.stitched.vertex.text.find(kSeconds) != std::string::npos ||
+               text.stitched.fragment.text.find(kSeconds) != std::string::npos;
+    });
 }
 
 bool Renderer::reads_climate() const {

@@ -110,6 +110,8 @@ class Renderer {
     /// Of the last frame's pixels with ground. Requires RendererOptions::audited.
     std::vector<SunSeen> read_sun_seen() const;
 
+    /// True if frames depend on FrameInputs::seconds.
+    bool is_animated() const;
     /// True if frames depend on climate (lib/climate.glsl).
     bool reads_climate() const;
 

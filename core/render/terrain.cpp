@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <unordered_set>
 
 #include <epoxy/gl.h>
@@ -48,13 +47,6 @@ int pages_across(int posts, int level) {
 /// The next tolerance to try.
 double coarser(double tolerance) {
     return tolerance > 0 ? tolerance * kCoarser : 1e-5;
-}
-
-template <typename T>
-std::vector<std::byte> bytes_of(const std::vector<T>& values) {
-    std::vector<std::byte> bytes(values.size() * sizeof(T));
-    std::memcpy(bytes.data(), values.data(), bytes.size());
-    return bytes;
 }
 
 }  // namespace
@@ -134,18 +126,25 @@ void Terrain::update_surface_layers() {
 }
 
 void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
-    if (raster == overlay_) return;
-    overlay_ = std::move(raster);
-    overlay_pages_.reset();
-    if (overlay_)
-        overlay_pages_.emplace(overlay_, pyramid_, normal_spacing_m_,
-                               std::min(kMaxNormalPages, options_.max_array_layers));
+    NamedRasters rasters;
+    if (raster) rasters.emplace("overlay", std::move(raster));
+    overlay_.set(std::move(rasters), pyramid_, normal_spacing_m_, raster_slots());
+}
+
+void Terrain::set_rasters(NamedRasters rasters) {
+    rasters_.set(std::move(rasters), pyramid_, normal_spacing_m_, raster_slots());
+}
+
+int Terrain::raster_slots() const {
+    return std::min(kMaxNormalPages, options_.max_array_layers);
 }
 
 void Terrain::write(FrameBlock& block) const {
     block.normal_levels = static_cast<float>(normal_levels_);
     block.normal_texels_per_m = static_cast<float>(1 / normal_spacing_m_);
-    if (overlay_pages_) overlay_pages_->write(block);
+    const RasterPlace overlay = overlay_.place("overlay");
+    block.overlay_texels = overlay.place;
+    block.overlay_shape = overlay.shape;
 }
 
 void Terrain::require_water_pages() {
@@ -182,8 +181,8 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == "page_table") return &page_table_.texture();
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     if (const gl::Texture* const light = light_.texture(name)) return light;
-    if (const gl::Texture* const raster = overlay_pages_ ? overlay_pages_->texture(name) : nullptr)
-        return raster;
+    if (const gl::Texture* const raster = overlay_.texture(name)) return raster;
+    if (const gl::Texture* const raster = rasters_.texture(name)) return raster;
     return surface_.find(name);
 }
 
@@ -280,8 +279,8 @@ TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_p
     update_surface_layers();
     const LodView pixels = LodView::of_camera(camera, width_px, height_px, 1, exaggeration);
     prepare_surface(pixels, loading, deterministic);
-    if (overlay_pages_)
-        complete_ = overlay_pages_->prepare(tree_, pixels, loading, deterministic) && complete_;
+    for (GroundRasters* const rasters : {&overlay_, &rasters_})
+        complete_ = rasters->prepare(tree_, pixels, loading, deterministic) && complete_;
     return selection;
 }
 

@@ -20,10 +20,9 @@
 #include "render/climate_volume.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
+#include "render/ground_rasters.h"
 #include "render/loading.h"
 #include "render/lod.h"
-#include "render/overlay_pages.h"
-#include "render/overlay_raster.h"
 #include "render/page_cache.h"
 #include "render/page_table.h"
 #include "render/sides.h"
@@ -105,8 +104,8 @@ class Terrain {
     bool is_complete() const { return complete_; }
     /// True if pages are being made in the background.
     bool is_making_pages() const {
-        return heights_.is_making() || surface_.is_making() ||
-               (overlay_pages_ && overlay_pages_->is_making());
+        return heights_.is_making() || surface_.is_making() || overlay_.is_making() ||
+               rasters_.is_making();
     }
 
     /// Draws with the bound program, framebuffer and textures. The program gets positions relative
@@ -134,6 +133,10 @@ class Terrain {
 
     /// Sets the overlay for programs that read it; null: none. Another one discards its pages.
     void set_overlay(std::shared_ptr<const OverlayRaster> raster);
+    /// Sets the rasters of effects, by the resources of their textures: "drape.photo". Those that
+    /// were set before keep their pages.
+    void set_rasters(NamedRasters rasters);
+    const GroundRasters& rasters() const { return rasters_; }
 
     /// Updates the climate tables to the snow of a day (0 to 364).
     /// @returns tables for FrameBlock
@@ -166,6 +169,7 @@ class Terrain {
     bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
     /// The view's tolerance, or the smallest larger one within the vertex budget.
     double tolerance_in_budget(const LodView& wanted);
+    int raster_slots() const;  ///< pages of a raster at most
     void prepare_surface(const LodView& view, Loading loading, bool deterministic);
     /// Creates surface_, without pages, if a layer was added or changed since.
     void update_surface_layers();
@@ -187,7 +191,6 @@ class Terrain {
     int normal_levels_ = 1;
     int normal_layers_ = 1;
 
-    std::shared_ptr<const OverlayRaster> overlay_;
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
     bool has_surface_pages_ = false, has_water_pages_ = false;
@@ -204,7 +207,7 @@ class Terrain {
     // Last members: their threads read the members above.
     PageCache heights_;  // by tile
     PageCache surface_;  // normals and other data by place
-    std::optional<OverlayPages> overlay_pages_;
+    GroundRasters overlay_, rasters_;
 };
 
 }  // namespace relevo::render

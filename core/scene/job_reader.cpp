@@ -360,6 +360,7 @@ class JobReader {
         const std::string address = object.string("set");
         Axis axis{address, "", set.line, {}, {}};
         const auto add_value = [&](const std::string& text) {
+            if (address == kSeconds) return axis.values.push_back(seconds_change(object, text));
             Effects change;
             change.settings = {{address, text, set.line, folder_.string()}};
             axis.values.push_back({text, [change, address, text](Draft& draft) {
@@ -404,12 +405,26 @@ class JobReader {
         return axis;
     }
 
+    /// A moment of effects that move, which is a member of the scene and no parameter.
+    Change seconds_change(const ObjectReader& object, const std::string& text) const {
+        const std::optional<double> seconds = parse_number(text);
+        if (!seconds || !(*seconds >= 0 && *seconds <= kMaxSeconds))
+            object.fail(object.line_of("set"), "set",
+                        fmt::format("seconds: expected a number from 0 to {} but got {}",
+                                    kMaxSeconds, text));
+        return {text, [seconds, text](Draft& draft) {
+                    draft.scene.seconds = *seconds;
+                    draft.names[kSeconds] = text;
+                }};
+    }
+
     double number(ObjectReader& object, const char* key) const {
         object.need(key);
         return object.number(key, 0, -1e9, 1e9, false);
     }
 
     static constexpr int kMostValues = 1'000'000;
+    static constexpr const char* kSeconds = "seconds";
 
     std::string file_;
     fs::path folder_;

@@ -30,6 +30,9 @@ struct Effects {
 };
 
 /// A raster that lies on the ground: figures in colours of a ramp, or an image in its own.
+/// A week: a 32-bit float still has steps of 1/16 s there.
+inline constexpr double kMaxSeconds = 604800;
+
 struct Overlay {
     std::string file;     ///< a name that GDAL opens
     int band = 1;         ///< from 1; of an image: 1 draws the image, others their band
@@ -69,6 +72,7 @@ struct Scene {
     double exaggeration = 1;
     Effects effects;
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
+    double seconds = 0;  ///< of effects that move, frame.seconds in their shaders; to kMaxSeconds
     double exposure_ev = 0;
     double pixel_error = 4;  ///< render::TerrainOptions
 };

@@ -229,6 +229,9 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
     active->notices =
         effect::apply_settings(active->values, active->registry, active->loaded.selection,
                                active->presets, effects.settings);
+    // Tables are named by settings.
+    active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
+                                             active->values, {}, std::move(active->loaded), ground);
     if (!report) return active;
     const std::vector<std::string>& disable = effects.switches.disable;
     for (const effect::BrokenEffect& broken : active->registry.broken())

@@ -102,6 +102,8 @@ std::vector<chart::Legend> Session::colour_legends() const {
 
 std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
+    const std::vector<chart::Legend> of_rasters = impl_->rasters.legends();
+    all.insert(all.end(), of_rasters.begin(), of_rasters.end());
     if (const std::optional<chart::Legend> legend = overlay_legend())
         all.insert(all.begin(), *legend);
     return all;
@@ -132,6 +134,16 @@ std::optional<NonFiniteCause> Session::non_finite_cause(const std::string& id) c
 
 const std::vector<std::string>& Session::stamp_notes() const {
     return impl_->stamp_notes;
+}
+
+bool Session::is_animated() const {
+    const render::Renderer* const without = impl_->drawn->without();
+    return impl_->drawn->renderer().is_animated() || (without && without->is_animated());
+}
+
+void Session::set_seconds(double seconds) {
+    impl_->state.scene.seconds = seconds;
+    impl_->state.inputs.seconds = seconds;
 }
 
 void Session::freeze_native(bool freeze) {

@@ -147,6 +147,10 @@ class Session {
     /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
     /// sun is dragged. Lighting by core is always current.
     void freeze_native(bool freeze);
+    /// True if what is drawn changes with set_seconds().
+    bool is_animated() const;
+    /// Sets the moment of effects that move, for subsequent frames.
+    void set_seconds(double seconds);
 
     /// Replaces a preview (Options::allow_preview) with the complete DEM. The frame's size stays.
     /// Default view and time become those of the complete DEM.

@@ -129,19 +129,37 @@ void Session::Impl::set_effects(const scene::Effects& asked) {
 
 void Session::Impl::switch_to(const EffectsRequest& wanted) {
     if (drawn->take(wanted)) return;
+    const EffectRasters before = rasters;
+    try {
+        switch_effects(wanted);
+    } catch (...) {
+        rasters = before;
+        terrain->set_rasters(rasters.named());
+        throw;
+    }
+}
+
+void Session::Impl::switch_effects(const EffectsRequest& wanted) {
     if (std::optional<DrawnEffects> known = recent.take(wanted)) {
+        lay_rasters(*known);
         known->resize(state.scene.width_px, state.scene.height_px);
         recent.keep(std::exchange(*drawn, std::move(*known)));
         return;
     }
     DrawnEffects fresh = DrawnEffects::load(wanted, /*report=*/false);
     fresh.fit(context->info());
+    lay_rasters(fresh);
     compile(fresh);
     // Drivers may reject a program at its first draw, and modules fail at their first frame.
     if (fresh.is_watched() || fresh.has_modules())
         fresh.render(*terrain, state.ground(), state.inputs);
     recent.keep(std::exchange(*drawn, std::move(fresh)));
     shared.targets.trim();  // sets of targets differ between effects
+}
+
+void Session::Impl::lay_rasters(const DrawnEffects& of) {
+    rasters = EffectRasters(of.effects(), terrain->grid(), rasters);
+    terrain->set_rasters(rasters.named());
 }
 
 void Session::Impl::resize(int width_px, int height_px) {
@@ -160,6 +178,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     resize(next.width_px, next.height_px);
     scene::Scene& scene = state.scene;
     scene.exposure_ev = next.exposure_ev;
+    scene.seconds = next.seconds;
     scene.refraction = next.refraction;
     const bool other_shape = next.exaggeration != scene.exaggeration;
     scene.exaggeration = next.exaggeration;
@@ -196,6 +215,8 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
         overlay_raster = overlay->raster;
     }
     terrain->set_overlay(overlay_raster);
+    rasters = {};  // of the previous DEM
+    lay_rasters(*drawn);
     stages.emplace_back("upload", milliseconds_since(began));
     state.take_shape(/*other=*/true);
 }

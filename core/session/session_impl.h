@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "render/terrain.h"
 #include "session/drawn_effects.h"
+#include "session/effect_rasters.h"
 #include "session/non_finite.h"
 #include "session/overlay.h"
 #include "session/scene_state.h"
@@ -51,6 +52,7 @@ struct Session::Impl {
     std::shared_ptr<const render::OverlayRaster> overlay_raster;
     std::optional<Overlay> overlay;  // of the scene
     std::optional<OverlayTime> overlay_time;
+    EffectRasters rasters;  // of the drawn effects
     std::vector<std::string> stamp_notes;
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
@@ -69,6 +71,9 @@ struct Session::Impl {
     void set_effects(const scene::Effects& asked);
     /// Draws a request: with the current effects, with recent ones, or with newly loaded ones.
     void switch_to(const EffectsRequest& wanted);
+    void switch_effects(const EffectsRequest& wanted);
+    /// Reads the rasters of effects and lays them over the terrain.
+    void lay_rasters(const DrawnEffects& of);
     void resize(int width_px, int height_px);
     void show(const scene::Scene& next, sun::Instant utc);
     void upload(const std::shared_ptr<const LoadedDem>& dem);

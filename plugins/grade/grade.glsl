@@ -1,6 +1,10 @@
-//! provides  grading: exposure, contrast, saturation, warmth and a vignette
+//! provides  grading: exposure, contrast, saturation, warmth, a table of colours and a vignette
 //! hook      image, finish
 //! writes    radiance before tone mapping, colours behind it
+
+//@ include lib/srgb.glsl
+
+uniform sampler3D grade_look;  // one texel a side: no file is named
 
 uniform float grade_exposure = 0.0; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops: 1 is twice as bright")
 uniform float grade_warmth = 0.0; //@ range(-1, 1) label("Warmth") description("Redder above 0, bluer below, equally bright")
@@ -18,11 +22,20 @@ void grade_on_image(in Pixel p, inout vec3 radiance) {
     radiance = exp2(grade_exposure) * warmed * (after > 0.0 ? before / after : 1.0);
 }
 
+/// The colour that the table has for a linear colour of 0 to 1. Its entries are sRGB.
+vec3 grade_looked_up(in vec3 colour) {
+    float side = float(textureSize(grade_look, 0).x);
+    if (side < 2.0) return colour;
+    vec3 at = (srgb_encoded(colour) * (side - 1.0) + 0.5) / side;
+    return srgb_decoded(clamp(textureLod(grade_look, at, 0.0).rgb, 0.0, 1.0));
+}
+
 void grade_on_finish(in Pixel p, inout vec3 colour) {
     float brightness = max(dot(colour, grade_luminance), 0.0);
     float wanted = grade_grey * pow(max(brightness / grade_grey, 1e-6), grade_contrast);
     vec3 contrasted = colour * (wanted / max(brightness, grade_grey * 1e-6));
     contrasted = mix(vec3(wanted), contrasted, grade_saturation);
+    contrasted = grade_looked_up(clamp(contrasted, 0.0, 1.0));
     // 0 in the middle, 1 in the corners. cos^4 of a lens would depend on the field of view.
     vec2 off = 2.0 * p.at - 1.0;
     float corner = 0.5 * dot(off, off);

@@ -49,4 +49,6 @@ layout(std140, binding = 0) uniform Frame {
                               // whole steps of 2048 m; zw: from there to the eye [m]
     vec4 overlay_texels;        // of an overlay, for lib/overlay.glsl; xy: post of its first texel, zw: texels per post
     vec4 overlay_shape;          // xy: its last texel, z: levels, w: 1 where it is lit
+    float seconds;            // of effects that move [s]: --seconds, or the time that the window has been open
+    float time_of_year;       // 0 at the beginning of January, 1 at the end of December, UTC
 } frame;

@@ -86,7 +86,7 @@ TEST(PluginGuide, ItsRampIsOne) {
 
 TEST(PluginGuide, ItsClassesAreStepsAndEntries) {
     const Plugins plugins;
-    plugins.add("avalanche", "", block(guide(), "glsl avalanche.glsl"));
+    plugins.add("steepness", "", block(guide(), "glsl steepness.glsl"));
     const Registry registry = plugins.load();
     ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
     const std::vector<shader::ColourRamp> ramps = registry.effects()[0].ramps();

@@ -228,6 +228,15 @@ INSTANTIATE_TEST_SUITE_P(
             "2: glsl: plugins/haze/fog.glsl: no such file"},
         Bad{"GlslOutside", with(R"("glsl": ["../fog.glsl"])"),
             "2: glsl: expected a file of the plugin's own folder but got ../fog.glsl"},
+        Bad{"TableFile", with(R"("textures": {"curve": {"kind": "table"}})"),
+            "2: textures.curve: expected a \"file\" of the plugin, or a text \"from\""},
+        Bad{"RasterText", with(R"("textures": {"photo": {"kind": "raster", "from": "file"}})"),
+            "2: textures.photo: expected a text of \"texts\" with \"kind\": \"file\" but got "
+            "\"file\""},
+        Bad{"RasterValues",
+            with(
+                R"("textures": {"photo": {"kind": "raster", "from": "file", "holds": "values", "colours": "ramp"}})"),
+            "2: textures.photo.colours: expected it of a raster that holds colours only"},
         Bad{"Textures", with(R"("textures": [])"),
             "2: textures: expected an object of name and texture but got a list"},
         Bad{"TextureName", with(R"("textures": {"No": {}})"),
@@ -237,7 +246,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NoKind", texture(R"("file": "a.png")"),
             "2: textures.noise: expected a member \"kind\""},
         Bad{"BadKind", texture(R"("kind": "2darray")"),
-            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d but got \"2darray\"; did you "
+            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, table, cube, raster but got "
+            "\"2darray\"; "
+            "did you "
             "mean 2d-array?"},
         Bad{"NoFile", texture(R"("kind": "2d", "file": "b.png", "encoding": "srgb")"),
             "2: textures.noise.file: plugins/haze/b.png: no such file"},
@@ -265,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
-            "2: texts: expected a \"module\" too: only modules read texts"},
+            "2: texts: expected a \"module\", or data of \"textures\", that reads them"},
         Bad{"TextKind", text(R"("kind": "path")"),
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),

@@ -60,7 +60,14 @@ TEST(PluginSchema, HasTheLoadersKeys) {
         known_keys(R"("textures": {"a": {"kind": "3d", "file": "dust.glsl", "encoding": "srgb", )" +
                    unknown + "}}");
     texture.emplace_back("files");
-    EXPECT_THAT(keys(member(objects, "texture")), UnorderedElementsAreArray(texture));
+    EXPECT_THAT(keys(member(objects, "file_texture")), UnorderedElementsAreArray(texture));
+    EXPECT_THAT(keys(member(objects, "raster")),
+                UnorderedElementsAreArray(known_keys(
+                    R"("textures": {"a": {"kind": "raster", "from": "file", )" + unknown + "}}")));
+    EXPECT_THAT(
+        keys(member(objects, "table")),
+        UnorderedElementsAreArray(known_keys(
+            R"("textures": {"a": {"kind": "table", "file": "dust.glsl", )" + unknown + "}}")));
 }
 
 }  // namespace

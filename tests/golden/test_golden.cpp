@@ -37,6 +37,9 @@ std::vector<Scene> read_scenes() {
         scene.arguments = json["views"][entry["view"].get<std::string>()];
         const std::vector<std::string> more = entry.value("more", std::vector<std::string>{});
         scene.arguments.insert(scene.arguments.end(), more.begin(), more.end());
+        for (std::string& argument : scene.arguments)
+            if (const std::size_t at = argument.find("DEM"); at != std::string::npos)
+                argument.replace(at, 3, bundled_dem());
         scenes.push_back(std::move(scene));
     }
     return scenes;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
@@ -19,6 +21,10 @@ namespace {
 #define SKIP_WITHOUT_PLUGIN(id)                                    \
     if (!std::filesystem::exists(source_dir() / "plugins" / (id))) \
     GTEST_SKIP() << "the plugin " << (id) << " is not there"
+
+/// Effects that leave the bundled DEM as it is: they paint voids, or what a file has that users
+/// name.
+const std::set<std::string> kSilent{"blank", "drape", "infill"};
 
 class Toggles : public testing::Test {
   protected:
@@ -109,12 +115,46 @@ TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
         for (std::size_t j = i + 1; j < ids.size(); ++j) {
             const Result run = take("pair.png", {"--only", ids[i] + "," + ids[j]});
             EXPECT_EQ(run.status, 0) << ids[i] << " and " << ids[j] << ": " << run.err;
-            // These two paint voids alone, and this DEM has none.
-            if (ids[i] == "blank" && ids[j] == "infill") continue;
+            if (kSilent.contains(ids[i]) && kSilent.contains(ids[j])) continue;
             const image::Image8 pair = picture("pair.png");
             EXPECT_GT(image::compare(pair, none).worst, 1) << ids[i] << " and " << ids[j];
         }
     }
+}
+
+/// The files of a folder with their texts.
+std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> texts;
+    for (const auto& file : std::filesystem::directory_iterator(folder))
+        texts[file.path().filename().string()] = read_text(file.path(), "test");
+    return texts;
+}
+
+TEST_F(Toggles, FiftyInstalledPluginsThatAreOffChangeNothing) {
+    const std::string plugins = (dir_ / "fifty").string();
+    const std::array copied{"haze", "bloom", "contours", "tint", "cover"};
+    for (std::size_t i = 0; i < 50; ++i) {
+        const std::string id = fmt::format("{}{}", copied[i % copied.size()], i);
+        ASSERT_EQ(
+            relevo({"plugins", "new", id, "--from", copied[i % copied.size()], "--into", plugins})
+                .status,
+            0);
+    }
+    const auto take_with = [&](const std::string& name, const std::string& path) {
+        return measured({"-q", "capture", bundled_dem(), "-o", (dir_ / (name + ".png")).string(),
+                         "--size", "96x64", "--overwrite", "--time", "2026-06-21T18:30-04:00",
+                         "--dump-shaders", (dir_ / name).string(), "--plugin-path", path});
+    };
+    std::filesystem::create_directories(dir_ / "empty");
+    const Measured none = take_with("with_none", (dir_ / "empty").string()),
+                   fifty = take_with("with_fifty", plugins);
+    ASSERT_EQ(none.run.status, 0) << none.run.err;
+    ASSERT_EQ(fifty.run.status, 0) << fifty.run.err;
+    EXPECT_EQ(files_of(dir_ / "with_fifty"), files_of(dir_ / "with_none"));
+    EXPECT_EQ(image::compare(picture("with_fifty.png"), picture("with_none.png")).worst, 0);
+    fmt::print("[ plugins ] 50 that are off: {:+.0f} ms of processor, {:+} MiB\n",
+               1000 * (fifty.processor_s - none.processor_s), fifty.peak_mib - none.peak_mib);
+    EXPECT_LE(fifty.peak_mib, none.peak_mib + 16);
 }
 
 TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {

@@ -149,11 +149,12 @@ INSTANTIATE_TEST_SUITE_P(
                    "is KTX version 1, expected version 2; convert it with ktx2ktx2"},
         BrokenFile{"format",
                    12,
-                   {109},
-                   "texel format 109, expected one of 9 (VK_FORMAT_R8_UNORM), 16 "
+                   {108},
+                   "texel format 108, expected one of 9 (VK_FORMAT_R8_UNORM), 16 "
                    "(VK_FORMAT_R8G8_UNORM), 37 (VK_FORMAT_R8G8B8A8_UNORM), 43 "
                    "(VK_FORMAT_R8G8B8A8_SRGB), 70 (VK_FORMAT_R16_UNORM), 97 "
-                   "(VK_FORMAT_R16G16B16A16_SFLOAT)"},
+                   "(VK_FORMAT_R16G16B16A16_SFLOAT), 100 (VK_FORMAT_R32_SFLOAT), 109 "
+                   "(VK_FORMAT_R32G32B32A32_SFLOAT)"},
         BrokenFile{
             "type_size", 16, {2}, "type size of VK_FORMAT_R8G8B8A8_UNORM, expected 1 but got 2"},
         BrokenFile{"width", 20, {0}, "size 0 x 4 x 0, expected 1 to 32768 a side"},

@@ -101,16 +101,22 @@ struct Found {
 
 /// The shift that explains best how drawn colours differ from the reference, by its gradients.
 /// @param dem    over which the photo lies
-/// @param px_m   a pixel of the photo on the ground
+/// @param px_m       a pixel of the photo on the ground
+/// @param as_effect  drawn by the effect drape instead of as an overlay
 Found off_the_reference(const std::string& dem, const std::string& photo,
-                        const Reference& reference, double px_m) {
+                        const Reference& reference, double px_m, bool as_effect) {
     constexpr int kSide = 256;
     scene::Scene scene;
     scene.dems = {dem};
     scene.time.at = "2026-06-21T18:00Z";
     scene.effects.switches.only = std::vector<std::string>{};
     scene.width_px = scene.height_px = kSide;
-    scene.overlay = scene::Overlay{.file = photo};
+    if (as_effect) {
+        scene.effects.switches.only = std::vector<std::string>{"drape"};
+        scene.effects.settings = {{"drape.file", photo}, {"drape.light", "flat"}};
+    } else {
+        scene.overlay = scene::Overlay{.file = photo};
+    }
     geo::Geodetic eye = reference.place(reference.middle());
     // A pixel of the photo has two of the picture.
     eye.height_m = 2000 + 0.5 * kSide * px_m / (2 * std::tan(radians(10)));
@@ -168,13 +174,15 @@ TEST_P(PhotoOnGround, LiesWhereGdalsWarpPutsIt) {
     const Reference reference(photo);
     const std::string other = warped(
         photo, "other.tif", {"-t_srs", pair.other_crs, "-r", "cubic", "-dstalpha", "-overwrite"});
-    for (const std::string& file : {photo, other}) {
-        const Found found = off_the_reference(dem, file, reference, pair.px_m);
-        fmt::print("[ accuracy ] {}: shift {:.3f} px, colours {:.1f} of 255\n",
-                   fs::path(file).filename().string(), found.shift_px, found.mean_off);
-        EXPECT_LT(found.shift_px, 0.3) << file;
-        EXPECT_LT(found.mean_off, 12) << file;
-    }
+    for (const std::string& file : {photo, other})
+        for (const bool as_effect : {false, true}) {
+            const Found found = off_the_reference(dem, file, reference, pair.px_m, as_effect);
+            fmt::print("[ accuracy ] {}, {}: shift {:.3f} px, colours {:.1f} of 255\n",
+                       fs::path(file).filename().string(), as_effect ? "drape" : "overlay",
+                       found.shift_px, found.mean_off);
+            EXPECT_LT(found.shift_px, 0.3) << file;
+            EXPECT_LT(found.mean_off, 12) << file;
+        }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,0 +1,165 @@
+// Rasters that users choose for effects: by file, over the ground, changed and mistaken.
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dem/fixture.h"
+#include "dem/source.h"
+#include "session/session.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+std::string jacksboro() {
+    return (test::source_dir() / "data/dem/jacksboro.tif").string();
+}
+
+/// A raster over the bundled DEM, of 40 x 40 pixels.
+std::string write_over(const std::string& name, test::Raster raster) {
+    const dem::Grid dem = dem::Source::open(jacksboro()).grid();
+    const dem::Affine& a = dem.affine();
+    const double x = a.x_column * dem.columns() / 40, y = a.y_row * dem.rows() / 40;
+    raster.columns = raster.rows = 40;
+    raster.geotransform = {{a.x0 - 0.5 * a.x_column, x, 0, a.y0 - 0.5 * a.y_row, 0, y}};
+    raster.crs = dem.crs().text();
+    return test::write_raster(test::folder() / name, raster);
+}
+
+/// Bytes of one colour.
+std::string write_photo(const std::string& name, int grey) {
+    return write_over(name, {.type = "Byte",
+                             .bands = 3,
+                             .value = [=](int, int, int) { return double(grey); },
+                             .pictures = true});
+}
+
+scene::Scene from_above(const std::string& effect) {
+    scene::Scene scene;
+    scene.dems = {jacksboro()};
+    scene.time.at = "2026-06-21T17:30Z";
+    scene.effects.switches.only = std::vector<std::string>{effect};
+    scene.width_px = 160;
+    scene.height_px = 128;
+    scene.view.orbit = {180, 89.9, 1};
+    return scene;
+}
+
+scene::Scene draped(const std::string& file) {
+    scene::Scene scene = from_above("drape");
+    scene.effects.settings = {{"drape.file", file}, {"drape.light", "flat"}};
+    return scene;
+}
+
+class EffectRasters : public testing::Test {
+  protected:
+    Session& open(const scene::Scene& scene) {
+        session_ = std::make_unique<Session>(scene, Options{.device = "software"}, files_);
+        session_->draw();
+        return *session_;
+    }
+    int middle() {
+        session_->draw();
+        return session_->picture().at(80, 64, 0);
+    }
+    FilesInUse files_;
+    std::unique_ptr<Session> session_;
+};
+
+TEST_F(EffectRasters, AreDrawnAndChangedAndSwitchedOffAndOn) {
+    Session& session = open(draped(write_photo("dark.tif", 50)));
+    EXPECT_NEAR(middle(), 50, 1);
+    scene::Effects other = draped(write_photo("light.tif", 200)).effects;
+    session.set_effects(other);
+    EXPECT_NEAR(middle(), 200, 1);
+    scene::Effects off = other;
+    off.switches.only = std::vector<std::string>{};
+    session.set_effects(off);
+    EXPECT_LT(middle(), 190);
+    session.set_effects(other);
+    EXPECT_NEAR(middle(), 200, 1);
+}
+
+TEST_F(EffectRasters, AMistakeLeavesThePictureAsItWas) {
+    Session& session = open(draped(write_photo("dark.tif", 50)));
+    EXPECT_THAT(
+        test::error_of([&] { session.set_effects(draped("/nowhere/photo.tif").effects); }),
+        testing::AllOf(testing::StartsWith("exit 3"), testing::HasSubstr("/nowhere/photo.tif")));
+    EXPECT_NEAR(middle(), 50, 1);
+}
+
+TEST_F(EffectRasters, AChangedFileIsReadAgain) {
+    const scene::Scene scene = draped(write_photo("photo.tif", 50));
+    Session& session = open(scene);
+    EXPECT_NEAR(middle(), 50, 1);
+    std::filesystem::rename(write_photo("new.tif", 120), scene.effects.settings[0].text);
+    session.set_effects(scene.effects);
+    EXPECT_NEAR(middle(), 120, 1);
+}
+
+TEST_F(EffectRasters, WithoutAFileNothingIsDrawn) {
+    open(draped(""));
+    const image::Image8 found = session_->picture();
+    scene::Scene bare = from_above("drape");
+    bare.effects.switches.only = std::vector<std::string>{};
+    open(bare);
+    EXPECT_EQ(found.values, session_->picture().values);
+}
+
+TEST_F(EffectRasters, OneBandIsDrawnInColoursWithALegend) {
+    const std::string file = write_over(
+        "band.tif", {.type = "Float32", .value = [](int column, int, int) { return column; }});
+    scene::Scene scene = draped(file);
+    scene.effects.settings.push_back({"drape.colours", "grey"});
+    Session& session = open(scene);
+    const image::Image8 picture = session.picture();
+    EXPECT_GT(picture.at(100, 64, 0), picture.at(60, 64, 0) + 20);
+    ASSERT_EQ(session.legends().size(), 1U);
+    EXPECT_EQ(session.legends()[0].title, "band.tif");
+}
+
+/// An effect that draws values in grey: 100 and where there is none black.
+std::string write_effect() {
+    const std::filesystem::path folder = test::folder() / "gauge";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json") << R"({
+"format": 1, "id": "gauge", "name": "Gauge", "version": "1",
+"textures": {"depth": {"kind": "raster", "from": "file", "holds": "values"}},
+"texts": {"file": {"kind": "file"}}})";
+    std::ofstream(folder / "gauge.glsl") << R"(
+void gauge_on_display(in Surface s, inout vec4 overlay) {
+    vec2 depth = gauge_depth(s);
+    overlay = vec4(vec3(depth.x / 255.0), 1.0);
+    if (depth.y < 0.5) overlay = vec4(0.0, 0.0, 0.0, 1.0);
+}
+)";
+    return folder.string();
+}
+
+TEST_F(EffectRasters, ValuesAreThoseOfTheFileAndKnowWhereThereIsNone) {
+    const std::string file = write_over(
+        "depth.tif", {.type = "Float32", .nodata = -9999.0, .value = [](int column, int, int) {
+                          return column < 20 ? -9999.0 : 100.0;
+                      }});
+    scene::Scene scene = from_above("gauge");
+    scene.effects.plugin_path = {write_effect()};
+    scene.effects.settings = {{"gauge.file", file}};
+    const image::Image8 picture = open(scene).picture();
+    for (int y = 40; y < 88; ++y) {
+        EXPECT_EQ(picture.at(60, y, 0), 0);
+        EXPECT_EQ(picture.at(110, y, 0), 100);
+    }
+}
+
+TEST_F(EffectRasters, AreInputsThatNoOutputReplaces) {
+    const std::string file = write_photo("photo.tif", 50);
+    open(draped(file));
+    EXPECT_THAT(test::error_of([&] { files_.check_planned({file}, "--output"); }),
+                testing::HasSubstr("photo.tif"));
+}
+
+}  // namespace
+}  // namespace relevo::session
