@@ -18,6 +18,9 @@ layout(location = 0) out vec4 light_out;
 #ifdef DISPLAY_OVERLAY
 layout(location = 1) out vec4 overlay_out;
 #endif
+#ifdef SURFACE_OUTPUT
+layout(location = SURFACE_OUTPUT) out vec4 surface_out;
+#endif
 
 void main() {
     Surface s;
@@ -60,5 +63,8 @@ void main() {
 #endif
 #ifdef DISPLAY_OVERLAY
     overlay_out = vec4(0.0);
+#endif
+#ifdef SURFACE_OUTPUT
+    surface_out = vec4(0.0);
 #endif
 }

@@ -1,6 +1,7 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     gbuffer (geometry.frag.glsl), normal pages
-//! writes    with AUDITED what the point is and how much of the sun is drawn there (render::SunSeen);
+//! writes    with SURFACE_OUTPUT the normal and the visible part of the sun, for passes of plugins;
+//!           with AUDITED what the point is and how much of the sun is drawn there (render::SunSeen);
 //!           with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
@@ -23,6 +24,9 @@ uniform sampler2DArray normal_pages;  // rg: east and north part of the unit nor
 layout(location = 0) out vec4 light_out;
 #ifdef DISPLAY_OVERLAY
 layout(location = 1) out vec4 overlay_out;
+#endif
+#ifdef SURFACE_OUTPUT
+layout(location = SURFACE_OUTPUT) out vec4 surface_out;
 #endif
 #ifdef AUDITED
 layout(location = AUDITED) out vec4 audit_out;
@@ -146,6 +150,11 @@ void main() {
     hook_visibility(s, to_sun, seen);
     bool faces = dot(s.geometric_normal, to_sun) > 0.0;
     audit_out = vec4(s.post, surface_moved_up_m(s) == 0.0 ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
+#endif
+#ifdef SURFACE_OUTPUT
+    float visible = 1.0;
+    hook_visibility(s, to_sun, visible);
+    surface_out = vec4(s.normal, visible);
 #endif
     hook_visibility(s, to_sun, lit);
     // The part of the sky that a slope sees, of the light on level ground.

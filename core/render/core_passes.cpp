@@ -62,6 +62,7 @@ class Declaration {
             end_defines_.push_back({"SHOWN", ""});
         else if (facts.overlays)
             end_defines_.push_back({"DISPLAY_OVERLAY", ""});
+        if (facts.surface) end_defines_.push_back({kSurfaceDefine, has_overlay() ? "2" : "1"});
     }
 
     CoreFrame run() {
@@ -111,6 +112,8 @@ class Declaration {
             add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});
         if (facts_.radiance && facts_.overlays)
             add(Resource{.name = "overlay", .format = RGBA8, .linear = true});
+        if (facts_.surface)
+            add(Resource{.name = kSurfaceTexture, .format = RGBA16F, .linear = true});
         if (facts_.audited)
             add(Resource{.name = "sun_seen", .format = RGBA32F, .linear = true, .output = true});
         if (facts_.antialias) {
@@ -237,12 +240,15 @@ class Declaration {
         ground_defines(recipe);
         if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
-        if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
+        if (facts_.audited)
+            recipe.defines.push_back(
+                {kAuditedDefine, std::to_string(1 + has_overlay() + facts_.surface)});
         Pass pass{.name = "terrain",
                   .program = program("terrain", recipe, outside_word()),
                   .colours = {{shaded_}},
                   .depth = Depth{"depth@geometry", DepthTest::Covered}};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
+        if (facts_.surface) pass.colours.push_back({kSurfaceTexture, kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
         add(std::move(pass));
     }
@@ -261,6 +267,7 @@ class Declaration {
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
                   }};
         if (has_overlay()) pass.colours.push_back({.resource = "overlay", .updates = true});
+        if (facts_.surface) pass.colours.push_back({.resource = kSurfaceTexture, .updates = true});
         add(std::move(pass));
     }
 

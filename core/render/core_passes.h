@@ -22,6 +22,11 @@ inline constexpr const char* kOutsideWord = "outside";
 inline constexpr const char* kHeightStepsTexture = "height_steps";
 inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
 
+/// What passes of plugins read of the shaded ground, and the define with the number of the output.
+/// Present if a plugin reads it.
+inline constexpr const char* kSurfaceTexture = "surface";
+inline constexpr const char* kSurfaceDefine = "SURFACE_OUTPUT";
+
 /// Define with the number of the output for audits.
 inline constexpr const char* kAuditedDefine = "AUDITED";
 
@@ -35,6 +40,7 @@ struct FrameFacts {
     bool pixel_hooks = false;            ///< effects have the hook image, finish or overlay
     bool overlays = false;               ///< effects or a raster draw over the tone-mapped ground
     bool overlay_raster = false;         ///< the ground has an overlay: Terrain::set_overlay
+    bool surface = false;                ///< plugins read core.normal or core.shadow
     bool audited = false;                ///< the terrain pass also writes the data of SunSeen
     bool vertex_normals = false;         ///< computed per vertex, not per fragment
     bool displaced = false;              ///< effects displace the ground

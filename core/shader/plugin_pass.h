@@ -42,6 +42,8 @@ inline constexpr std::array kCoreTextures{
     CoreTexture{"core.radiance", "radiance"},            // of all pixels: linear, exposed
     CoreTexture{"core.depth", "depth"},                  // of ground and walls
     CoreTexture{"core.ground_depth", "depth@geometry"},  // of ground, before it is shaded
+    CoreTexture{"core.normal", "surface"},               // rgb: Surface::normal of ground
+    CoreTexture{"core.shadow", "surface"},               // a: visible part of the sun on ground
 };
 
 }  // namespace relevo::shader

@@ -540,7 +540,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"NothingOfCores", "",
                  "uniform sampler2D haze_map; //@ from(core.colour)\n" + kHook,
                  "plugin: plugins/haze/haze.glsl:1: haze_map: expected one of core.radiance, "
-                 "core.depth, core.ground_depth but got core.colour"},
+                 "core.depth, core.ground_depth, core.normal, core.shadow but got core.colour"},
         Mismatch{"HookInTwoFiles", R"("glsl": ["more.glsl", "haze.glsl"])", "\n" + kHook,
                  "plugin: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
                  "plugins/haze/more.glsl:1"}),

@@ -353,12 +353,13 @@ TEST(Graph, OutputsAndWhatIsKeptShareNoMemory) {
 }
 
 TEST(CorePasses, AreAGraphWhateverAFrameHas) {
-    for (int bits = 0; bits < 1 << 9; ++bits) {
+    for (int bits = 0; bits < 1 << 10; ++bits) {
         const auto is = [&](int bit) { return (bits >> bit & 1) != 0; };
         FrameFacts facts{.outside = is(0),
                          .radiance = is(1),
                          .antialias = is(2),
                          .overlays = is(3),
+                         .surface = is(9),
                          .audited = is(4),
                          .displaced = is(5),
                          .height_steps = is(6),

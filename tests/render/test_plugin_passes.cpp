@@ -88,6 +88,48 @@ TEST(PluginPass, DepthOfTheGroundIsThereBeforeItIsShaded) {
     EXPECT_GT(ground, 100);
 }
 
+TEST(PluginPass, NormalAndVisibleSunOfTheGroundAreThereAfterShading) {
+    for (const bool with_overlay : {false, true}) {
+        test::Drawn drawn(
+            bundled(), {}, 64, 48, 0,
+            {written("probe", R"({"copy": {"format": "rgba32f", "filter": "nearest"}})",
+                     std::string("uniform sampler2D probe_normal; //@ from(core.normal)\n"
+                                 "uniform sampler2D probe_sun; //@ from(core.shadow)\n"
+                                 "uniform sampler2D probe_copy;\n"
+                                 "vec4 probe_pass_copy(in Texel t) {\n"
+                                 "    return vec4(texture(probe_normal, t.at).rgb,\n"
+                                 "                texture(probe_sun, t.at).a);\n"
+                                 "}\n"
+                                 "void probe_on_normal(inout Surface s) {\n"
+                                 "    s.normal = vec3(0.0, 0.6, 0.8);\n"
+                                 "}\n"
+                                 "void probe_on_visibility(in Surface s, in vec3 to_sun,\n"
+                                 "                         inout float factor) {\n"
+                                 "    factor *= 0.25;\n"
+                                 "}\n"
+                                 "void probe_on_image(in Pixel p, inout vec3 radiance) {\n"
+                                 "    vec4 copy = texelFetch(probe_copy, ivec2(p.at_px), 0);\n"
+                                 "    radiance = vec3(copy.y, copy.w, 1.0);\n"
+                                 "}\n") +
+                         (with_overlay ? "void probe_on_display(in Surface s, inout vec4 over) {}\n"
+                                       : ""))});
+        look_ahead(drawn);
+        drawn.radiance();
+        // What the hook has made of the radiance is seen in the picture alone.
+        const image::Image8 picture = drawn.renderer().read_output();
+        const auto value = [&](int x, int y, int c) { return int{picture.at(x, y, c)}; };
+        EXPECT_EQ(value(32, 2, 0), 0) << "no normal in the sky";
+        EXPECT_EQ(value(32, 2, 1), 0);
+        const int normal = value(32, 46, 0), sun = value(32, 46, 1);
+        EXPECT_GT(normal, sun);
+        EXPECT_GT(sun, 20);
+        for (int x = 4; x < 60; ++x) {
+            EXPECT_EQ(value(x, 46, 0), normal);
+            EXPECT_EQ(value(x, 46, 1), sun);
+        }
+    }
+}
+
 TEST(PluginPass, RunsWhenWhatItDependsOnHasChanged) {
     const auto stored = [](const std::string& id, const std::string& when) {
         return written(id,
