@@ -20,14 +20,14 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 49> kReserved = {
-    "all",       "antialias", "backdrop", "background", "camera",   "climate", "colour",
-    "copy",      "core",      "data",     "depth",      "east",     "edges",   "floor",
-    "footprint", "frame",     "gbuffer",  "geometry",   "gl",       "ground",  "height",
-    "hook",      "light",     "load",     "net",        "none",     "normal",  "overlay",
-    "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
-    "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
-    "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
+constexpr std::array<std::string_view, 50> kReserved = {
+    "all",     "antialias", "backdrop", "background", "camera",  "climate", "colour",    "copy",
+    "core",    "data",      "depth",    "east",       "edges",   "floor",   "footprint", "frame",
+    "gbuffer", "geometry",  "gl",       "ground",     "height",  "hook",    "light",     "lines",
+    "load",    "net",       "none",     "normal",     "overlay", "page",    "pixel",     "place",
+    "post",    "scene",     "screen",   "select",     "side",    "slope",   "srgb",      "steps",
+    "store",   "stored",    "sun",      "surface",    "tangent", "terrain", "up",        "varyings",
+    "vertex",  "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
@@ -201,7 +201,11 @@ class ManifestReader {
     void textures(json::ObjectReader& object) {
         named(object, "textures", "texture",
               [&](const std::string& name, const json::Value& value) {
-                  manifest_.textures.push_back(texture(name, value));
+                  if (is_lines(value))
+                      manifest_.lines.push_back(
+                          read_lines_spec(manifest_.file.string(), manifest_.id, name, value));
+                  else
+                      manifest_.textures.push_back(texture(name, value));
               });
     }
 
@@ -211,7 +215,8 @@ class ManifestReader {
         spec.name = name;
         spec.resource = manifest_.id + '.' + name;
         spec.line = value.line;
-        spec.kind = static_cast<TextureSpec::Kind>(object.choice("kind", {"2d", "2d-array", "3d"}));
+        spec.kind = static_cast<TextureSpec::Kind>(
+            object.choice("kind", {"2d", "2d-array", "3d", "lines"}));
         if (spec.kind == TextureSpec::Kind::D2Array) {
             for (const std::string& file : object.strings("files"))
                 spec.files.push_back(data_file(object, "files", file));
@@ -305,9 +310,12 @@ class ManifestReader {
         named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
-        if (manifest_.module.empty() && !manifest_.texts.empty())
+        for (const LinesSpec& lines : manifest_.lines)
+            check_lines_spec(manifest_.file.string(), manifest_.id, lines, manifest_.texts);
+        if (manifest_.module.empty() && manifest_.lines.empty() && !manifest_.texts.empty())
             object.fail(object.line_of("texts"), "texts",
-                        "expected a \"module\" too: only modules read texts");
+                        "expected a \"module\" too, or a texture of kind \"lines\": nothing else "
+                        "reads texts");
     }
 
     shader::TextParam text(const std::string& name, const json::Value& value) {

@@ -1,0 +1,183 @@
+//! provides  lines_near: the nearest line of a texture of kind `lines`, on the ground and in the picture
+//! reads     gbuffer: depths of the pixels around
+//! source    core/render/line_index.h has the layout of the texture, and how exact it is
+//!
+//! A sampler of such a texture is the first argument: `uniform sampler2D tracks_way;`.
+
+//@ include lib/ground.glsl
+//@ include lib/pages.glsl
+//@ include lib/pixel.glsl
+
+const float lines_none = 1e9;         // distance where no line is known
+const float lines_no_value = -1e30;   // attribute of a line that has none
+const int lines_most = 255;           // segments of a cell
+
+/// The lines around a point. Distances up to the reach that was asked for are exact; greater ones only
+/// say that they are greater.
+struct LineHit {
+    float pixels;   // to the line that is nearest in the picture [px]
+    float along_m;  // of the nearest point of that line, from its start [m]
+    float value;    // its attribute, or lines_no_value
+    int line;       // its number in the file, from 0; -1: none
+    float metres;   // to the line that is nearest on the ground [m]
+    float step_m;   // how `metres` changes over a pixel [m/px]
+    float along_step_m;  // how `along_m` changes over a pixel [m/px]
+};
+
+/// A place on the DEM, exact also where posts are many metres wide.
+struct LinesPlace {
+    vec2 whole;  // column and row [posts], whole parts
+    vec2 rest;   // what is missing of them
+};
+
+vec4 lines_texel(in sampler2D lines, in int address) {
+    return texelFetch(lines, ivec2(address & 4095, address >> 12), 0);
+}
+
+/// East and north parts of a step, at the height of the ellipsoid.
+vec2 lines_level(in vec3 step_m, in vec3 up, in float height_m) {
+    const float earth_m = 6371000.0;
+    vec3 east = east_at(up);
+    return vec2(dot(step_m, east), dot(step_m, cross(up, east))) * (earth_m / (earth_m + height_m));
+}
+
+/// Height above the ellipsoid as drawn [m].
+float lines_height(in Surface s) {
+    return frame.eye_m.w + dot(s.position_m, frame.eye_up.xyz);
+}
+
+/// Near the eye a point has its place from there: floats of posts are too coarse for its pixels.
+LinesPlace lines_place(in Surface s) {
+    const float near_m = 2000.0;    // on flat axes: off by 0.3 m at the end, where a pixel is larger
+    const float ulps = 64.0;        // of a post, less than a pixel
+    LinesPlace place = LinesPlace(floor(s.post), fract(s.post));
+    bool known = dot(frame.eye_axes, frame.eye_axes) > 0.0;
+    if (known && s.distance_m < near_m && s.pixel_posts < ulps * 1.2e-7 * max(s.post.x, s.post.y)) {
+        vec2 level = lines_level(s.position_m, frame.eye_up.xyz, lines_height(s));
+        place.whole = frame.eye_post.xy;
+        place.rest = frame.eye_post.zw + level.x * frame.eye_axes.xy + level.y * frame.eye_axes.zw;
+    }
+    return place;
+}
+
+/// How 1 / depth changes to the next pixel of an axis. It is linear over a plane in the picture. Of both
+/// sides the one that changes less is on the same ground.
+float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here) {
+    float steps[2];
+    for (int i = 0; i < 2; ++i) {
+        ivec2 next = pixel + (1 - 2 * i) * axis;
+        bool inside = all(greaterThanEqual(next, ivec2(0))) && all(lessThan(vec2(next), frame.viewport.xy));
+        float depth = inside ? uintBitsToFloat(texelFetch(gbuffer, next, 0).w) : 0.0;
+        steps[i] = depth > 0.0 ? (1.0 / depth - here) * float(1 - 2 * i) : 1e9;
+    }
+    float step_1_m = abs(steps[0]) < abs(steps[1]) ? steps[0] : steps[1];
+    return abs(step_1_m) < 1e8 ? step_1_m : 0.0;
+}
+
+/// Steps on the ground to the next pixel right and up, east and north [m/px].
+mat2 lines_pixel_step(in Surface s) {
+    vec3 ray = pixel_ray_at(gl_FragCoord.xy);
+    float depth = s.distance_m / length(ray);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth);
+    float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth);
+    float height_m = lines_height(s);
+    return mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
+                lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
+}
+
+/// Inverse of a step, large where the ground is seen from its edge.
+mat2 lines_to_pixels(in mat2 step_m) {
+    float area = step_m[0].x * step_m[1].y - step_m[0].y * step_m[1].x;
+    float least = 1e-6 * dot(step_m[0], step_m[0]) + 1e-6 * dot(step_m[1], step_m[1]) + 1e-20;
+    area = area < 0.0 ? min(area, -least) : max(area, least);
+    return mat2(step_m[1].y, -step_m[0].y, -step_m[1].x, step_m[0].x) * (1.0 / area);
+}
+
+/// Place relative to a corner that is stored as whole parts and fractions [posts].
+vec2 lines_from(in LinesPlace place, in vec4 corner) {
+    return (place.whole - corner.xy) + (place.rest - corner.zw);
+}
+
+/// Address of the node whose cell is as wide as a level asks for, or wider; 0: no lines.
+int lines_node(in sampler2D lines, in LinesPlace place, in int level) {
+    vec4 head = lines_texel(lines, 0);
+    int top = int(head.x), base = int(head.y);
+    int table = clamp(level, base, top);
+    vec4 corner = lines_texel(lines, 1 + 2 * (top - table));
+    vec4 size = lines_texel(lines, 2 + 2 * (top - table));
+    vec2 cell = floor(lines_from(place, corner) * exp2(-float(table)));
+    if (any(lessThan(cell, vec2(0.0))) || any(greaterThanEqual(cell, size.xy))) return 0;
+    int node = int(lines_texel(lines, int(size.z) + int(cell.y) * int(size.x) + int(cell.x)).x);
+    for (int i = 0; i < 40; ++i) {
+        vec4 about = lines_texel(lines, node);
+        if (node == 0 || about.y > 0.0 || int(about.z) <= level) break;
+        vec2 half_cell = lines_from(place, lines_texel(lines, node + 1)) * exp2(1.0 - about.z);
+        vec4 finer = lines_texel(lines, node + 3);
+        vec2 row = half_cell.y < 1.0 ? finer.xy : finer.zw;
+        node = int(half_cell.x < 1.0 ? row.x : row.y);
+    }
+    return node;
+}
+
+/// From the origin to the nearest point of a segment. @param at  fraction of the segment
+vec2 lines_segment(in vec2 a, in vec2 b, out float at) {
+    vec2 along = b - a;
+    at = clamp(-dot(a, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
+    return a + at * along;
+}
+
+/// The lines of a node around a place.
+/// @param step_m  lines_pixel_step()
+LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in mat2 step_m) {
+    mat2 to_pixels = lines_to_pixels(step_m);
+    vec4 metric = lines_texel(lines, node + 2);
+    mat2 metres = mat2(metric.xy, metric.zw);
+    vec2 here = lines_from(place, lines_texel(lines, node + 1));
+    int count = int(lines_texel(lines, node).x), first = node + 4, nearest = 0;
+    float pixels = lines_none * lines_none, on_ground = pixels, nearest_at = 0.0, at;
+    vec2 towards = vec2(0.0);
+    for (int i = 0; i < lines_most; ++i) {
+        if (i >= count) break;
+        vec4 ends = lines_texel(lines, first + i);
+        vec2 a = metres * (ends.xy - here), b = metres * (ends.zw - here);
+        vec2 ground = lines_segment(a, b, at);
+        if (dot(ground, ground) < on_ground) {
+            on_ground = dot(ground, ground);
+            towards = ground;
+        }
+        vec2 drawn = lines_segment(to_pixels * a, to_pixels * b, at);
+        if (dot(drawn, drawn) < pixels) {
+            pixels = dot(drawn, drawn);
+            nearest = i;
+            nearest_at = at;
+        }
+    }
+    vec4 ends = lines_texel(lines, first + nearest);
+    vec4 two = lines_texel(lines, first + count + nearest / 2);
+    vec2 along = (nearest & 1) == 0 ? two.xy : two.zw;
+    float lines_at = lines_texel(lines, 0).w;
+    float across_m = length((towards / max(sqrt(on_ground), 1e-12)) * step_m);
+    vec2 way = metres * (ends.zw - ends.xy);
+    float length_m = max(length(way), 1e-9);
+    return LineHit(sqrt(pixels), along.x + nearest_at * length_m,
+                   lines_texel(lines, int(lines_at + along.y)).x, int(along.y), sqrt(on_ground),
+                   max(across_m, 1e-9), max(length((way / length_m) * step_m), 1e-9));
+}
+
+/// The same as lines_near() for a place, and the steps of its pixel.
+LineHit lines_search(in sampler2D lines, in LinesPlace place, in mat2 step_m, in float reach_px, in float reach_m) {
+    vec4 head = lines_texel(lines, 0);
+    float longest_m = sqrt(dot(step_m[0], step_m[0]) + dot(step_m[1], step_m[1]));
+    // The list of a cell is complete up to half its side.
+    float side = 2.0 * max(reach_px * longest_m, reach_m) / head.z;
+    int node = head.x < head.y ? 0 : lines_node(lines, place, int(ceil(log2(max(side, 1e-9)))));
+    if (node == 0) return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
+    return lines_in_node(lines, node, place, step_m);
+}
+
+/// The nearest line of a texture of kind `lines`.
+/// @param reach_px, reach_m  how far lines are searched, the farther of both. The smaller, the faster
+LineHit lines_near(in sampler2D lines, in Surface s, in float reach_px, in float reach_m) {
+    return lines_search(lines, lines_place(s), lines_pixel_step(s), reach_px, reach_m);
+}
