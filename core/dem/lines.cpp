@@ -95,8 +95,8 @@ class LineReader {
         const std::string_view driver =
             GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get()));
         const std::string name = OGR_L_GetName(layer);
-        // Its other layers are the vertices of these, and waypoints.
-        if (driver == "GPX" && name != "tracks" && name != "routes") return;
+        // Layers of vertices, and of waypoints.
+        if (driver == "GPX" && name.ends_with("points")) return;
         OGR_L_ResetReading(layer);
         const GdalMessages messages;
         std::optional<LinesOver> over;

@@ -60,18 +60,24 @@ LinesPlace lines_place(in Surface s) {
     return place;
 }
 
+/// 1 / depth of a pixel [1/m]; 0 where it shows no ground.
+float lines_near_at(in ivec2 pixel) {
+    float depth = uintBitsToFloat(texelFetch(gbuffer, pixel, 0).w);
+    return depth > 0.0 ? 1.0 / depth : 0.0;
+}
+
 /// How 1 / depth changes to the next pixel of an axis. It is linear over a plane in the picture. Of both
-/// sides the one that changes less is on the same ground.
-float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here) {
-    float steps[2];
-    for (int i = 0; i < 2; ++i) {
-        ivec2 next = pixel + (1 - 2 * i) * axis;
-        bool inside = all(greaterThanEqual(next, ivec2(0))) && all(lessThan(vec2(next), frame.viewport.xy));
-        float depth = inside ? uintBitsToFloat(texelFetch(gbuffer, next, 0).w) : 0.0;
-        steps[i] = depth > 0.0 ? (1.0 / depth - here) * float(1 - 2 * i) : 1e9;
-    }
-    float step_1_m = abs(steps[0]) < abs(steps[1]) ? steps[0] : steps[1];
-    return abs(step_1_m) < 1e8 ? step_1_m : 0.0;
+/// sides the one that changes less is on the same ground, unless that is a pixel wide.
+/// @param plane  what the DEM's normal gives, which is less exact
+float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here, in float plane) {
+    const float most = 4.0;  // times `plane`
+    ivec2 last = ivec2(frame.viewport.xy) - 1;
+    ivec2 before = max(pixel - axis, ivec2(0)), after = min(pixel + axis, last);
+    float down = here - lines_near_at(before), up = lines_near_at(after) - here;
+    if (before == pixel) down = up;  // at the edge of the picture
+    if (after == pixel) up = down;
+    float limit = most * (abs(plane) + here * length(frame.pixel_ray_dx.xyz));
+    return clamp(abs(up) < abs(down) ? up : down, -limit, limit);
 }
 
 /// Steps on the ground to the next pixel right and up, east and north [m/px].
@@ -79,8 +85,9 @@ mat2 lines_pixel_step(in Surface s) {
     vec3 ray = pixel_ray_at(gl_FragCoord.xy);
     float depth = s.distance_m / length(ray);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth);
-    float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth);
+    vec3 normal = s.geometric_normal / min(dot(s.geometric_normal, s.position_m), -1e-3 * s.distance_m);
+    float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth, dot(normal, frame.pixel_ray_dx.xyz));
+    float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth, dot(normal, frame.pixel_ray_dy.xyz));
     float height_m = lines_height(s);
     return mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
                 lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
@@ -139,8 +146,8 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in m
     vec2 towards = vec2(0.0);
     for (int i = 0; i < lines_most; ++i) {
         if (i >= count) break;
-        vec4 ends = lines_texel(lines, first + i);
-        vec2 a = metres * (ends.xy - here), b = metres * (ends.zw - here);
+        vec4 segment = lines_texel(lines, first + i);
+        vec2 a = metres * (segment.xy - here), b = metres * (segment.zw - here);
         vec2 ground = lines_segment(a, b, at);
         if (dot(ground, ground) < on_ground) {
             on_ground = dot(ground, ground);
@@ -153,12 +160,12 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in m
             nearest_at = at;
         }
     }
-    vec4 ends = lines_texel(lines, first + nearest);
+    vec4 segment = lines_texel(lines, first + nearest);
     vec4 two = lines_texel(lines, first + count + nearest / 2);
     vec2 along = (nearest & 1) == 0 ? two.xy : two.zw;
     float lines_at = lines_texel(lines, 0).w;
     float across_m = length((towards / max(sqrt(on_ground), 1e-12)) * step_m);
-    vec2 way = metres * (ends.zw - ends.xy);
+    vec2 way = metres * (segment.zw - segment.xy);
     float length_m = max(length(way), 1e-9);
     return LineHit(sqrt(pixels), along.x + nearest_at * length_m,
                    lines_texel(lines, int(lines_at + along.y)).x, int(along.y), sqrt(on_ground),

@@ -237,7 +237,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NoKind", texture(R"("file": "a.png")"),
             "2: textures.noise: expected a member \"kind\""},
         Bad{"BadKind", texture(R"("kind": "2darray")"),
-            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d but got \"2darray\"; did you "
+            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, lines but got \"2darray\"; "
+            "did you "
             "mean 2d-array?"},
         Bad{"NoFile", texture(R"("kind": "2d", "file": "b.png", "encoding": "srgb")"),
             "2: textures.noise.file: plugins/haze/b.png: no such file"},
@@ -265,7 +266,16 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
-            "2: texts: expected a \"module\" too: only modules read texts"},
+            "2: texts: expected a \"module\" too, or a texture of kind \"lines\": nothing else "
+            "reads "
+            "texts"},
+        Bad{"LinesOfNoText", texture(R"("kind": "lines", "from": "file")"),
+            "2: textures.noise.from: expected a text of kind \"file\"; add \"texts\": {\"file\": "
+            "{\"kind\": \"file\"}}"},
+        Bad{"LinesWithoutFrom", texture(R"("kind": "lines")"),
+            "2: textures.noise: expected a member \"from\""},
+        Bad{"LinesKey", texture(R"("kind": "lines", "from": "file", "file": "a.gpx")"),
+            "2: textures.noise.file: no such key; there are kind, from, attribute"},
         Bad{"TextKind", text(R"("kind": "path")"),
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
