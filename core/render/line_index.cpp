@@ -18,6 +18,7 @@ constexpr std::size_t kExact = 16;        // segments of the file in a cell that
 constexpr std::size_t kMostInCell = 255;  // shaders/lib/lines.glsl loops over so many
 constexpr double kTolerance = 1.0 / 2048;  // of a cell's side
 constexpr double kFinest_m = 2;            // side of the finest cells
+constexpr double kWidest_m = 2000;  // side of cells without finer ones: floats hold 0.2 mm there
 constexpr int kTableSide = 256;
 constexpr std::size_t kNodeTexels = 4;
 
@@ -111,17 +112,23 @@ class Builder {
         const LineBox near{corner - 0.5 * c, corner + 1.5 * c};
         if (const auto exact = pieces_.exact(candidates, near, kExact)) {
             if (exact->empty()) return 0;
-            return write(level, cell, *exact, true);
+            if (c * least_m_ <= kWidest_m) return write(level, cell, *exact, true);
+            return write_with_finer(level, cell, *exact, *exact);
         }
         const LineBox wide{near.low - tolerance, near.high + tolerance};
         const std::vector<LinePart> parts = pieces_.refined(candidates, wide, tolerance);
         if (parts.empty()) return 0;
         const bool leaf = level <= finest_level_;
-        const std::uint32_t node = write(level, cell, longest(parts, near, leaf), leaf);
-        if (leaf) {
-            coarsest_ = std::max(coarsest_, tolerance);
-            return node;
-        }
+        const std::vector<LinePart> listed = longest(parts, near, leaf);
+        if (!leaf) return write_with_finer(level, cell, listed, parts);
+        coarsest_ = std::max(coarsest_, tolerance);
+        return write(level, cell, listed, leaf);
+    }
+
+    /// Writes a node with the finer ones of all `parts`.
+    std::uint32_t write_with_finer(int level, const Cell& cell, const std::vector<LinePart>& listed,
+                                   const std::vector<LinePart>& parts) {
+        const std::uint32_t node = write(level, cell, listed, false);
         for (int child = 0; child < 4; ++child) {
             const std::uint32_t finer =
                 visit(level - 1, Cell(2) * cell + Cell(child & 1, child >> 1), parts);
@@ -239,7 +246,7 @@ LineIndex make_line_index(const std::vector<dem::PlacedLine>& lines,
     std::size_t features = 0;
     for (const dem::PlacedLine& line : lines)
         features = std::max(features, static_cast<std::size_t>(line.number) + 1);
-    for (int finest = static_cast<int>(std::ceil(std::log2(kFinest_m / least_m)));; ++finest) {
+    for (int finest = static_cast<int>(std::ceil(std::log2(kFinest_m / least_m)));; finest += 2) {
         Builder builder(pieces, options, least_m, finest);
         if (!builder.run(features)) continue;
         for (const dem::PlacedLine& line : lines)

@@ -37,9 +37,10 @@ struct LineIndex {
 /// the segments that pass the cell widened by C / 2. A distance up to C / 2 is thus found in the
 /// list of one cell.
 ///
-/// A cell with at most 16 segments of the file lists these, and has no finer cells. Other cells
-/// list lines simplified to C / 2048 (Douglas and Peucker 1973), at most 255 segments of them, the
-/// longest. The finest cells are 2 m wide, or wider where the index would exceed its texels.
+/// A cell with at most 16 segments of the file lists these, and has no finer cells if it is at most
+/// 2 km wide. Other cells list lines simplified to C / 2048 (Douglas and Peucker 1973), at most 255
+/// segments of them, the longest. The finest cells are 2 m wide, or wider where the index would
+/// exceed its texels.
 ///
 /// Layout, in texels of four floats (shaders/lib/lines.glsl reads it):
 ///   0                level of the coarsest and of the finest table (C is 2^level), least metres a

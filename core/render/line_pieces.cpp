@@ -25,13 +25,14 @@ double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b
 
 std::optional<std::pair<double, double>> clipped(const glm::dvec2& a, const glm::dvec2& b,
                                                  const LineBox& box) {
+    // Most segments are outside.
+    if (std::max(a.x, b.x) < box.low.x || std::min(a.x, b.x) > box.high.x ||
+        std::max(a.y, b.y) < box.low.y || std::min(a.y, b.y) > box.high.y)
+        return std::nullopt;
     double from = 0, to = 1;
     for (int i = 0; i < 2; ++i) {
         const double step = b[i] - a[i];
-        if (step == 0) {
-            if (a[i] < box.low[i] || a[i] > box.high[i]) return std::nullopt;
-            continue;
-        }
+        if (step == 0) continue;
         const double at_low = (box.low[i] - a[i]) / step, at_high = (box.high[i] - a[i]) / step;
         from = std::max(from, std::min(at_low, at_high));
         to = std::min(to, std::max(at_low, at_high));
