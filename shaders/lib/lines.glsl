@@ -80,8 +80,13 @@ float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here, in float pl
     return clamp(abs(up) < abs(down) ? up : down, -limit, limit);
 }
 
-/// Steps on the ground to the next pixel right and up, east and north [m/px].
-mat2 lines_pixel_step(in Surface s) {
+/// The ground around a pixel as a plane. A point d pixels away is step_m d / (1 + horizon . d) metres away.
+struct LinesPixel {
+    mat2 step_m;   // steps on the ground to the next pixel right and up, east and north [m/px]
+    vec2 horizon;  // how the depth's inverse changes to these, as shares of it
+};
+
+LinesPixel lines_pixel(in Surface s) {
     vec3 ray = pixel_ray_at(gl_FragCoord.xy);
     float depth = s.distance_m / length(ray);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -89,8 +94,9 @@ mat2 lines_pixel_step(in Surface s) {
     float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth, dot(normal, frame.pixel_ray_dx.xyz));
     float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth, dot(normal, frame.pixel_ray_dy.xyz));
     float height_m = lines_height(s);
-    return mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
-                lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
+    mat2 step_m = mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
+                       lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
+    return LinesPixel(step_m, depth * vec2(right, up));
 }
 
 /// Inverse of a step, large where the ground is seen from its edge.
@@ -127,64 +133,79 @@ int lines_node(in sampler2D lines, in LinesPlace place, in int level) {
     return node;
 }
 
-/// From the origin to the nearest point of a segment. @param at  fraction of the segment
-vec2 lines_segment(in vec2 a, in vec2 b, out float at) {
+/// From the origin to the nearest point of a segment.
+vec2 lines_segment(in vec2 a, in vec2 b) {
     vec2 along = b - a;
-    at = clamp(-dot(a, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
-    return a + at * along;
+    return a + clamp(-dot(a, along) / max(dot(along, along), 1e-30), 0.0, 1.0) * along;
+}
+
+/// The same in the picture [px]. @param a, b  ends, in pixels if the depth were that of the origin
+vec2 lines_drawn(in vec2 a, in vec2 b, in vec2 horizon) {
+    const float nearest = 0.05;  // depth, as a share of the origin's: what is nearer is cut
+    float at_a = 1.0 - dot(horizon, a), at_b = 1.0 - dot(horizon, b);
+    if (max(at_a, at_b) < nearest) return vec2(lines_none);
+    float cut = (nearest - at_a) / (abs(at_b - at_a) > 1e-12 ? at_b - at_a : 1e-12);
+    vec2 at_cut = mix(a, b, cut);
+    if (at_a < nearest) return lines_segment(at_cut / nearest, b / at_b);
+    if (at_b < nearest) return lines_segment(a / at_a, at_cut / nearest);
+    return lines_segment(a / at_a, b / at_b);
 }
 
 /// The lines of a node around a place.
-/// @param step_m  lines_pixel_step()
-LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in mat2 step_m) {
-    mat2 to_pixels = lines_to_pixels(step_m);
+LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in LinesPixel pixel) {
+    mat2 to_pixels = lines_to_pixels(pixel.step_m);
     vec4 metric = lines_texel(lines, node + 2);
     mat2 metres = mat2(metric.xy, metric.zw);
     vec2 here = lines_from(place, lines_texel(lines, node + 1));
     int count = int(lines_texel(lines, node).x), first = node + 4, nearest = 0;
-    float pixels = lines_none * lines_none, on_ground = pixels, nearest_at = 0.0, at;
-    vec2 towards = vec2(0.0);
+    float pixels = lines_none * lines_none, on_ground = pixels;
+    vec2 towards = vec2(0.0), shown = vec2(0.0);
     for (int i = 0; i < lines_most; ++i) {
         if (i >= count) break;
         vec4 segment = lines_texel(lines, first + i);
         vec2 a = metres * (segment.xy - here), b = metres * (segment.zw - here);
-        vec2 ground = lines_segment(a, b, at);
+        vec2 ground = lines_segment(a, b);
         if (dot(ground, ground) < on_ground) {
             on_ground = dot(ground, ground);
             towards = ground;
         }
-        vec2 drawn = lines_segment(to_pixels * a, to_pixels * b, at);
+        vec2 drawn = lines_drawn(to_pixels * a, to_pixels * b, pixel.horizon);
         if (dot(drawn, drawn) < pixels) {
             pixels = dot(drawn, drawn);
             nearest = i;
-            nearest_at = at;
+            shown = drawn;
         }
     }
     vec4 segment = lines_texel(lines, first + nearest);
     vec4 two = lines_texel(lines, first + count + nearest / 2);
     vec2 along = (nearest & 1) == 0 ? two.xy : two.zw;
     float lines_at = lines_texel(lines, 0).w;
-    float across_m = length((towards / max(sqrt(on_ground), 1e-12)) * step_m);
+    float across_m = length((towards / max(sqrt(on_ground), 1e-12)) * pixel.step_m);
     vec2 way = metres * (segment.zw - segment.xy);
     float length_m = max(length(way), 1e-9);
-    return LineHit(sqrt(pixels), along.x + nearest_at * length_m,
+    vec2 reached = pixel.step_m * shown / max(1.0 + dot(pixel.horizon, shown), 1e-3);
+    float at_m = clamp(dot(reached - metres * (segment.xy - here), way) / length_m, 0.0, length_m);
+    return LineHit(sqrt(pixels), along.x + at_m,
                    lines_texel(lines, int(lines_at + along.y)).x, int(along.y), sqrt(on_ground),
-                   max(across_m, 1e-9), max(length((way / length_m) * step_m), 1e-9));
+                   max(across_m, 1e-9), max(length((way / length_m) * pixel.step_m), 1e-9));
 }
 
-/// The same as lines_near() for a place, and the steps of its pixel.
-LineHit lines_search(in sampler2D lines, in LinesPlace place, in mat2 step_m, in float reach_px, in float reach_m) {
+/// The same as lines_near() for a place and its pixel.
+LineHit lines_search(in sampler2D lines, in LinesPlace place, in LinesPixel pixel, in float reach_px,
+                     in float reach_m) {
     vec4 head = lines_texel(lines, 0);
-    float longest_m = sqrt(dot(step_m[0], step_m[0]) + dot(step_m[1], step_m[1]));
+    const float most = 0.9;  // of the way to the horizon
+    float longest_m = sqrt(dot(pixel.step_m[0], pixel.step_m[0]) + dot(pixel.step_m[1], pixel.step_m[1]));
+    longest_m /= 1.0 - min(reach_px * length(pixel.horizon), most);
     // The list of a cell is complete up to half its side.
     float side = 2.0 * max(reach_px * longest_m, reach_m) / head.z;
     int node = head.x < head.y ? 0 : lines_node(lines, place, int(ceil(log2(max(side, 1e-9)))));
     if (node == 0) return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
-    return lines_in_node(lines, node, place, step_m);
+    return lines_in_node(lines, node, place, pixel);
 }
 
 /// The nearest line of a texture of kind `lines`.
 /// @param reach_px, reach_m  how far lines are searched, the farther of both. The smaller, the faster
 LineHit lines_near(in sampler2D lines, in Surface s, in float reach_px, in float reach_m) {
-    return lines_search(lines, lines_place(s), lines_pixel_step(s), reach_px, reach_m);
+    return lines_search(lines, lines_place(s), lines_pixel(s), reach_px, reach_m);
 }

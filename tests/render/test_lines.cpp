@@ -95,6 +95,7 @@ double distance_px(const std::vector<glm::dvec2>& line, const glm::dvec2& p) {
 struct View {
     double column, row;  ///< shares
     double above_m, heading_deg, pitch_deg;
+    double worst_px;  ///< where a pixel reaches from 100 m to the horizon, planes are not exact
 };
 
 struct Errors {
@@ -134,12 +135,12 @@ TEST(Lines, HaveTheirDistanceInPixelsFromTwoMetresTo50Kilometres) {
                  row = (250 + 60 * std::sin(18 * 0.4) + 54) / (kSide - 1);
     for (const double exaggeration : {1.0, 2.5}) {
         drawn.frame().exaggeration = exaggeration;
-        for (const View& view : {View{column, row, 2, 20, -60},
-                                 {column, row + 0.002, 2, 0, -15},
-                                 {column, row + 0.004, 60, 300, -30},
-                                 {column, row + 0.1, 900, 10, -20},
-                                 {column, row + 0.1, 9000, 0, -80},
-                                 {0.5, 0.5, 50000, 0, -90}}) {
+        for (const View& view : {View{column, row, 2, 20, -60, 0.05},
+                                 {column, row + 0.002, 2, 0, -15, 1.5},
+                                 {column, row + 0.004, 60, 0, -45, 0.05},
+                                 {column, row + 0.1, 900, 10, -20, 0.05},
+                                 {column, row + 0.1, 9000, 0, -80, 0.05},
+                                 {0.5, 0.5, 50000, 0, -90, 0.05}}) {
             drawn.stand(view.column, view.row,
                         exaggeration * ground_m(view.column, view.row) + view.above_m,
                         view.heading_deg, view.pitch_deg);
@@ -149,8 +150,8 @@ TEST(Lines, HaveTheirDistanceInPixelsFromTwoMetresTo50Kilometres) {
                 "{:.3f} px\n",
                 view.above_m, exaggeration, errors.count, errors.mean_px, errors.worst_px);
             EXPECT_GT(errors.count, 100);
-            EXPECT_LT(errors.mean_px, 0.03);
-            EXPECT_LT(errors.worst_px, 0.5);
+            EXPECT_LT(errors.mean_px, 0.02);
+            EXPECT_LT(errors.worst_px, view.worst_px);
         }
     }
 }
@@ -159,11 +160,13 @@ TEST(Lines, HaveTheirAttributeAndTheDistanceOnTheGround) {
     const dem::Heightfield field = slope();
     const std::vector<glm::dvec2> posts = bends();
     const LineSource source{"probe.way", "probe.file", written(field, posts), "speed"};
-    Drawn values(field, {test::kBrightSky, probe("hit.value, float(hit.line)")}, 80, 64, 0, {}, {},
-                 {source});
-    values.stand(0.5, 0.6, ground_m(0.5, 0.6) + 300, 0, -40);
+    const auto image_of = [&](const TestEffect& effect, double above_m, double pitch_deg) {
+        Drawn drawn(field, {test::kBrightSky, effect}, 80, 64, 0, {}, {}, {source});
+        drawn.stand(0.5, 0.6, ground_m(0.5, 0.6) + above_m, 0, pitch_deg);
+        return drawn.radiance();
+    };
     int seen = 0;
-    const image::ImageF image = values.radiance();
+    const image::ImageF image = image_of(probe("hit.value, float(hit.line)"), 1500, -30);
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const glm::dvec2 found = Drawn::values(image, x, y);
@@ -177,11 +180,7 @@ TEST(Lines, HaveTheirAttributeAndTheDistanceOnTheGround) {
     TestEffect metres = probe("hit.metres, s.post.x / 512.0");
     metres.glsl.replace(metres.glsl.find("8.0, 0.0"), 8, "8.0, 500.0");
     TestEffect along = probe("hit.along_m / 1000.0, s.post.y / 512.0");
-    Drawn first(field, {test::kBrightSky, metres}, 80, 64, 0, {}, {}, {source});
-    Drawn second(field, {test::kBrightSky, along}, 80, 64, 0, {}, {}, {source});
-    first.stand(0.5, 0.6, ground_m(0.5, 0.6) + 3000, 0, -80);
-    second.stand(0.5, 0.6, ground_m(0.5, 0.6) + 3000, 0, -80);
-    const image::ImageF a = first.radiance(), b = second.radiance();
+    const image::ImageF a = image_of(metres, 3000, -80), b = image_of(along, 3000, -80);
     const glm::dmat2 metric = metres_per_post(field.grid, {256, 300});
     double worst_m = 0;
     int count = 0;
