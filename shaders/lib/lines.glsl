@@ -68,16 +68,22 @@ float lines_near_at(in ivec2 pixel) {
 
 /// How 1 / depth changes to the next pixel of an axis. It is linear over a plane in the picture. Of both
 /// sides the one that changes less is on the same ground, unless that is a pixel wide.
-/// @param plane  what the DEM's normal gives, which is less exact
-float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here, in float plane) {
-    const float most = 4.0;  // times `plane`
+/// @param limit  lines_depth_limit()
+float lines_depth_step(in ivec2 pixel, in ivec2 axis, in float here, in float limit) {
     ivec2 last = ivec2(frame.viewport.xy) - 1;
     ivec2 before = max(pixel - axis, ivec2(0)), after = min(pixel + axis, last);
     float down = here - lines_near_at(before), up = lines_near_at(after) - here;
     if (before == pixel) down = up;  // at the edge of the picture
     if (after == pixel) up = down;
-    float limit = most * (abs(plane) + here * length(frame.pixel_ray_dx.xyz));
     return clamp(abs(up) < abs(down) ? up : down, -limit, limit);
+}
+
+/// The most that 1 / depth changes to the next pixel right and up, by the DEM's normal, which is less exact.
+vec2 lines_depth_limit(in Surface s, in float here) {
+    const float most = 4.0;  // times what the normal gives
+    vec3 normal = s.geometric_normal / min(dot(s.geometric_normal, s.position_m), -1e-3 * s.distance_m);
+    vec2 plane = vec2(dot(normal, frame.pixel_ray_dx.xyz), dot(normal, frame.pixel_ray_dy.xyz));
+    return most * (abs(plane) + here * length(frame.pixel_ray_dx.xyz));
 }
 
 /// The ground around a pixel as a plane. A point d pixels away is step_m d / (1 + horizon . d) metres away.
@@ -90,9 +96,9 @@ LinesPixel lines_pixel(in Surface s) {
     vec3 ray = pixel_ray_at(gl_FragCoord.xy);
     float depth = s.distance_m / length(ray);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 normal = s.geometric_normal / min(dot(s.geometric_normal, s.position_m), -1e-3 * s.distance_m);
-    float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth, dot(normal, frame.pixel_ray_dx.xyz));
-    float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth, dot(normal, frame.pixel_ray_dy.xyz));
+    vec2 limit = lines_depth_limit(s, 1.0 / depth);
+    float right = lines_depth_step(pixel, ivec2(1, 0), 1.0 / depth, limit.x);
+    float up = lines_depth_step(pixel, ivec2(0, 1), 1.0 / depth, limit.y);
     float height_m = lines_height(s);
     mat2 step_m = mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
                        lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
@@ -122,7 +128,8 @@ int lines_node(in sampler2D lines, in LinesPlace place, in int level) {
     vec2 cell = floor(lines_from(place, corner) * exp2(-float(table)));
     if (any(lessThan(cell, vec2(0.0))) || any(greaterThanEqual(cell, size.xy))) return 0;
     int node = int(lines_texel(lines, int(size.z) + int(cell.y) * int(size.x) + int(cell.x)).x);
-    for (int i = 0; i < 40; ++i) {
+    const int most = 40;  // levels
+    for (int i = level < base && node != 0 ? 0 : most; i < most; ++i) {
         vec4 about = lines_texel(lines, node);
         if (node == 0 || about.y > 0.0 || int(about.z) <= level) break;
         vec2 half_cell = lines_from(place, lines_texel(lines, node + 1)) * exp2(1.0 - about.z);
@@ -190,16 +197,30 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in L
                    max(across_m, 1e-9), max(length((way / length_m) * pixel.step_m), 1e-9));
 }
 
+/// Level of the cells whose lists have all lines within a reach: half their side is complete.
+/// @param longest_m  steps on the ground to the next pixels, together [m/px]
+int lines_level_of(in float longest_m, in vec2 horizon, in float reach_px, in float reach_m, in float post_m) {
+    const float most = 0.9;  // of the way to the horizon
+    float far_m = reach_px * longest_m / (1.0 - min(reach_px * length(horizon), most));
+    return int(ceil(log2(max(2.0 * max(far_m, reach_m) / post_m, 1e-9))));
+}
+
+/// Whether lines may be within a reach of a point: reads nothing of the pixels around.
+bool lines_may_be_near(in sampler2D lines, in Surface s, in LinesPlace place, in float reach_px, in float reach_m) {
+    vec4 head = lines_texel(lines, 0);
+    if (head.x < head.y) return false;
+    float ray = length(pixel_ray_at(gl_FragCoord.xy));
+    vec2 horizon = (s.distance_m / ray) * lines_depth_limit(s, ray / s.distance_m);
+    float longest_m = (s.distance_m / ray) * (1.5 * length(frame.pixel_ray_dx.xyz) + ray * length(horizon));
+    return lines_node(lines, place, lines_level_of(longest_m, horizon, reach_px, reach_m, head.z)) != 0;
+}
+
 /// The same as lines_near() for a place and its pixel.
 LineHit lines_search(in sampler2D lines, in LinesPlace place, in LinesPixel pixel, in float reach_px,
                      in float reach_m) {
-    vec4 head = lines_texel(lines, 0);
-    const float most = 0.9;  // of the way to the horizon
     float longest_m = sqrt(dot(pixel.step_m[0], pixel.step_m[0]) + dot(pixel.step_m[1], pixel.step_m[1]));
-    longest_m /= 1.0 - min(reach_px * length(pixel.horizon), most);
-    // The list of a cell is complete up to half its side.
-    float side = 2.0 * max(reach_px * longest_m, reach_m) / head.z;
-    int node = head.x < head.y ? 0 : lines_node(lines, place, int(ceil(log2(max(side, 1e-9)))));
+    int level = lines_level_of(longest_m, pixel.horizon, reach_px, reach_m, lines_texel(lines, 0).z);
+    int node = lines_node(lines, place, level);
     if (node == 0) return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
     return lines_in_node(lines, node, place, pixel);
 }
@@ -207,5 +228,11 @@ LineHit lines_search(in sampler2D lines, in LinesPlace place, in LinesPixel pixe
 /// The nearest line of a texture of kind `lines`.
 /// @param reach_px, reach_m  how far lines are searched, the farther of both. The smaller, the faster
 LineHit lines_near(in sampler2D lines, in Surface s, in float reach_px, in float reach_m) {
-    return lines_search(lines, lines_place(s), lines_pixel(s), reach_px, reach_m);
+    LineHit hit = LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
+    LinesPlace place = lines_place(s);
+    // A loop, because software devices skip loops that no pixel of a group enters, and no branches.
+    int times = lines_may_be_near(lines, s, place, reach_px, reach_m) ? 1 : 0;
+    for (int i = 0; i < times; ++i)
+        hit = lines_search(lines, place, lines_pixel(s), reach_px, reach_m);
+    return hit;
 }
