@@ -166,7 +166,8 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in L
     vec2 here = lines_from(place, lines_texel(lines, node + 1));
     int count = int(lines_texel(lines, node).x), first = node + 4, nearest = 0;
     float pixels = lines_none * lines_none, on_ground = pixels;
-    vec2 towards = vec2(0.0), shown = vec2(0.0);
+    vec2 towards = vec2(0.0);
+    vec2 away_px = vec2(0.0);
     for (int i = 0; i < lines_most; ++i) {
         if (i >= count) break;
         vec4 segment = lines_texel(lines, first + i);
@@ -180,7 +181,7 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in L
         if (dot(drawn, drawn) < pixels) {
             pixels = dot(drawn, drawn);
             nearest = i;
-            shown = drawn;
+            away_px = drawn;
         }
     }
     vec4 segment = lines_texel(lines, first + nearest);
@@ -190,7 +191,7 @@ LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in L
     float across_m = length((towards / max(sqrt(on_ground), 1e-12)) * pixel.step_m);
     vec2 way = metres * (segment.zw - segment.xy);
     float length_m = max(length(way), 1e-9);
-    vec2 reached = pixel.step_m * shown / max(1.0 + dot(pixel.horizon, shown), 1e-3);
+    vec2 reached = pixel.step_m * away_px / max(1.0 + dot(pixel.horizon, away_px), 1e-3);
     float at_m = clamp(dot(reached - metres * (segment.xy - here), way) / length_m, 0.0, length_m);
     return LineHit(sqrt(pixels), along.x + at_m,
                    lines_texel(lines, int(lines_at + along.y)).x, int(along.y), sqrt(on_ground),
