@@ -12,7 +12,7 @@
 namespace relevo::dem {
 
 /// More vertices than these are refused.
-inline constexpr std::size_t kMostLineVertices = 4'000'000;
+inline constexpr std::size_t kMostLineVertices = 2'000'000;
 
 /// A line of a vector file over a DEM.
 struct PlacedLine {

@@ -14,8 +14,8 @@
 namespace relevo::render {
 namespace {
 
-constexpr std::size_t kExact = 16;        // segments of the file in a cell that needs no finer ones
-constexpr std::size_t kMostInCell = 255;  // shaders/lib/lines.glsl loops over so many
+constexpr std::size_t kExact = 16;  // segments of the file in a cell that needs no finer ones
+constexpr std::size_t kMostInCell = 1023;  // shaders/lib/lines.glsl loops over so many
 constexpr double kTolerance = 1.0 / 2048;  // of a cell's side
 constexpr double kFinest_m = 2;            // side of the finest cells
 constexpr double kWidest_m = 2000;  // side of cells without finer ones: floats hold 0.2 mm there
@@ -69,7 +69,9 @@ class Builder {
     }
 
     void set_value(std::size_t number, float value) { texels_[lines_ + number].x = value; }
-    LineIndex take() { return {std::move(texels_), coarsest_ * least_m_, dropped_}; }
+    LineIndex take() {
+        return {std::move(texels_), coarsest_ * least_m_, side(finest_level_) * least_m_, dropped_};
+    }
 
   private:
     static double side(int level) { return std::exp2(level); }
@@ -236,17 +238,29 @@ double least_metres(const LinePieces& pieces, const LineIndexOptions& options) {
     return greatest > 0 ? std::max(least, kLeast * greatest) : 1;
 }
 
+/// Level of the finest cells with which an index may have room.
+int first_try(const LinePieces& pieces, const LineIndexOptions& options, double least_m) {
+    constexpr double kTexels = 6;   // of a segment in several cells, about
+    constexpr double kInCell = 64;  // segments of a cell that is too coarse to be exact
+    const auto finest = static_cast<int>(std::ceil(std::log2(kFinest_m / least_m)));
+    const double segments = static_cast<double>(pieces.segments());
+    if (kTexels * segments < static_cast<double>(options.max_texels)) return finest;
+    const glm::dvec2 extent = glm::max(pieces.high() - pieces.low(), glm::dvec2(1e-3));
+    const double side = 0.5 * std::sqrt(kInCell * extent.x * extent.y / segments);
+    return std::max(finest, static_cast<int>(std::floor(std::log2(side))));
+}
+
 }  // namespace
 
 LineIndex make_line_index(const std::vector<dem::PlacedLine>& lines,
                           const LineIndexOptions& options) {
     const LinePieces pieces(lines, options.size_posts);
-    if (pieces.all().empty()) return {{glm::vec4(-1, 0, 1, 0)}, 0, 0};
+    if (pieces.all().empty()) return {{glm::vec4(-1, 0, 1, 0)}};
     const double least_m = least_metres(pieces, options);
     std::size_t features = 0;
     for (const dem::PlacedLine& line : lines)
         features = std::max(features, static_cast<std::size_t>(line.number) + 1);
-    for (int finest = static_cast<int>(std::ceil(std::log2(kFinest_m / least_m)));; finest += 2) {
+    for (int finest = first_try(pieces, options, least_m);; ++finest) {
         Builder builder(pieces, options, least_m, finest);
         if (!builder.run(features)) continue;
         for (const dem::PlacedLine& line : lines)

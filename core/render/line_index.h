@@ -30,6 +30,7 @@ struct LineIndexOptions {
 struct LineIndex {
     std::vector<glm::vec4> texels;
     double accuracy_m = 0;    ///< of lines in the finest cells; 0: as in the file
+    double finest_m = 0;      ///< side of the finest cells
     std::size_t dropped = 0;  ///< segments that exceed a cell's number in the finest cells
 };
 
@@ -38,9 +39,9 @@ struct LineIndex {
 /// list of one cell.
 ///
 /// A cell with at most 16 segments of the file lists these, and has no finer cells if it is at most
-/// 2 km wide. Other cells list lines simplified to C / 2048 (Douglas and Peucker 1973), at most 255
-/// segments of them, the longest. The finest cells are 2 m wide, or wider where the index would
-/// exceed its texels.
+/// 2 km wide. Other cells list lines simplified to C / 2048 (Douglas and Peucker 1973), at most
+/// 1023 segments of them, the longest. The finest cells are 2 m wide, or wider where the index
+/// would exceed its texels.
 ///
 /// Layout, in texels of four floats (shaders/lib/lines.glsl reads it):
 ///   0                level of the coarsest and of the finest table (C is 2^level), least metres a

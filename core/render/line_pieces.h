@@ -32,6 +32,7 @@ class LinePieces {
     LinePieces(const std::vector<dem::PlacedLine>& lines, const glm::ivec2& size_posts);
 
     const std::vector<LinePart>& all() const { return all_; }
+    std::size_t segments() const { return importance_.size() - pieces_.size(); }
     const glm::dvec2& low() const { return low_; }  ///< of the box around all vertices
     const glm::dvec2& high() const { return high_; }
 

@@ -40,8 +40,10 @@ void report(const LineSource& source, const LineIndex& index, std::size_t lines)
         log::info(fmt::format("{}: drawn to {:.2g} m: it has more lines than {} MiB hold", file,
                               index.accuracy_m, kMostLineTexels * sizeof(glm::vec4) >> 20));
     if (index.dropped > 0)
-        log::info(fmt::format("{}: more than 255 segments within 2 m; {} of them are not drawn",
-                              file, index.dropped));
+        log::info(
+            fmt::format("{}: more than 1023 segments within {:.0f} m in places; the shortest "
+                        "there are not drawn",
+                        file, index.finest_m));
     log::debug(fmt::format("{}: {} lines, {} KiB", file, lines,
                            index.texels.size() * sizeof(glm::vec4) >> 10));
 }

@@ -10,7 +10,7 @@
 
 const float lines_none = 1e9;         // distance where no line is known
 const float lines_no_value = -1e30;   // attribute of a line that has none
-const int lines_most = 255;           // segments of a cell
+const int lines_most = 1023;           // segments of a cell
 
 /// The lines around a point. Distances up to the reach that was asked for are exact; greater ones only
 /// say that they are greater.
