@@ -84,6 +84,15 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
                              texture.line, sampler.type));
         return;
     }
+    for (const LinesSpec& lines : manifest.lines) {
+        names.push_back(lines.name);
+        if (lines.name != name) continue;
+        if (sampler.type != "sampler2D")
+            fail(sampler.file, sampler.line,
+                 fmt::format("{}: expected a sampler2D for the lines {} of {}:{} but got a {}",
+                             sampler.name, name, manifest.file.string(), lines.line, sampler.type));
+        return;
+    }
     for (const shader::PluginPass& pass : manifest.passes) {
         names.push_back(pass.name);
         if (pass.name != name) continue;

@@ -21,6 +21,15 @@ RasterSpec read_raster_spec(json::ObjectReader& object, const std::string& id,
     return spec;
 }
 
+LinesSpec read_lines_spec(json::ObjectReader& object, const std::string& id,
+                          const std::string& name, int line) {
+    return {.name = name,
+            .resource = id + '.' + name,
+            .file = id + '.' + object.string("from"),
+            .attribute = object.string("attribute", ""),
+            .line = line};
+}
+
 std::string raster_glsl(const RasterSpec& raster, const std::string& id) {
     const std::string name = id + '_' + raster.name;
     return fmt::format(

@@ -23,6 +23,19 @@ struct RasterSpec {
 RasterSpec read_raster_spec(json::ObjectReader& object, const std::string& id,
                             const std::string& name, int line);
 
+/// Lines on the ground that the user chooses, an entry of "textures" of the kind "lines".
+struct LinesSpec {
+    std::string name;       ///< "way"
+    std::string resource;   ///< "tracks.way": its name for the stitcher
+    std::string file;       ///< "tracks.file": address of the text with the file's path
+    std::string attribute;  ///< a field's name, or the plugin's text "by" with it; may be empty
+    int line = 0;           ///< in plugin.json
+};
+
+/// As read_raster_spec().
+LinesSpec read_lines_spec(json::ObjectReader& object, const std::string& id,
+                          const std::string& name, int line);
+
 /// The function that reads a raster at a point of the ground: `vec4 <id>_<name>(in Surface s)` for
 /// colours, `vec2 <id>_<name>(in Surface s)` for values.
 std::string raster_glsl(const RasterSpec& raster, const std::string& id);

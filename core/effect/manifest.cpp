@@ -20,14 +20,14 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 50> kReserved = {
-    "all",     "antialias", "backdrop", "background", "camera",  "climate", "colour",    "copy",
-    "core",    "data",      "depth",    "east",       "edges",   "floor",   "footprint", "frame",
-    "gbuffer", "geometry",  "gl",       "ground",     "height",  "hook",    "light",     "load",
-    "net",     "none",      "normal",   "overlay",    "page",    "pixel",   "place",     "post",
-    "raster",  "scene",     "screen",   "select",     "side",    "slope",   "srgb",      "steps",
-    "store",   "stored",    "sun",      "surface",    "tangent", "terrain", "up",        "varyings",
-    "vertex",  "water"};
+constexpr std::array<std::string_view, 51> kReserved = {
+    "all",      "antialias", "backdrop", "background", "camera",  "climate", "colour",    "copy",
+    "core",     "data",      "depth",    "east",       "edges",   "floor",   "footprint", "frame",
+    "gbuffer",  "geometry",  "gl",       "ground",     "height",  "hook",    "light",     "lines",
+    "load",     "net",       "none",     "normal",     "overlay", "page",    "pixel",     "place",
+    "post",     "raster",    "scene",    "screen",     "select",  "side",    "slope",     "srgb",
+    "steps",    "store",     "stored",   "sun",        "surface", "tangent", "terrain",   "up",
+    "varyings", "vertex",    "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
@@ -206,8 +206,10 @@ class ManifestReader {
     void texture(const std::string& name, const json::Value& value) {
         json::ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
         const std::size_t kind =
-            object.choice("kind", {"2d", "2d-array", "3d", "table", "cube", "raster"});
-        if (kind == 5)
+            object.choice("kind", {"2d", "2d-array", "3d", "table", "cube", "raster", "lines"});
+        if (kind == 6)
+            manifest_.lines.push_back(read_lines_spec(object, manifest_.id, name, value.line));
+        else if (kind == 5)
             manifest_.rasters.push_back(read_raster_spec(object, manifest_.id, name, value.line));
         else if (kind >= 3)
             manifest_.textures.push_back(
@@ -334,7 +336,10 @@ class ManifestReader {
         named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
-        bool reads_texts = !manifest_.module.empty() || !manifest_.rasters.empty();
+        bool reads_texts =
+            !manifest_.module.empty() || !manifest_.rasters.empty() || !manifest_.lines.empty();
+        for (const LinesSpec& lines : manifest_.lines)
+            check_text(object, "textures." + lines.name, lines.line, lines.file, true);
         for (const TextureSpec& texture : manifest_.textures)
             if (!texture.from.empty()) {
                 check_text(object, "textures." + texture.name, texture.line, texture.from, true);
@@ -356,9 +361,10 @@ class ManifestReader {
         const auto text = std::ranges::find(manifest_.texts, address, &shader::TextParam::address);
         if (text == manifest_.texts.end() || (is_file && !text->is_file))
             object.fail(line, key,
-                        fmt::format("expected a text of \"texts\"{} but got \"{}\"",
-                                    is_file ? " with \"kind\": \"file\"" : "",
-                                    address.substr(address.find('.') + 1)));
+                        fmt::format("expected a text{}; add \"texts\": {{\"{}\": {{{}}}}}",
+                                    is_file ? " of kind \"file\"" : "",
+                                    address.substr(address.find('.') + 1),
+                                    is_file ? "\"kind\": \"file\"" : ""));
     }
 
     shader::TextParam text(const std::string& name, const json::Value& value) {

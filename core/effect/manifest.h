@@ -84,6 +84,7 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::vector<RasterSpec> rasters;
+    std::vector<LinesSpec> lines;
     std::vector<shader::PluginPass> passes;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;

@@ -16,6 +16,7 @@
 #include "base/units.h"
 #include "gl/texture.h"
 #include "render/background_linker.h"
+#include "render/eye_post.h"
 #include "render/footprint_texture.h"
 #include "render/frame_runner.h"
 #include "render/ground_probe.h"
@@ -114,6 +115,7 @@ struct Renderer::Impl : FrameServices {
     StitchedFrames frames;
     WatchedPrograms programs;
     EffectTextures effect_textures;
+    LineTextures line_textures;
     gl::RingBuffer blocks{"frame blocks"};
     gl::RingBuffer::Place frame_block;  // last upload
     gl::Buffer params_block;
@@ -141,6 +143,7 @@ struct Renderer::Impl : FrameServices {
           frames(stitch(effects, c.info(), o)),
           programs(frames, shared.programs, effects.stitch.snippets),
           effect_textures(effects.textures, anisotropy, shared.textures),
+          line_textures(effects.lines),
           displaces(effects.displaces),
           outside(o.outside && shows_block()),
           runner(
@@ -250,6 +253,7 @@ struct Renderer::Impl : FrameServices {
         if (unit.resource == "floor_ground") return &footprint;
         if (const gl::Texture* const found = terrain.texture(unit.resource)) return found;
         if (const gl::Texture* const found = effect_textures.find(unit.resource)) return found;
+        if (const gl::Texture* const found = line_textures.find(unit.resource)) return found;
         for (const NativeHost& native : natives)
             if (const gl::Texture* const found = native.find(unit.resource)) {
                 check_kind(*found, unit);
@@ -264,8 +268,12 @@ struct Renderer::Impl : FrameServices {
     FrameBlock prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs) {
         inputs.displacement = displacement_of(displaces, values);
         terrain.displace(inputs.displacement);
+        line_textures.update(terrain.grid(), terrain.serial(), shared.lines);
         const double limit = anisotropy > 1 ? anisotropy : kFootprintWithoutAnisotropy;
-        return make_frame_block(inputs, ground, options.width_px, options.height_px, limit);
+        FrameBlock block =
+            make_frame_block(inputs, ground, options.width_px, options.height_px, limit);
+        write_eye_post(terrain.grid(), ground.frame.to_geodetic(inputs.camera.eye_m), block);
+        return block;
     }
 
     /// Creates the page layers that programs read, and fills in the terrain's part of the block.

@@ -13,6 +13,7 @@
 #include "image/image.h"
 #include "render/effect_textures.h"
 #include "render/frame_block.h"
+#include "render/line_textures.h"
 #include "render/pass_timers.h"
 #include "render/readback.h"
 #include "render/shared_resources.h"
@@ -48,6 +49,7 @@ struct EffectInputs {
     shader::StitchInput stitch;  ///< without its limit of texture units, which is the device's
     /// Within the device's limits (effect::check_limits). Need not outlive the constructor.
     std::vector<const effect::LoadedTexture*> textures;
+    std::vector<LineSource> lines{};  ///< textures of kind `lines`
     std::vector<effect::DisplaceSpec> displaces;
     /// Of native effects; must outlive the renderer.
     std::vector<const effect::NativeModule*> modules;

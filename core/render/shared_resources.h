@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/effect_textures.h"
+#include "render/line_textures.h"
 #include "render/program_cache.h"
 #include "render/texture_pool.h"
 
@@ -12,6 +13,7 @@ struct SharedResources {
     ProgramCache programs;
     TexturePool targets;
     EffectTextureCache textures;
+    LineTextureCache lines;
 };
 
 }  // namespace relevo::render

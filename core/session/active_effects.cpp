@@ -105,6 +105,12 @@ render::EffectInputs ActiveEffects::inputs() const {
         else
             inputs.stitch.same_textures.emplace(texture.spec.resource, (*same)->spec.resource);
     }
+    for (const effect::Effect* effect : loaded.selection.effects)
+        for (const effect::LinesSpec& spec : effect->manifest.lines) {
+            const std::string text = effect->id() + '.' + spec.attribute;
+            inputs.lines.push_back({spec.resource, spec.file, values.text(spec.file),
+                                    values.find_text(text) ? values.text(text) : spec.attribute});
+        }
     for (const effect::NativeModule& module : loaded.modules)
         inputs.modules.push_back(&module);
     return inputs;

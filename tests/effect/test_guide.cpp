@@ -50,6 +50,20 @@ TEST(PluginGuide, ItsContoursAreAPlugin) {
     EXPECT_TRUE(registry.effects()[0].answers("display"));
 }
 
+TEST(PluginGuide, ItsWayIsAPlugin) {
+    const Plugins plugins;
+    plugins.add("way", R"("texts": {"file": {"kind": "file"}, "by": {}},
+                          "textures": {"way": {"kind": "lines", "from": "file", "attribute": "by"}})",
+                block(guide(), "glsl way.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    const Manifest& manifest = registry.effects()[0].manifest;
+    ASSERT_EQ(manifest.lines.size(), 1U);
+    EXPECT_EQ(manifest.lines[0].resource, "way.way");
+    EXPECT_EQ(manifest.lines[0].file, "way.file");
+    EXPECT_EQ(manifest.lines[0].attribute, "by");
+}
+
 TEST(PluginGuide, ItsGlowIsAPlugin) {
     const Plugins plugins;
     plugins.add("glow", R"("passes": {"small": {"scale": 0.125}})",

@@ -231,8 +231,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TableFile", with(R"("textures": {"curve": {"kind": "table"}})"),
             "2: textures.curve: expected a \"file\" of the plugin, or a text \"from\""},
         Bad{"RasterText", with(R"("textures": {"photo": {"kind": "raster", "from": "file"}})"),
-            "2: textures.photo: expected a text of \"texts\" with \"kind\": \"file\" but got "
-            "\"file\""},
+            "2: textures.photo: expected a text of kind \"file\"; add \"texts\": {\"file\": "
+            "{\"kind\": \"file\"}}"},
         Bad{"RasterValues",
             with(
                 R"("textures": {"photo": {"kind": "raster", "from": "file", "holds": "values", "colours": "ramp"}})"),
@@ -246,8 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NoKind", texture(R"("file": "a.png")"),
             "2: textures.noise: expected a member \"kind\""},
         Bad{"BadKind", texture(R"("kind": "2darray")"),
-            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, table, cube, raster but got "
-            "\"2darray\"; "
+            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, table, cube, raster, lines "
+            "but got \"2darray\"; "
             "did you "
             "mean 2d-array?"},
         Bad{"NoFile", texture(R"("kind": "2d", "file": "b.png", "encoding": "srgb")"),
@@ -277,6 +277,13 @@ INSTANTIATE_TEST_SUITE_P(
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
             "2: texts: expected a \"module\", or data of \"textures\", that reads them"},
+        Bad{"LinesOfNoText", texture(R"("kind": "lines", "from": "file")"),
+            "2: textures.noise: expected a text of kind \"file\"; add \"texts\": {\"file\": "
+            "{\"kind\": \"file\"}}"},
+        Bad{"LinesWithoutFrom", texture(R"("kind": "lines")"),
+            "2: textures.noise: expected a member \"from\""},
+        Bad{"LinesKey", texture(R"("kind": "lines", "from": "file", "file": "a.gpx")"),
+            "2: textures.noise.file: no such key; there are kind, from, attribute"},
         Bad{"TextKind", text(R"("kind": "path")"),
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),

@@ -25,6 +25,9 @@ void PrintTo(const Scene& scene, std::ostream* out) {
     *out << scene.name;
 }
 
+/// In arguments of scenes: the DEM, and the folder of the tests' data.
+constexpr std::string_view kDem = "DEM:", kData = "DATA:";
+
 std::filesystem::path golden_dir() {
     return source_dir() / "tests/golden";
 }
@@ -37,9 +40,12 @@ std::vector<Scene> read_scenes() {
         scene.arguments = json["views"][entry["view"].get<std::string>()];
         const std::vector<std::string> more = entry.value("more", std::vector<std::string>{});
         scene.arguments.insert(scene.arguments.end(), more.begin(), more.end());
-        for (std::string& argument : scene.arguments)
-            if (const std::size_t at = argument.find("DEM"); at != std::string::npos)
-                argument.replace(at, 3, bundled_dem());
+        for (std::string& argument : scene.arguments) {
+            if (const auto at = argument.find(kDem); at != std::string::npos)
+                argument.replace(at, kDem.size(), bundled_dem());
+            if (const auto at = argument.find(kData); at != std::string::npos)
+                argument.replace(at, kData.size(), (source_dir() / "tests/data").string());
+        }
         scenes.push_back(std::move(scene));
     }
     return scenes;

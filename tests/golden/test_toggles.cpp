@@ -109,11 +109,16 @@ TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
     for (const auto& plugin : plugins)
         ids.push_back(plugin["id"]);
     ASSERT_GE(ids.size(), 2U);
+    const std::string lines = (source_dir() / "tests/data/lines/jacksboro.geojson").string();
     take("none.png", {"--only", ""});
     const image::Image8 none = picture("none.png");
     for (std::size_t i = 0; i < ids.size(); ++i) {
         for (std::size_t j = i + 1; j < ids.size(); ++j) {
-            const Result run = take("pair.png", {"--only", ids[i] + "," + ids[j]});
+            std::vector<std::string> more{"--only", ids[i] + "," + ids[j]};
+            // This one draws the lines of a file.
+            if (ids[i] == "tracks" || ids[j] == "tracks")
+                more.insert(more.end(), {"--set", "tracks.file=" + lines});
+            const Result run = take("pair.png", more);
             EXPECT_EQ(run.status, 0) << ids[i] << " and " << ids[j] << ": " << run.err;
             if (kSilent.contains(ids[i]) && kSilent.contains(ids[j])) continue;
             const image::Image8 pair = picture("pair.png");

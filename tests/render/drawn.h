@@ -33,9 +33,11 @@ class Drawn {
     static constexpr double kFov_deg = 40;
 
     /// @param effects   in calling order, behind those of `shipped`
+    /// @param lines     textures of kind `lines`
     Drawn(dem::Heightfield field, std::vector<TestEffect> effects, int width_px, int height_px,
           double pixel_error = 0, const std::vector<effect::Effect>& shipped = {},
-          const std::vector<std::pair<std::string, std::string>>& settings = {})
+          const std::vector<std::pair<std::string, std::string>>& settings = {},
+          const std::vector<render::LineSource>& lines = {})
         : dem_(std::move(field)),
           shipped_(shipped),
           ground_(render::make_ground(dem_)),
@@ -43,6 +45,7 @@ class Drawn {
           height_px_(height_px) {
         std::vector<shader::Param> params = render::core_params();
         render::EffectInputs inputs;
+        inputs.lines = lines;
         std::vector<effect::LoadedTexture> textures;
         const auto add = [&](const shader::Snippet& snippet) {
             params.insert(params.end(), snippet.source.params.begin(), snippet.source.params.end());

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <glm/mat2x2.hpp>
+#include <glm/vec2.hpp>
+
+#include "dem/grid.h"
+#include "geo/geodetic.h"
+#include "render/frame_block.h"
+
+namespace relevo::render {
+
+/// Metres east and north on the ellipsoid for a step along the row (first column) and along the
+/// column (second one), at a post. NaN where the grid has no place.
+glm::dmat2 metres_per_post(const dem::Grid& grid, const glm::dvec2& post);
+
+/// Writes the eye's place on the DEM's grid: eye_post and eye_axes.
+void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, FrameBlock& block);
+
+}  // namespace relevo::render
