@@ -14,6 +14,7 @@
 #include "gl/texture.h"
 #include "scene/camera.h"
 #include "scene/view.h"
+#include "session/marks.h"
 #include "sun/time.h"
 
 namespace relevo::viewer {
@@ -50,6 +51,7 @@ struct Picture {
     scene::GroundHeight aim_m;            ///< Session::heights_to_aim_at()
     sun::Instant utc;
     std::vector<chart::Legend> legends;  ///< of effects
+    std::vector<session::Marks> marks;   ///< of effects
     /// Full size, all tile pages, the complete DEM, current shadows.
     bool sharp = false;
 

@@ -355,6 +355,7 @@ struct SceneThread::Impl {
         made->aim_m = session->heights_to_aim_at();
         made->utc = session->time();
         made->legends = session->colour_legends();
+        made->marks = session->marks();
         made->sharp = sharp;
         made->answers = answers;
         made->number = ++published;

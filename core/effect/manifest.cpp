@@ -139,6 +139,7 @@ class ManifestReader {
         glsl(object);
         textures(object);
         passes(object);
+        marks(object);
         texts(object);
         displaces(object);
         invents(object);
@@ -301,13 +302,20 @@ class ManifestReader {
                         shared ? name.substr(kShared.size()) : name, shared);
     }
 
+    void marks(json::ObjectReader& object) {
+        named(object, "marks", "marks", [&](const std::string& name, const json::Value& value) {
+            json::ObjectReader entry(kWho, manifest_.file.string(), "marks." + name, value);
+            manifest_.marks.push_back(read_marks(entry, manifest_.id, name));
+        });
+    }
+
     void texts(json::ObjectReader& object) {
         named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
-        if (manifest_.module.empty() && !manifest_.texts.empty())
+        if (manifest_.module.empty() && manifest_.marks.empty() && !manifest_.texts.empty())
             object.fail(object.line_of("texts"), "texts",
-                        "expected a \"module\" too: only modules read texts");
+                        "expected a \"module\" or \"marks\" too: only these read texts");
     }
 
     shader::TextParam text(const std::string& name, const json::Value& value) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "effect/marks_spec.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 
@@ -81,10 +82,11 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::vector<shader::PluginPass> passes;
+    std::vector<MarksSpec> marks;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty
-    std::vector<shader::TextParam> texts;  ///< that the module reads
+    std::vector<shader::TextParam> texts;  ///< that the module or marks read
 
     std::filesystem::path folder;
     std::filesystem::path file;  ///< folder / "plugin.json"
