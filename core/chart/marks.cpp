@@ -29,8 +29,8 @@ class Placer {
     /// @returns whether there was room
     bool place(PlacedMark& mark) {
         const Rect& within = room_.within();
-        if (mark.at.x < within.x || mark.at.x > within.x + within.width || mark.at.y < within.y ||
-            mark.at.y > within.y + within.height)
+        if (!(mark.at.x >= within.x && mark.at.x <= within.x + within.width &&
+              mark.at.y >= within.y && mark.at.y <= within.y + within.height))
             return false;
         if (style_.symbol != Symbol::None) {
             const double half = (kSymbol + kHalo) * style_.size;
@@ -39,13 +39,15 @@ class Placer {
         }
         mark.leader_top = mark.at.y;
         if (!mark.words.empty() && !(style_.leader > 0 ? above(mark) : beside(mark))) return false;
-        if (style_.symbol != Symbol::None) room_.take(mark.symbol);
-        if (!mark.words.empty()) room_.take(mark.box);
-        if (mark.leader_top < mark.at.y) room_.take(leader(mark));
+        if (style_.symbol != Symbol::None) take(mark.symbol);
+        if (!mark.words.empty()) take(mark.box);
+        if (mark.leader_top < mark.at.y) take(leader(mark));
         return true;
     }
 
   private:
+    // Half of the distance around each of two marks.
+    void take(const Rect& box) { room_.take(grown(box, style_.distance / 2)); }
     bool is_free(const Rect& box) const { return room_.is_free(grown(box, style_.distance / 2)); }
 
     Rect leader(const PlacedMark& mark) const {

@@ -16,7 +16,7 @@ namespace {
 using Order = effect::MarksSpec::Order;
 
 /// Pixels that are tested along the heights that a mark may have.
-constexpr int kMostSamples = 48;
+constexpr double kMostSamples = 48;
 /// Ground that is nearer than the mark by this fraction of its depth is other ground before it.
 constexpr double kOnGround = 0.02;
 
@@ -84,20 +84,16 @@ class Finder {
                                      [](const Candidate& c) { return c.mark->height_m; });
     }
 
-    /// Place of a sample from top to bottom, 0 to 1.
-    static double share(const Candidate& candidate, int k) {
-        return k <= 0 ? 0 : k / (candidate.samples - 1.0);
-    }
     /// Position of a sample; 0 is the top one, negative ones are above it.
     static glm::dvec2 sample(const Candidate& candidate, int k) {
-        return glm::mix(candidate.top, candidate.bottom, share(candidate, k)) +
-               glm::dvec2(0, std::min(k, 0));
+        if (k <= 0) return candidate.top + glm::dvec2(0, k);
+        return glm::mix(candidate.top, candidate.bottom, k / (candidate.samples - 1.0));
     }
 
     void add_pixels(Candidate& candidate) {
         const double length = distance(candidate.top, candidate.bottom);
-        candidate.samples =
-            1 + static_cast<int>(std::ceil(std::clamp(length, 0.0, kMostSamples - 1.0)));
+        if (length >= 1)
+            candidate.samples = 1 + static_cast<int>(std::min(std::ceil(length), kMostSamples - 1));
         candidate.first = pixels_.size();
         for (int k = -kHidden_px; k < candidate.samples; ++k) {
             const glm::dvec2 at = sample(candidate, k);
@@ -107,25 +103,48 @@ class Finder {
         }
     }
 
+    std::size_t index(const Candidate& candidate, int k) const {
+        return candidate.first + static_cast<std::size_t>(k + kHidden_px);
+    }
+    double seen_m(const Candidate& candidate, int k) const {
+        return depths_m_[index(candidate, k)];
+    }
+    /// Where the centre of a sample's pixel is between top and bottom, 0 to 1.
+    double share(const Candidate& candidate, int k) const {
+        if (candidate.samples == 1) return 0;
+        const glm::dvec2 way = candidate.bottom - candidate.top;
+        const glm::dvec2 center = glm::dvec2(pixels_[index(candidate, k)]) + 0.5;
+        return dot(center - candidate.top, way) / dot(way, way);
+    }
+    /// How far ground is behind the mark, if that is at a sample [m]; negative before it.
+    double behind_m(const Candidate& candidate, int k) const {
+        return seen_m(candidate, k) -
+               glm::mix(candidate.top_m, candidate.bottom_m, share(candidate, k));
+    }
+
+    bool is_hidden(const Candidate& candidate) const {
+        for (int k = -kHidden_px; k <= 0; ++k)
+            if (seen_m(candidate, k) >= candidate.top_m * (1 - kNear)) return false;
+        return true;
+    }
+
     /// Where the mark stands in the picture; nullopt if it is hidden or outside.
     std::optional<glm::dvec2> find(const Candidate& candidate) const {
-        const auto seen_m = [&](int k) {
-            return double{depths_m_[candidate.first + static_cast<std::size_t>(k + kHidden_px)]};
-        };
-        bool visible = false;
-        for (int k = -kHidden_px; k <= 0; ++k)
-            visible = visible || seen_m(k) >= candidate.top_m * (1 - kNear);
-        if (!visible) return std::nullopt;
-        const auto own_m = [&](int k) {
-            return glm::mix(candidate.top_m, candidate.bottom_m, share(candidate, k));
-        };
+        if (is_hidden(candidate)) return std::nullopt;
         // Downwards to the first pixel that shows no ground behind the mark.
         int k = 0;
-        while (k < candidate.samples - 1 && seen_m(k) > own_m(k))
+        while (k < candidate.samples - 1 && behind_m(candidate, k) > 0)
             ++k;
-        if (k > 0 && seen_m(k) < own_m(k) * (1 - kOnGround)) return std::nullopt;
-        const glm::dvec2 at = sample(candidate, k);
-        return is_inside(at) ? std::optional(at) : std::nullopt;
+        double at = share(candidate, k);
+        if (k > 0) {
+            const double before_m = behind_m(candidate, k - 1), after_m = behind_m(candidate, k);
+            if (after_m < -kOnGround * candidate.top_m) return std::nullopt;
+            if (after_m < 0 && before_m < kOnGround * candidate.top_m)
+                at = glm::mix(share(candidate, k - 1), at, before_m / (before_m - after_m));
+        }
+        const glm::dvec2 found =
+            glm::mix(candidate.top, candidate.bottom, std::clamp(at, 0.0, 1.0));
+        return is_inside(found) ? std::optional(found) : std::nullopt;
     }
 
     const Marks& marks_;

@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
-            "2: texts: expected a \"module\" too: only modules read texts"},
+            "2: texts: expected a \"module\" or \"marks\" too: only these read texts"},
         Bad{"TextKind", text(R"("kind": "path")"),
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
@@ -457,7 +457,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "shader: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
                  "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
         Mismatch{"DoesNothing", "", "float haze_f() { return 1.0; }",
-                 "plugin: plugins/haze/plugin.json: no hook and no module, so it does "
+                 "plugin: plugins/haze/plugin.json: no hook, module or marks, so it does "
                  "nothing; define a function such as haze_on_albedo"},
         Mismatch{"NotWanted", R"("wants": ["shadow"])",
                  "void haze_on_albedo(inout Surface s) {\n#if HAS_sky\n#endif\n}",

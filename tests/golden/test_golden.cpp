@@ -35,7 +35,11 @@ std::vector<Scene> read_scenes() {
     for (const auto& entry : json["scenes"]) {
         Scene scene{entry["name"], entry["plugins"], {}};
         scene.arguments = json["views"][entry["view"].get<std::string>()];
-        const std::vector<std::string> more = entry.value("more", std::vector<std::string>{});
+        std::vector<std::string> more = entry.value("more", std::vector<std::string>{});
+        // A setting's file is in the folder of these scenes.
+        for (std::string& argument : more)
+            if (const std::size_t at = argument.find(".file="); at != std::string::npos)
+                argument.insert(at + 6, golden_dir().string() + '/');
         scene.arguments.insert(scene.arguments.end(), more.begin(), more.end());
         scenes.push_back(std::move(scene));
     }
