@@ -112,7 +112,7 @@ std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& p
     const auto text = std::ranges::find(texts, marks.from, &shader::TextParam::address);
     if (text == texts.end() || !text->is_file)
         return fmt::format(
-            "marks.{0}: from: expected a text of kind file but got \"{1}\"; add \"texts\": "
+            "marks.{0}.from: expected a text of kind file but got \"{1}\"; add \"texts\": "
             "{{\"{1}\": {{\"kind\": \"file\"}}}}",
             marks.name, marks.from.substr(marks.from.find('.') + 1));
     for (const MarkKey& key : mark_keys()) {
@@ -122,7 +122,7 @@ std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& p
         const std::string fault =
             param == params.end() ? "the plugin has no such parameter" : fault_of(key, *param);
         if (!fault.empty())
-            return fmt::format("marks.{}: {}: {}: {}", marks.name, key.key, address, fault);
+            return fmt::format("marks.{}.{}: {}: {}", marks.name, key.key, address, fault);
     }
     return {};
 }
