@@ -71,7 +71,7 @@ StandingMarks::Mark standing_at(const geo::PlaceText& at, double ground_m,
     return {.at_m = frame.to_local(place),
             .up = frame.up(place.lat_rad, place.lon_rad),
             .height_m = static_cast<float>(height_m),
-            .ground_m = absolute ? std::nanf("") : static_cast<float>(ground_m)};
+            .on_ground = !at.has_height};
 }
 
 chart::Color color_of(const shader::ParamValue& value, double opacity) {
@@ -136,7 +136,7 @@ std::shared_ptr<const StandingMarks> MarksOnGround::of(
 
 Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> standing,
                const shader::ParamStore& values, const render::Displacement& displacement,
-               double exaggeration) {
+               const scene::Scene& scene) {
     constexpr double kHaloOpacity = 0.85;
     const effect::MarksSpec& spec = *loaded.spec;
     const auto number = [&](const effect::MarkValue& value) { return value.of(values)[0]; };
@@ -151,7 +151,8 @@ Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> s
             .order = static_cast<effect::MarksSpec::Order>(number(spec.order)),
             .above_m = number(spec.above_m),
             .displacement = displacement,
-            .exaggeration = exaggeration};
+            .exaggeration = scene.exaggeration,
+            .pixel_error = scene.pixel_error};
 }
 
 }  // namespace relevo::session

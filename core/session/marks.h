@@ -44,7 +44,7 @@ struct StandingMarks {
         glm::dvec3 at_m{0};       ///< exaggerated, before displacement by effects
         glm::vec3 up{0, 0, 1};    ///< the vertical there
         float height_m = 0;       ///< of the mark, in the DEM's heights
-        float ground_m = 0;       ///< of the ground; NaN for a mark with an absolute height
+        bool on_ground = true;    ///< false if the file gives a height
         std::uint32_t index = 0;  ///< in MarkPlaces::places
     };
     std::shared_ptr<const MarkPlaces> places;
@@ -82,12 +82,13 @@ struct Marks {
     double above_m = 0;  ///< raises all marks, in the DEM's heights
     render::Displacement displacement;
     double exaggeration = 1;
+    double pixel_error = 0;  ///< of the drawn ground against the posts [px]
 };
 
 /// With the values that an effect's parameters have now.
 Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> standing,
                const shader::ParamStore& values, const render::Displacement& displacement,
-               double exaggeration);
+               const scene::Scene& scene);
 
 /// A picture in which marks are placed.
 struct MarkView {
@@ -103,11 +104,12 @@ MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
                  const std::vector<float>& depths_m);
 
 /// The marks that are in the picture and not hidden by ground, the most important first. A mark on
-/// the ground stands on the drawn ground, also where effects displace it. One that is hidden by
-/// less than kHidden_px of ground, or by ground less than kNear of its depth before it, is visible:
-/// summits are rarely at the highest drawn point.
+/// the ground stands where the frame shows ground at its place: displaced by effects, and coarser
+/// than the posts by up to `pixel_error`. So much, and at least kHidden_px, may hide of a mark
+/// whose place is just behind a crest: it stands on the crest then. Ground that is before a mark by
+/// less than kNear of its depth does not hide it.
 std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& view);
-inline constexpr int kHidden_px = 3;
+inline constexpr double kHidden_px = 3;
 inline constexpr double kNear = 0.005;
 
 /// Draws the visible marks of all lists without overlap.

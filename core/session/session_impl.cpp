@@ -262,7 +262,7 @@ std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
                 marks_of(list,
                          marks_on_ground.of(list.places, state.dem(), state.ground().frame,
                                             state.scene.exaggeration),
-                         effects.values, renderer.displacement(), state.scene.exaggeration));
+                         effects.values, renderer.displacement(), state.scene));
     return result;
 }
 

@@ -17,8 +17,8 @@ using Order = effect::MarksSpec::Order;
 
 /// Pixels that are tested along the heights that a mark may have.
 constexpr double kMostSamples = 48;
-/// Ground that is nearer than the mark by this fraction of its depth is other ground before it.
-constexpr double kOnGround = 0.02;
+/// Ground that is nearer than a mark by this fraction of its depth is not the crest that it is on.
+constexpr double kCrest = 0.02;
 
 /// A mark in the picture.
 struct Candidate {
@@ -27,14 +27,17 @@ struct Candidate {
     glm::dvec2 top, bottom;
     double top_m, bottom_m;
     std::size_t first = 0;  ///< of its pixels among those of all candidates
-    int samples = 1;        ///< from top to bottom; those of the tolerance above them come first
+    int samples = 1;        ///< from top to bottom
 };
 
 /// Projects marks, and finds which of them are on ground or visible before it.
 class Finder {
   public:
     Finder(const Marks& marks, const MarkView& view)
-        : marks_(marks), view_(view), projection_(view.camera, view.width_px, view.height_px, {}) {}
+        : marks_(marks),
+          view_(view),
+          projection_(view.camera, view.width_px, view.height_px, {}),
+          reach_px_(std::max(kHidden_px, marks.pixel_error)) {}
 
     std::vector<chart::MarkPoint> run() {
         for (const StandingMarks::Mark& mark : marks_.standing->marks)
@@ -62,13 +65,14 @@ class Finder {
     }
 
     std::optional<Candidate> project(const StandingMarks::Mark& mark) const {
-        const glm::dvec3 up = marks_.exaggeration * glm::dvec3(mark.up);
-        const glm::dvec3 at_m = mark.at_m + marks_.above_m * up;
+        const glm::dvec3 up(mark.up);
+        const glm::dvec3 at_m = mark.at_m + marks_.above_m * marks_.exaggeration * up;
         glm::dvec3 top_m = at_m, bottom_m = at_m;
-        if (marks_.displacement.any() && !std::isnan(mark.ground_m)) {
-            const auto [low_m, high_m] = marks_.displacement.range_m(mark.ground_m, mark.ground_m);
-            top_m += (high_m - mark.ground_m) * up;
-            bottom_m += (low_m - mark.ground_m) * up;
+        if (mark.on_ground && marks_.above_m == 0 && depth_m(at_m) > 0) {
+            const auto [low_m, high_m] = marks_.displacement.range_m(mark.height_m, mark.height_m);
+            const double reach_m = reach_px_ / projection_.px_per_m(depth_m(at_m));
+            top_m += ((high_m - mark.height_m) * marks_.exaggeration + reach_m) * up;
+            bottom_m += ((low_m - mark.height_m) * marks_.exaggeration - reach_m) * up;
         }
         const auto top = projection_.project(top_m), bottom = projection_.project(bottom_m);
         if (!top || !bottom || (!is_inside(*top) && !is_inside(*bottom))) return std::nullopt;
@@ -84,19 +88,14 @@ class Finder {
                                      [](const Candidate& c) { return c.mark->height_m; });
     }
 
-    /// Position of a sample; 0 is the top one, negative ones are above it.
-    static glm::dvec2 sample(const Candidate& candidate, int k) {
-        if (k <= 0) return candidate.top + glm::dvec2(0, k);
-        return glm::mix(candidate.top, candidate.bottom, k / (candidate.samples - 1.0));
-    }
-
     void add_pixels(Candidate& candidate) {
         const double length = distance(candidate.top, candidate.bottom);
         if (length >= 1)
             candidate.samples = 1 + static_cast<int>(std::min(std::ceil(length), kMostSamples - 1));
         candidate.first = pixels_.size();
-        for (int k = -kHidden_px; k < candidate.samples; ++k) {
-            const glm::dvec2 at = sample(candidate, k);
+        for (int k = 0; k < candidate.samples; ++k) {
+            const double share = candidate.samples == 1 ? 0.5 : k / (candidate.samples - 1.0);
+            const glm::dvec2 at = glm::mix(candidate.top, candidate.bottom, share);
             pixels_.emplace_back(
                 std::clamp(static_cast<int>(std::floor(at.x)), 0, view_.width_px - 1),
                 std::clamp(static_cast<int>(std::floor(at.y)), 0, view_.height_px - 1));
@@ -104,10 +103,7 @@ class Finder {
     }
 
     std::size_t index(const Candidate& candidate, int k) const {
-        return candidate.first + static_cast<std::size_t>(k + kHidden_px);
-    }
-    double seen_m(const Candidate& candidate, int k) const {
-        return depths_m_[index(candidate, k)];
+        return candidate.first + static_cast<std::size_t>(k);
     }
     /// Where the centre of a sample's pixel is between top and bottom, 0 to 1.
     double share(const Candidate& candidate, int k) const {
@@ -118,30 +114,27 @@ class Finder {
     }
     /// How far ground is behind the mark, if that is at a sample [m]; negative before it.
     double behind_m(const Candidate& candidate, int k) const {
-        return seen_m(candidate, k) -
+        return depths_m_[index(candidate, k)] -
                glm::mix(candidate.top_m, candidate.bottom_m, share(candidate, k));
-    }
-
-    bool is_hidden(const Candidate& candidate) const {
-        for (int k = -kHidden_px; k <= 0; ++k)
-            if (seen_m(candidate, k) >= candidate.top_m * (1 - kNear)) return false;
-        return true;
     }
 
     /// Where the mark stands in the picture; nullopt if it is hidden or outside.
     std::optional<glm::dvec2> find(const Candidate& candidate) const {
-        if (is_hidden(candidate)) return std::nullopt;
         // Downwards to the first pixel that shows no ground behind the mark.
         int k = 0;
-        while (k < candidate.samples - 1 && behind_m(candidate, k) > 0)
-            ++k;
-        double at = share(candidate, k);
-        if (k > 0) {
-            const double before_m = behind_m(candidate, k - 1), after_m = behind_m(candidate, k);
-            if (after_m < -kOnGround * candidate.top_m) return std::nullopt;
-            if (after_m < 0 && before_m < kOnGround * candidate.top_m)
-                at = glm::mix(share(candidate, k - 1), at, before_m / (before_m - after_m));
+        double behind = behind_m(candidate, 0), before = 0;
+        while (behind > 0 && k < candidate.samples - 1) {
+            before = behind;
+            behind = behind_m(candidate, ++k);
         }
+        const double crest_m = kCrest * candidate.top_m;
+        if (k == 0 && behind < -kNear * candidate.top_m) return std::nullopt;
+        // Level ground far away comes nearer by as much from pixel to pixel, but not across a
+        // crest.
+        if (behind < -crest_m && before > crest_m) return std::nullopt;
+        double at = candidate.samples == 1 ? 0.5 : share(candidate, k);
+        if (k > 0 && behind < 0 && before < crest_m)
+            at = glm::mix(share(candidate, k - 1), at, before / (before - behind));
         const glm::dvec2 found =
             glm::mix(candidate.top, candidate.bottom, std::clamp(at, 0.0, 1.0));
         return is_inside(found) ? std::optional(found) : std::nullopt;
@@ -150,6 +143,7 @@ class Finder {
     const Marks& marks_;
     const MarkView& view_;
     SeenGround projection_;
+    double reach_px_;  // of the drawn ground above and below the posts
     std::vector<Candidate> candidates_;
     std::vector<glm::ivec2> pixels_;
     std::vector<float> depths_m_;
