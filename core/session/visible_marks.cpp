@@ -18,7 +18,7 @@ using Order = effect::MarksSpec::Order;
 /// Pixels that are tested along the heights that a mark may have.
 constexpr double kMostSamples = 48;
 /// Ground that is nearer than a mark by this fraction of its depth is not the crest that it is on.
-constexpr double kCrest = 0.02;
+constexpr double kCrest = 0.05;
 
 /// A mark in the picture.
 struct Candidate {

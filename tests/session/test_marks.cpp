@@ -143,7 +143,6 @@ std::vector<double> distances_px(double elevation_deg, double exaggeration, bool
     if (lifted) scene.effects.switches.only->push_back("lift");
     scene.effects.plugin_path = {test_plugins()};
     scene.exaggeration = exaggeration;
-    scene.pixel_error = 0.3;  // of the drawn ground against the posts
     scene.view.orbit.elevation_deg = elevation_deg;
     scene.view.orbit.azimuth_deg = 160;
     scene.view.orbit.zoom = 1.5;
