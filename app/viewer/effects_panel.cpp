@@ -167,10 +167,10 @@ void effect_row(State& state, const effect::Effect& effect) {
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (open) {
-        for (const Param& param : effect.params())
-            if (!param.is_host) param_row(state, param, is_on);
         for (const shader::TextParam& text : effect.manifest.texts)
             text_row(state, text);
+        for (const Param& param : effect.params())
+            if (!param.is_host) param_row(state, param, is_on);
         if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))
             state.set_effects(without_values(state.document.scene.effects, effect.id()));
         ImGui::TreePop();

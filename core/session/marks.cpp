@@ -115,8 +115,8 @@ std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> pla
     });
     std::erase_if(marks, [](const StandingMarks::Mark& mark) { return std::isnan(mark.height_m); });
     if (marks.empty())
-        log::info(fmt::format("marks: {}: none of its {} places is on the DEM",
-                              printable(places->path), all.size()));
+        log::info(
+            fmt::format("marks: {}: none of its places is on the DEM", printable(places->path)));
     result->marks = std::move(marks);
     result->places = std::move(places);
     return result;
