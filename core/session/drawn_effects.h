@@ -47,8 +47,10 @@ class DrawnEffects {
     /// Switches off effects whose textures exceed the device's limits.
     void fit(const gl::DeviceInfo& device);
     /// Reads the files of marks and creates the renderers.
+    /// @param earlier  marks of the effects that were drawn before
     /// @throws Error as load_marks() and render::Renderer
-    void compile(gl::Context& context, const OptionsOf& options);
+    void compile(gl::Context& context, const OptionsOf& options,
+                 const std::vector<LoadedMarks>& earlier);
 
     /// Takes the parameter values of a request if nothing else differs and no file has changed.
     /// @returns true if it now draws that request; else nothing has changed

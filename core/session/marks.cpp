@@ -33,14 +33,15 @@ std::vector<double> ranks_of(const std::vector<dem::NamedPlace>& places, const s
 }
 
 std::shared_ptr<const MarkPlaces> read_places(const std::string& path, const std::string& who) {
+    auto result = std::make_shared<MarkPlaces>();
+    result->path = path;
     std::vector<dem::NamedPlace> places = dem::read_points(path, who);
     const std::vector<double> ranks = ranks_of(places, who, path);
     std::vector<std::size_t> order(places.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         order[i] = i;
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return ranks[i]; });
-    auto result = std::make_shared<MarkPlaces>();
-    result->path = path;
+    result->read.add(path);
     result->places.reserve(places.size());
     for (const std::size_t i : order) {
         result->places.push_back(std::move(places[i]));
@@ -84,7 +85,14 @@ chart::Color color_of(const shader::ParamValue& value, double opacity) {
 }  // namespace
 
 std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
-                                    const shader::ParamStore& values, bool report) {
+                                    const shader::ParamStore& values,
+                                    const std::vector<LoadedMarks>& earlier, bool report) {
+    const auto places_of = [&](const std::string& path, const std::string& who) {
+        for (const LoadedMarks& list : earlier)
+            if (list.places && list.places->path == path && list.places->read.hold())
+                return list.places;
+        return read_places(path, who);
+    };
     std::vector<LoadedMarks> result;
     for (const effect::Effect* effect : selection.effects)
         for (const effect::MarksSpec& spec : effect->manifest.marks) {
@@ -94,7 +102,7 @@ std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
                     fmt::format("{} shows nothing: no file is set; --set {}=FILE sets a "
                                 "CSV, GPX or GeoJSON file of places",
                                 effect->id(), spec.from));
-            result.push_back({&spec, path.empty() ? nullptr : read_places(path, spec.from)});
+            result.push_back({&spec, path.empty() ? nullptr : places_of(path, spec.from)});
         }
     return result;
 }

@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "base/file_stamps.h"
 #include "chart/marks.h"
 #include "dem/places.h"
 #include "effect/selection.h"
@@ -24,6 +25,7 @@ namespace relevo::session {
 struct MarkPlaces {
     std::string path;
     std::vector<dem::NamedPlace> places;  ///< names are printable()
+    FileStamps read;                      ///< of the file
 };
 
 /// An active effect's list of marks. `places` is null if no file is set.
@@ -33,10 +35,12 @@ struct LoadedMarks {
 };
 
 /// Reads the files of the active effects' marks.
-/// @param report  logs which lists have no file
+/// @param earlier  whose places are used again if their file has not changed
+/// @param report   logs which lists have no file
 /// @throws Error (BadInput) as dem::read_points(), and for a rank that is not a number
 std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
-                                    const shader::ParamStore& values, bool report);
+                                    const shader::ParamStore& values,
+                                    const std::vector<LoadedMarks>& earlier, bool report);
 
 /// Places of a file in the DEM's local frame. Those without ground are excluded.
 struct StandingMarks {

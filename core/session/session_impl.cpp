@@ -100,14 +100,15 @@ render::RendererOptions Session::Impl::renderer_options() {
 }
 
 void Session::Impl::compile(DrawnEffects& effects, const LoadedDem* first_dem) {
-    effects.compile(*context, [&] {
+    const auto options_of = [&] {
         render::RendererOptions with_texts = renderer_options();
         with_texts.stitched = [this, first_dem](const render::StitchedFrames& frames) {
             if (options.stitched) options.stitched(frames);
             if (first_dem) compute_sky(*first_dem, frames.programs);
         };
         return with_texts;
-    });
+    };
+    effects.compile(*context, options_of, drawn->marks());
 }
 
 void Session::Impl::compute_sky(const LoadedDem& dem,

@@ -314,6 +314,28 @@ TEST(Marks, FilesThatLieAreRefusedByName) {
     }
 }
 
+TEST(Marks, TheirFileIsReadAgainOnlyIfItHasChanged) {
+    const dem::Grid grid = dem::Source::open(jacksboro()).grid();
+    const std::string header = "name,lat,lon\n";
+    const std::string places = written("changed.csv", header + row("before", grid.place(150, 150)));
+    scene::Scene scene = scene_of(jacksboro(), places);
+    Shown shown(scene);
+    EXPECT_THAT(shown.names(), testing::ElementsAre("before"));
+    const auto standing = shown.session.marks().at(0).standing;
+    scene.effects.switches.only->push_back("contours");
+    shown.session.set_effects(scene.effects);
+    EXPECT_EQ(shown.session.marks().at(0).standing, standing);
+    written("changed.csv", header + row("afterwards", grid.place(150, 150)));
+    shown.session.set_effects(scene.effects);
+    shown.session.draw();
+    EXPECT_THAT(shown.names(), testing::ElementsAre("afterwards"));
+    // A file that is broken later leaves what there was.
+    written("changed.csv", "hello");
+    EXPECT_THAT(test::error_of([&] { shown.session.set_effects(scene.effects); }),
+                HasSubstr("no columns lat and lon"));
+    EXPECT_THAT(shown.names(), testing::ElementsAre("afterwards"));
+}
+
 TEST(Marks, AHundredThousandTakeBoundedTime) {
     const dem::Grid grid = dem::Source::open(jacksboro()).grid();
     std::string csv = "name,lat,lon\n";
