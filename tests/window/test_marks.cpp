@@ -53,6 +53,13 @@ TEST_F(MarksInTheWindow, AreThoseOfItsPicture) {
     EXPECT_GT(test::difference(display_.screen(), before), 0.01);
 }
 
+TEST_F(MarksInTheWindow, AreOverFramesThatStayOnTheDevice) {
+    environment_ = {"RELEVO_PRESENT=shared"};
+    open(arguments());
+    EXPECT_GT(names(), 1000);
+    expect_picture_is_its_capture();
+}
+
 TEST_F(MarksInTheWindow, AreOnBothSidesOfAComparison) {
     open(arguments());
     const int alone = names();
