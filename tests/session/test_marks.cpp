@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -318,6 +319,7 @@ TEST(Marks, TheirFileIsReadAgainOnlyIfItHasChanged) {
     const dem::Grid grid = dem::Source::open(jacksboro()).grid();
     const std::string header = "name,lat,lon\n";
     const std::string places = written("changed.csv", header + row("before", grid.place(150, 150)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // newer files are read again
     scene::Scene scene = scene_of(jacksboro(), places);
     Shown shown(scene);
     EXPECT_THAT(shown.names(), testing::ElementsAre("before"));
