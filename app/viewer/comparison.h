@@ -22,6 +22,8 @@ class Comparison {
     void stop();
     /// The scene's thread; null: there is no comparison.
     SceneThread* thread() const { return thread_.get(); }
+    /// The image of the window's left side; null: none yet.
+    const std::shared_ptr<const Picture>& image() const { return image_; }
     /// Passes a new image to the window. Stops if the scene cannot be drawn.
     /// @returns whether there was a new image
     bool poll();

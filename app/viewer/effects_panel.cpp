@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -113,6 +114,27 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::PopID();
 }
 
+/// A text or a file, which is taken when Enter is pressed.
+void text_row(State& state, const shader::TextParam& text) {
+    ImGui::PushID(text.address.c_str());
+    ImGui::TextUnformatted(text.label.c_str());
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s\n%s", text.address.c_str(), text.description.c_str());
+    ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.42f);
+    ImGui::SetNextItemWidth(-34);
+    std::string value = state.effects->values.text(text.address);
+    if (ImGui::InputTextWithHint("##value", text.is_file ? "path, then Enter" : "then Enter",
+                                 &value, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        if (text.is_file && !value.empty()) value = std::filesystem::absolute(value).string();
+        state.set_effects(with_value(state.document.scene.effects, text.address, value));
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("x"))
+        state.set_effects(without_values(state.document.scene.effects, text.address));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
+    ImGui::PopID();
+}
+
 /// Why an effect is off without being switched off; empty if it does not lack anything.
 std::string lack_of(const State& state, const effect::Effect& effect) {
     const std::string off = effect.id() + " is off: ";
@@ -145,6 +167,8 @@ void effect_row(State& state, const effect::Effect& effect) {
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (open) {
+        for (const shader::TextParam& text : effect.manifest.texts)
+            text_row(state, text);
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);
         if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))

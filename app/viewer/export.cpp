@@ -16,6 +16,7 @@
 #include "session/stamps.h"
 #include "session/words.h"
 #include "sun/position.h"
+#include "viewer/mark_overlay.h"
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
@@ -125,6 +126,7 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
             "picture: " + session::non_finite_text(pixels, {picture.width_px, picture.height_px}) +
             "; relevo capture names the effect");
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, rgba);
+    add_marks(picture, image);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
     if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.read_depths_m();

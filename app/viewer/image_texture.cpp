@@ -13,7 +13,7 @@ gl::Texture texture_of(const image::Image8& picture) {
          i += static_cast<std::size_t>(picture.channels)) {
         for (std::size_t c = 0; c < 3; ++c)
             rgba.push_back(picture.values[i + c]);
-        rgba.push_back(255);
+        rgba.push_back(picture.channels == 4 ? picture.values[i + 3] : 255);
     }
     const gl::Extent extent{picture.width, picture.height, 1};
     gl::Texture texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "panel's picture");

@@ -5,7 +5,8 @@
 
 namespace relevo::viewer {
 
-/// A picture that panels show: rows from above, as ImGui has them.
+/// A picture that panels show: RGB, or RGBA with straight alpha; rows from above, as ImGui has
+/// them.
 gl::Texture texture_of(const image::Image8& picture);
 
 }  // namespace relevo::viewer

@@ -151,6 +151,10 @@ void MainWindow::draw_panels() {
 }
 
 void MainWindow::draw_over_image() {
+    const std::shared_ptr<const Picture>& before = comparison_->image();
+    const float line = before ? window_->line() : 0;
+    if (before) marks_before_.draw(before, window_->size_px(), 0, line, size());
+    marks_.draw(picture_, window_->size_px(), line, 1, size());
     draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
     const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;

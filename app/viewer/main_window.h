@@ -10,6 +10,7 @@
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
 #include "viewer/history.h"
+#include "viewer/mark_overlay.h"
 #include "viewer/messages.h"
 #include "viewer/open_dialog.h"
 #include "viewer/opening.h"
@@ -122,6 +123,7 @@ class MainWindow {
     OpenDialog open_dialog_;
     ChartsPanel charts_;
     LegendPicture legend_;
+    MarkOverlay marks_, marks_before_;
     std::unique_ptr<Opening> opening_;
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<Comparison> comparison_;

@@ -14,6 +14,7 @@
 #include "gl/texture.h"
 #include "scene/camera.h"
 #include "scene/view.h"
+#include "session/marks.h"
 #include "sun/time.h"
 
 namespace relevo::viewer {
@@ -51,6 +52,7 @@ struct Picture {
     sun::Instant utc;
     double seconds = 0;                  ///< of effects that move
     std::vector<chart::Legend> legends;  ///< of effects
+    std::vector<session::Marks> marks;   ///< of effects
     /// Full size, all tile pages, the complete DEM, current shadows.
     bool sharp = false;
 

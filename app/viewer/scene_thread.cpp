@@ -367,6 +367,7 @@ struct SceneThread::Impl {
         made->utc = session->time();
         made->seconds = session->scene().seconds;
         made->legends = session->colour_legends();
+        made->marks = session->marks();
         made->sharp = sharp;
         made->answers = answers;
         made->number = ++published;

@@ -129,6 +129,9 @@ std::string to_svg(const Drawing& drawing);
 /// As pixels on white, `scale` of them a unit. @throws Error (Failed) where memory does not do
 image::Image8 to_image(const Drawing& drawing, double scale = 1);
 
+/// The same on nothing: RGBA with straight alpha.
+image::Image8 to_transparent_image(const Drawing& drawing, double scale = 1);
+
 /// Puts a drawing on a picture, RGB, its corner on the pixel (x, y). @throws Error as to_image()
 void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& picture);
 

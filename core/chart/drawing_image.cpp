@@ -97,8 +97,8 @@ class Painter {
 /// A rectangle of pixels that Cairo draws on.
 class Canvas {
   public:
-    Canvas(int width, int height)
-        : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)) {}
+    Canvas(int width, int height, cairo_format_t format = CAIRO_FORMAT_RGB24)
+        : surface_(cairo_image_surface_create(format, width, height)) {}
 
     std::uint8_t* row(int y) {
         unsigned char* const data = cairo_image_surface_get_data(surface_.get());
@@ -146,6 +146,30 @@ image::Image8 to_image(const Drawing& drawing, double scale) {
                         static_cast<int>(std::lround(drawing.height() * scale)), 3);
     std::ranges::fill(image.values, std::uint8_t{255});
     paint(drawing, 0, 0, scale, image);
+    return image;
+}
+
+image::Image8 to_transparent_image(const Drawing& drawing, double scale) {
+    image::Image8 image(static_cast<int>(std::lround(drawing.width() * scale)),
+                        static_cast<int>(std::lround(drawing.height() * scale)), 4);
+    if (image.values.empty()) return image;
+    Canvas canvas(image.width, image.height, CAIRO_FORMAT_ARGB32);
+    canvas.check();
+    canvas.draw(drawing, scale);
+    for (int row = 0; row < image.height; ++row) {
+        std::uint8_t* to = image.row(row);
+        const std::uint8_t* const from = canvas.row(row);
+        for (int column = 0; column < image.width; ++column, to += 4) {
+            std::uint32_t pixel;  // premultiplied
+            std::memcpy(&pixel, from + 4 * column, 4);
+            const std::uint32_t alpha = pixel >> 24;
+            if (alpha == 0) continue;
+            for (int channel = 0; channel < 3; ++channel)
+                to[channel] = static_cast<std::uint8_t>(
+                    ((pixel >> (16 - 8 * channel) & 255) * 255 + alpha / 2) / alpha);
+            to[3] = static_cast<std::uint8_t>(alpha);
+        }
+    }
     return image;
 }
 

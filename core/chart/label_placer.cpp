@@ -8,17 +8,7 @@
 namespace relevo::chart {
 
 void LabelPlacer::keep_clear(const glm::dvec2& center, double radius) {
-    taken_.push_back({center.x - radius, center.y - radius, 2 * radius, 2 * radius});
-}
-
-bool LabelPlacer::is_free(const Rect& box) const {
-    if (box.x < within_.x || box.y < within_.y || box.x + box.width > within_.x + within_.width ||
-        box.y + box.height > within_.y + within_.height)
-        return false;
-    return std::ranges::none_of(taken_, [&](const Rect& other) {
-        return box.x < other.x + other.width && other.x < box.x + box.width &&
-               box.y < other.y + other.height && other.y < box.y + box.height;
-    });
+    room_.take({center.x - radius, center.y - radius, 2 * radius, 2 * radius});
 }
 
 bool LabelPlacer::add(const glm::dvec2& at, const std::string& words, Lettering lettering,
@@ -34,17 +24,17 @@ bool LabelPlacer::add(const glm::dvec2& at, const std::string& words, Lettering 
             const double base = side == Side::Above ? at.y - gap - step * (height + 2)
                                                     : at.y + gap + ascent + step * (height + 2);
             const Rect box{middle - width / 2 - 2, base - ascent - 1, width + 4, height + 2};
-            if (!is_free(box)) continue;
+            if (!room_.is_free(box)) continue;
             const glm::dvec2 from(at.x, at.y + up * 2);
             const glm::dvec2 to(std::clamp(at.x, box.x + 4, box.x + box.width - 4),
                                 side == Side::Above ? base + 3 : base - ascent - 2);
             const Rect way{std::min(from.x, to.x) - 1, std::min(from.y, to.y),
                            std::abs(to.x - from.x) + 2, std::abs(to.y - from.y)};
             const bool led = leader || step > 0;
-            if (led && step > 0 && !is_free(way)) continue;
-            taken_.push_back(box);
+            if (led && step > 0 && !room_.is_free(way)) continue;
+            room_.take(box);
             if (led) {
-                taken_.push_back(way);
+                room_.take(way);
                 drawing_.line(from, to, {.stroke = kSoft, .width = 0.7});
             }
             lettering.anchor = Anchor::Middle;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "chart/drawing.h"
+#include "chart/free_room.h"
 
 namespace relevo::chart {
 
@@ -13,12 +13,12 @@ class LabelPlacer {
     enum class Side { Above, Below };
 
     /// @param within  where labels may stand
-    LabelPlacer(Drawing& drawing, const Rect& within) : drawing_(drawing), within_(within) {}
+    LabelPlacer(Drawing& drawing, const Rect& within) : drawing_(drawing), room_(within) {}
 
     /// No words over this spot.
     void keep_clear(const glm::dvec2& center, double radius);
 
-    void keep_clear(const Rect& area) { taken_.push_back(area); }
+    void keep_clear(const Rect& area) { room_.take(area); }
 
     /// Writes words as near as there is room, with a halo; leaves them out where there is none.
     /// @param gap     between the point and the words
@@ -28,11 +28,8 @@ class LabelPlacer {
              Side side = Side::Above, bool leader = false);
 
   private:
-    bool is_free(const Rect& box) const;
-
     Drawing& drawing_;
-    Rect within_;
-    std::vector<Rect> taken_;
+    FreeRoom room_;
 };
 
 }  // namespace relevo::chart

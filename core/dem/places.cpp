@@ -164,6 +164,7 @@ class Columns {
         name_ = header_.find({"name", "id", "title"});
         height_ = header_.find({"height", "height_m"});
         time_ = header_.find({"time"});
+        rank_ = header_.find({"rank"});
         if (lat_ && lon_) return;
         lon_ = header_.find({"x", "easting"});
         lat_ = header_.find({"y", "northing"});
@@ -186,7 +187,7 @@ class Columns {
         };
         const std::string who = fmt::format("{}: {}: line {}", errors_.who, errors_.path, number);
         const std::string height = field(height_);
-        NamedPlace place{field(name_), {}, field(time_), number};
+        NamedPlace place{field(name_), {}, field(time_), number, field(rank_)};
         for (const auto& column : {lat_, lon_})
             if (field(column).find(',') != std::string::npos)
                 errors_.refuse(number,
@@ -221,7 +222,7 @@ class Columns {
 
     FileErrors errors_;
     Header header_;
-    std::optional<std::size_t> lat_, lon_, name_, height_, time_;
+    std::optional<std::size_t> lat_, lon_, name_, height_, time_, rank_;
     std::optional<geo::Crs> crs_;
 };
 

@@ -180,6 +180,13 @@ void check_texts(const Effect& effect) {
                                 kWho, effect.manifest.file.string(), text.address));
 }
 
+void check_marks(const Effect& effect) {
+    for (const MarksSpec& marks : effect.manifest.marks)
+        if (const std::string fault = fault_of(marks, effect.params(), effect.manifest.texts);
+            !fault.empty())
+            fail(effect.manifest.file.string(), marks.line, fault);
+}
+
 /// The parameters that a ramp names must be the plugin's own.
 void check_ramps(const Effect& effect) {
     const std::vector<shader::Param> params = effect.params();
@@ -265,9 +272,9 @@ void check_hooks(const Effect& effect) {
     }
     const bool any = std::ranges::any_of(effect.snippets,
                                          [](const shader::Snippet& s) { return !s.hooks.empty(); });
-    if (!any && effect.manifest.module.empty())
+    if (!any && effect.manifest.module.empty() && effect.manifest.marks.empty())
         bad_input(
-            fmt::format("{}: {}: no hook and no module, so it does nothing; define a "
+            fmt::format("{}: {}: no hook, module or marks, so it does nothing; define a "
                         "function such as {}_on_albedo",
                         kWho, effect.manifest.file.string(), effect.id()));
 }
@@ -317,6 +324,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     check_passes(effect);
     check_textures(effect);
     check_texts(effect);
+    check_marks(effect);
     return effect;
 }
 

@@ -30,6 +30,11 @@ LinesSpec read_lines_spec(json::ObjectReader& object, const std::string& id,
             .line = line};
 }
 
+std::string no_file_text(const std::string& address) {
+    return fmt::format("{} draws nothing: no file is set; --set {}=FILE sets one",
+                       address.substr(0, address.find('.')), address);
+}
+
 std::string raster_glsl(const RasterSpec& raster, const std::string& id) {
     const std::string name = id + '_' + raster.name;
     return fmt::format(

@@ -36,6 +36,10 @@ struct LinesSpec {
 LinesSpec read_lines_spec(json::ObjectReader& object, const std::string& id,
                           const std::string& name, int line);
 
+/// What a picture says while no file is set for data of an effect.
+/// @param address  "drape.file"
+std::string no_file_text(const std::string& address);
+
 /// The function that reads a raster at a point of the ground: `vec4 <id>_<name>(in Surface s)` for
 /// colours, `vec2 <id>_<name>(in Surface s)` for values.
 std::string raster_glsl(const RasterSpec& raster, const std::string& id);

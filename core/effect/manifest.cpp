@@ -139,6 +139,7 @@ class ManifestReader {
         glsl(object);
         textures(object);
         passes(object);
+        marks(object);
         texts(object);
         displaces(object);
         invents(object);
@@ -332,12 +333,19 @@ class ManifestReader {
                         shared ? name.substr(kShared.size()) : name, shared);
     }
 
+    void marks(json::ObjectReader& object) {
+        named(object, "marks", "marks", [&](const std::string& name, const json::Value& value) {
+            json::ObjectReader entry(kWho, manifest_.file.string(), "marks." + name, value);
+            manifest_.marks.push_back(read_marks(entry, manifest_.id, name));
+        });
+    }
+
     void texts(json::ObjectReader& object) {
         named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
-        bool reads_texts =
-            !manifest_.module.empty() || !manifest_.rasters.empty() || !manifest_.lines.empty();
+        bool reads_texts = !manifest_.module.empty() || !manifest_.rasters.empty() ||
+                           !manifest_.lines.empty() || !manifest_.marks.empty();
         for (const LinesSpec& lines : manifest_.lines)
             check_text(object, "textures." + lines.name, lines.line, lines.file, true);
         for (const TextureSpec& texture : manifest_.textures)
@@ -351,8 +359,9 @@ class ManifestReader {
                 check_text(object, "textures." + raster.name, raster.line, raster.colours, false);
         }
         if (!reads_texts && !manifest_.texts.empty())
-            object.fail(object.line_of("texts"), "texts",
-                        "expected a \"module\", or data of \"textures\", that reads them");
+            object.fail(
+                object.line_of("texts"), "texts",
+                "expected a \"module\", \"marks\", or data of \"textures\", that reads them");
     }
 
     /// Data names a text of the plugin.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "effect/ground_data.h"
+#include "effect/marks_spec.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 
@@ -86,6 +87,7 @@ struct Manifest {
     std::vector<RasterSpec> rasters;
     std::vector<LinesSpec> lines;
     std::vector<shader::PluginPass> passes;
+    std::vector<MarksSpec> marks;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty

@@ -122,6 +122,9 @@ class Linter {
             for (const DisplaceSpec::Length* length : effect_.manifest.displaces->lengths())
                 addresses.insert(length->address);
         if (effect_.manifest.invents) addresses.insert(effect_.manifest.invents->address);
+        for (const MarksSpec& marks : effect_.manifest.marks)
+            for (const MarkKey& key : mark_keys())
+                addresses.insert((marks.*key.member).address);
         for (const shader::ColourRamp& ramp : effect_.ramps())
             addresses.insert({ramp.from.address, ramp.to.address, ramp.where});
         return addresses;

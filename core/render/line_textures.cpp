@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/lines.h"
+#include "effect/ground_data.h"
 #include "render/eye_post.h"
 #include "render/line_index.h"
 
@@ -61,9 +62,7 @@ std::shared_ptr<const gl::Texture> LineTextureCache::find_or_make(const LineSour
     FileStamps stamps;
     std::vector<dem::PlacedLine> lines;
     if (source.file.empty()) {
-        log::info(
-            fmt::format("{}: no file is chosen, no lines are drawn; --set {}=FILE chooses one",
-                        source.who, source.who));
+        log::info(effect::no_file_text(source.who));
     } else {
         stamps.add(source.file);
         lines = dem::read_lines(source.file, source.who, source.attribute, dem);

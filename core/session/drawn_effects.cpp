@@ -73,9 +73,12 @@ void DrawnEffects::fit(const gl::DeviceInfo& device) {
         half.effects.fit(device, half.report);
 }
 
-void DrawnEffects::compile(gl::Context& context, const OptionsOf& options) {
+void DrawnEffects::compile(gl::Context& context, const OptionsOf& options,
+                           const std::vector<LoadedMarks>& earlier) {
+    marks_ = load_marks(effects_->loaded.selection, effects_->values, earlier, /*report=*/true);
     renderer_ = std::make_unique<render::Renderer>(context, effects_->inputs(), options());
     if (!others_) return;
+    other_marks_ = load_marks(others_->loaded.selection, others_->values, marks_, /*report=*/false);
     render::RendererOptions of_others = options();
     of_others.stitched = {};
     without_ = std::make_unique<render::Renderer>(context, others_->inputs(), of_others);

@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include "session/active_effects.h"
+#include "session/marks.h"
 
 namespace relevo::session {
 
@@ -45,8 +46,11 @@ class DrawnEffects {
     void take_ground(const effect::GroundWords& words);
     /// Switches off effects whose textures exceed the device's limits.
     void fit(const gl::DeviceInfo& device);
-    /// Creates the renderers. @throws Error as render::Renderer
-    void compile(gl::Context& context, const OptionsOf& options);
+    /// Reads the files of marks and creates the renderers.
+    /// @param earlier  marks of the effects that were drawn before
+    /// @throws Error as load_marks() and render::Renderer
+    void compile(gl::Context& context, const OptionsOf& options,
+                 const std::vector<LoadedMarks>& earlier);
 
     /// Takes the parameter values of a request if nothing else differs and no file has changed.
     /// @returns true if it now draws that request; else nothing has changed
@@ -69,6 +73,9 @@ class DrawnEffects {
     render::Renderer& renderer() const { return *renderer_; }
     /// Renderer of a comparison's other half, else null.
     render::Renderer* without() const { return without_.get(); }
+    /// Marks of effects(), and of others().
+    const std::vector<LoadedMarks>& marks() const { return marks_; }
+    const std::vector<LoadedMarks>& other_marks() const { return other_marks_; }
 
   private:
     struct Half {
@@ -83,6 +90,7 @@ class DrawnEffects {
     FileStamps files_;
     std::unique_ptr<ActiveEffects> effects_, others_;
     std::unique_ptr<render::Renderer> renderer_, without_;  // point into these effects
+    std::vector<LoadedMarks> marks_, other_marks_;          // the same
 };
 
 /// The most recently drawn selections. Toggling an effect twice reads, links and uploads nothing

@@ -23,9 +23,7 @@ EffectRasters::EffectRasters(const ActiveEffects& effects, const dem::Grid& grid
                 entries_.emplace(*known);
                 continue;
             }
-            if (source.file.empty())
-                log::info(fmt::format("{} draws nothing: no file is named; use --set {}=FILE",
-                                      effect->id(), spec.file));
+            if (source.file.empty()) log::info(effect::no_file_text(spec.file));
             entries_.emplace(spec.resource, read(source, grid));
         }
 }

@@ -169,8 +169,14 @@ image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
+    impl_->draw_marks_on(picture);
     impl_->stamp_notes = add_stamps(*this, legends(), picture);
     return picture;
+}
+
+std::vector<Marks> Session::marks() const {
+    const DrawnEffects& drawn = *impl_->drawn;
+    return impl_->marks(drawn.marks(), drawn.effects(), drawn.renderer());
 }
 
 image::ImageF Session::radiance() const {

@@ -87,6 +87,7 @@ struct Options {
 
 struct ActiveEffects;
 struct NonFiniteCause;
+struct Marks;
 
 /// Durations of stages [ms]: "device", "compile", "load", "upload". "load" runs concurrently with
 /// the first two.
@@ -172,9 +173,12 @@ class Session {
     /// Draws only the left half's effects of a comparison, and waits for the device.
     void draw_alone();
 
-    /// The last frame with the scene's stamps; both halves of a comparison.
+    /// The last frame with marks of effects and the scene's stamps; both halves of a comparison.
     /// @throws Error (Failed) if pixels are not finite, naming the effect at fault
     image::Image8 picture() const;
+    /// The marks of the active effects, for frames from now on; of a comparison those of its left
+    /// half.
+    std::vector<Marks> marks() const;
     /// Pixels of the last frame that are NaN or infinite.
     render::NonFinite non_finite() const;
     /// Which hook of an active effect makes pixels of the last frame NaN or infinite, by drawing it
@@ -182,7 +186,7 @@ class Session {
     std::optional<NonFiniteCause> non_finite_cause(const std::string& id) const;
     /// Sentences on stamps that the last picture() omitted.
     const std::vector<std::string>& stamp_notes() const;
-    /// As picture(), as linear radiance without stamps. Requires Options::radiance.
+    /// As picture(), as linear radiance without marks and stamps. Requires Options::radiance.
     image::ImageF radiance() const;
     /// The last frame on the device: RGBA, rows from the bottom. Valid until the next frame.
     const gl::Texture& texture() const;

@@ -100,14 +100,15 @@ render::RendererOptions Session::Impl::renderer_options() {
 }
 
 void Session::Impl::compile(DrawnEffects& effects, const LoadedDem* first_dem) {
-    effects.compile(*context, [&] {
+    const auto options_of = [&] {
         render::RendererOptions with_texts = renderer_options();
         with_texts.stitched = [this, first_dem](const render::StitchedFrames& frames) {
             if (options.stitched) options.stitched(frames);
             if (first_dem) compute_sky(*first_dem, frames.programs);
         };
         return with_texts;
-    });
+    };
+    effects.compile(*context, options_of, drawn->marks());
 }
 
 void Session::Impl::compute_sky(const LoadedDem& dem,
@@ -271,6 +272,41 @@ void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
     render::FrameInputs frame = state.inputs;
     frame.loading = loading;
     drawn->render(*terrain, state.ground(), frame, times);
+}
+
+std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
+                                        const ActiveEffects& effects,
+                                        const render::Renderer& renderer) {
+    std::vector<Marks> result;
+    for (const LoadedMarks& list : loaded)
+        if (list.places)
+            result.push_back(
+                marks_of(list,
+                         marks_on_ground.of(list.places, state.dem(), state.ground().frame,
+                                            state.scene.exaggeration),
+                         effects.values, renderer.displacement(), state.scene));
+    return result;
+}
+
+void Session::Impl::draw_marks_on(image::Image8& picture) {
+    const double width = picture.width, height = picture.height;
+    const auto draw = [&](const std::vector<Marks>& lists, const render::Renderer& renderer,
+                          const chart::Rect& within) {
+        if (lists.empty()) return;
+        std::vector<float> depths_m;
+        renderer.read_depths(depths_m);
+        chart::Drawing drawing(width, height);
+        draw_marks(lists, view_of(state.inputs.camera, picture.width, picture.height, depths_m),
+                   within, drawing);
+        chart::paint(drawing, 0, 0, 1, picture);
+    };
+    const render::Renderer* const without = drawn->without();
+    const double half = without ? std::floor((width - kDivider_px) / 2) : width;
+    draw(marks(drawn->marks(), drawn->effects(), drawn->renderer()), drawn->renderer(),
+         {0, 0, half, height});
+    if (without)
+        draw(marks(drawn->other_marks(), drawn->others(), *without), *without,
+             {half + kDivider_px, 0, width - half - kDivider_px, height});
 }
 
 FaultyPicture Session::Impl::faulty(const ActiveEffects& shown, int count) {

@@ -12,6 +12,7 @@
 #include "render/terrain.h"
 #include "session/drawn_effects.h"
 #include "session/effect_rasters.h"
+#include "session/marks.h"
 #include "session/non_finite.h"
 #include "session/overlay.h"
 #include "session/scene_state.h"
@@ -54,6 +55,7 @@ struct Session::Impl {
     std::optional<OverlayTime> overlay_time;
     EffectRasters rasters;  // of the drawn effects
     std::vector<std::string> stamp_notes;
+    MarksOnGround marks_on_ground;
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
     /// Events that depend on terrain need all posts, not a preview.
@@ -85,6 +87,11 @@ struct Session::Impl {
     /// For scenes as given, not while a user moves the eye.
     void warn_of_eye() { state.warn_of_eye(shape()); }
     void draw(render::Loading loading, render::PassTimes* times = nullptr);
+    /// Marks of the effects of a half.
+    std::vector<Marks> marks(const std::vector<LoadedMarks>& loaded, const ActiveEffects& effects,
+                             const render::Renderer& renderer);
+    /// Draws the marks of both halves on the frame's picture.
+    void draw_marks_on(image::Image8& picture);
     FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);

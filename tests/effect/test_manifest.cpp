@@ -181,7 +181,7 @@ std::string text(const std::string& members) {
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, default_where, provides, "
     "exclusive, requires, "
-    "wants, after, module, glsl, textures, passes, texts, displaces, invents, $schema";
+    "wants, after, module, glsl, textures, passes, marks, texts, displaces, invents, $schema";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -276,7 +276,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
-            "2: texts: expected a \"module\", or data of \"textures\", that reads them"},
+            "2: texts: expected a \"module\", \"marks\", or data of \"textures\", that reads "
+            "them"},
         Bad{"LinesOfNoText", texture(R"("kind": "lines", "from": "file")"),
             "2: textures.noise: expected a text of kind \"file\"; add \"texts\": {\"file\": "
             "{\"kind\": \"file\"}}"},
@@ -475,7 +476,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "shader: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
                  "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
         Mismatch{"DoesNothing", "", "float haze_f() { return 1.0; }",
-                 "plugin: plugins/haze/plugin.json: no hook and no module, so it does "
+                 "plugin: plugins/haze/plugin.json: no hook, module or marks, so it does "
                  "nothing; define a function such as haze_on_albedo"},
         Mismatch{"NotWanted", R"("wants": ["shadow"])",
                  "void haze_on_albedo(inout Surface s) {\n#if HAS_sky\n#endif\n}",

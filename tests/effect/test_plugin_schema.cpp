@@ -55,6 +55,9 @@ TEST(PluginSchema, HasTheLoadersKeys) {
     EXPECT_THAT(keys(member(objects, "text")),
                 UnorderedElementsAreArray(
                     known_keys(R"("module": "dust", "texts": {"a": {)" + unknown + "}}")));
+    EXPECT_THAT(keys(member(objects, "marks")),
+                UnorderedElementsAreArray(
+                    known_keys(R"("marks": {"a": {"from": "file", )" + unknown + "}}")));
     // Each kind of texture takes some of these.
     std::vector<std::string> texture =
         known_keys(R"("textures": {"a": {"kind": "3d", "file": "dust.glsl", "encoding": "srgb", )" +

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/text.h"
 #include "cli/program.h"
 #include "image/image.h"
@@ -24,7 +25,7 @@ namespace {
 
 /// Effects that leave the bundled DEM as it is: they paint voids, slopes that it lacks, or what a
 /// file has that users name.
-const std::set<std::string> kSilent{"avalanche", "blank", "drape", "infill"};
+const std::set<std::string> kSilent{"avalanche", "blank", "drape", "infill", "labels"};
 
 class Toggles : public testing::Test {
   protected:

@@ -1,0 +1,162 @@
+#include "session/marks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel_for.h"
+#include "base/text.h"
+
+namespace relevo::session {
+namespace {
+
+constexpr std::size_t kMostKept = 4;
+
+/// Ranks of places, those without one last.
+std::vector<double> ranks_of(const std::vector<dem::NamedPlace>& places, const std::string& who,
+                             const std::string& path) {
+    std::vector<double> ranks;
+    ranks.reserve(places.size());
+    for (const dem::NamedPlace& place : places) {
+        const std::optional<double> rank = parse_number(place.rank);
+        if (!place.rank.empty() && !rank)
+            bad_input(fmt::format("{}: {}: line {}: rank, expected a number but got \"{}\"", who,
+                                  path, place.line, printable(place.rank)));
+        ranks.push_back(rank.value_or(std::numeric_limits<double>::infinity()));
+    }
+    return ranks;
+}
+
+std::shared_ptr<const MarkPlaces> read_places(const std::string& path, const std::string& who) {
+    auto result = std::make_shared<MarkPlaces>();
+    result->path = path;
+    std::vector<dem::NamedPlace> places = dem::read_points(path, who);
+    const std::vector<double> ranks = ranks_of(places, who, path);
+    std::vector<std::size_t> order(places.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return ranks[i]; });
+    result->read.add(path);
+    result->places.reserve(places.size());
+    for (const std::size_t i : order) {
+        result->places.push_back(std::move(places[i]));
+        std::string& name = result->places.back().name;
+        name = printable(name);
+    }
+    return result;
+}
+
+/// Height of the ground [m]; NaN without ground.
+/// @param exact  from the posts of the file
+double ground_m(const LoadedDem& dem, const geo::Geodetic& at, bool exact) {
+    const glm::dvec2 post = dem.field.grid.post(at);
+    if (std::isnan(post.x) || std::isnan(post.y)) return std::nan("");
+    const double drawn_m = dem.to_draw().height_at(post.x, post.y);
+    if (!exact || dem.field.reduction == 1 || dem.is_preview) return drawn_m;
+    const double height_m = dem.height_m(at);
+    return std::isnan(height_m) ? drawn_m : height_m;
+}
+
+StandingMarks::Mark standing_at(const geo::PlaceText& at, double ground_m,
+                                const geo::LocalFrame& frame, double exaggeration) {
+    const bool absolute = at.has_height && !at.above_ground;
+    const double above_m = at.above_ground ? at.place.height_m : 0;
+    const double height_m = absolute ? at.place.height_m : ground_m + above_m;
+    geo::Geodetic place = at.place;
+    place.height_m = height_m * exaggeration;
+    return {.at_m = frame.to_local(place),
+            .up = frame.up(place.lat_rad, place.lon_rad),
+            .height_m = static_cast<float>(height_m),
+            .on_ground = !at.has_height};
+}
+
+chart::Color color_of(const shader::ParamValue& value, double opacity) {
+    const auto byte = [&](std::size_t i) {
+        return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value[i], 0.0, 1.0)));
+    };
+    return {byte(0) << 16 | byte(1) << 8 | byte(2), opacity};
+}
+
+}  // namespace
+
+std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
+                                    const shader::ParamStore& values,
+                                    const std::vector<LoadedMarks>& earlier, bool report) {
+    const auto places_of = [&](const std::string& path, const std::string& who) {
+        for (const LoadedMarks& list : earlier)
+            if (list.places && list.places->path == path && list.places->read.hold())
+                return list.places;
+        return read_places(path, who);
+    };
+    std::vector<LoadedMarks> result;
+    for (const effect::Effect* effect : selection.effects)
+        for (const effect::MarksSpec& spec : effect->manifest.marks) {
+            const std::string path = values.text(spec.from);
+            if (path.empty() && report) log::info(effect::no_file_text(spec.from));
+            result.push_back({&spec, path.empty() ? nullptr : places_of(path, spec.from)});
+        }
+    return result;
+}
+
+std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> places,
+                                           const LoadedDem& dem, const geo::LocalFrame& frame,
+                                           double exaggeration) {
+    auto result = std::make_shared<StandingMarks>();
+    const std::vector<dem::NamedPlace>& all = places->places;
+    std::vector<StandingMarks::Mark> marks(all.size());
+    parallel_for(0, static_cast<int>(all.size()), 1024, [&](int first, int end) {
+        for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
+            const geo::PlaceText& at = all[i].at;
+            marks[i] =
+                standing_at(at, ground_m(dem, at.place, i < kMostFromFile), frame, exaggeration);
+            marks[i].index = static_cast<std::uint32_t>(i);
+        }
+    });
+    std::erase_if(marks, [](const StandingMarks::Mark& mark) { return std::isnan(mark.height_m); });
+    if (marks.empty())
+        log::info(
+            fmt::format("marks: {}: none of its places is on the DEM", printable(places->path)));
+    result->marks = std::move(marks);
+    result->places = std::move(places);
+    return result;
+}
+
+std::shared_ptr<const StandingMarks> MarksOnGround::of(
+    const std::shared_ptr<const MarkPlaces>& places, const std::shared_ptr<const LoadedDem>& dem,
+    const geo::LocalFrame& frame, double exaggeration) {
+    for (const Entry& known : known_)
+        if (known.standing->places == places && known.dem == dem &&
+            known.exaggeration == exaggeration)
+            return known.standing;
+    if (known_.size() >= kMostKept) known_.erase(known_.begin());
+    known_.push_back({dem, exaggeration, stand(places, *dem, frame, exaggeration)});
+    return known_.back().standing;
+}
+
+Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> standing,
+               const shader::ParamStore& values, const render::Displacement& displacement,
+               const scene::Scene& scene) {
+    constexpr double kHaloOpacity = 0.85;
+    const effect::MarksSpec& spec = *loaded.spec;
+    const auto number = [&](const effect::MarkValue& value) { return value.of(values)[0]; };
+    return {.standing = std::move(standing),
+            .style = {.size = number(spec.size_px),
+                      .color = color_of(spec.colour.of(values), 1),
+                      .halo = color_of(spec.halo.of(values), kHaloOpacity),
+                      .symbol = static_cast<chart::Symbol>(number(spec.symbol)),
+                      .leader = number(spec.leader_px),
+                      .distance = number(spec.distance_px),
+                      .most = static_cast<std::size_t>(number(spec.most))},
+            .order = static_cast<effect::MarksSpec::Order>(number(spec.order)),
+            .above_m = number(spec.above_m),
+            .displacement = displacement,
+            .exaggeration = scene.exaggeration,
+            .pixel_error = scene.pixel_error};
+}
+
+}  // namespace relevo::session

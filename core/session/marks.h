@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/file_stamps.h"
+#include "chart/marks.h"
+#include "dem/places.h"
+#include "effect/selection.h"
+#include "render/displacement.h"
+#include "scene/camera.h"
+#include "session/session.h"
+
+/// Marks of plugins: from their files to places on the ground to the picture.
+namespace relevo::session {
+
+/// The places of a file, the first by rank first.
+struct MarkPlaces {
+    std::string path;
+    std::vector<dem::NamedPlace> places;  ///< names are printable()
+    FileStamps read;                      ///< of the file
+};
+
+/// An active effect's list of marks. `places` is null if no file is set.
+struct LoadedMarks {
+    const effect::MarksSpec* spec = nullptr;  ///< in the registry
+    std::shared_ptr<const MarkPlaces> places;
+};
+
+/// Reads the files of the active effects' marks.
+/// @param earlier  whose places are used again if their file has not changed
+/// @param report   logs which lists have no file
+/// @throws Error (BadInput) as dem::read_points(), and for a rank that is not a number
+std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
+                                    const shader::ParamStore& values,
+                                    const std::vector<LoadedMarks>& earlier, bool report);
+
+/// Places of a file in the DEM's local frame. Those without ground are excluded.
+struct StandingMarks {
+    struct Mark {
+        glm::dvec3 at_m{0};       ///< exaggerated, before displacement by effects
+        glm::vec3 up{0, 0, 1};    ///< the vertical there
+        float height_m = 0;       ///< of the mark, in the DEM's heights
+        bool on_ground = true;    ///< false if the file gives a height
+        std::uint32_t index = 0;  ///< in MarkPlaces::places
+    };
+    std::shared_ptr<const MarkPlaces> places;
+    std::vector<Mark> marks;  ///< in the order of the places
+};
+
+/// Of a DEM with means of posts in memory, the first kMostFromFile marks stand on the posts of the
+/// file, others on the means.
+std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> places,
+                                           const LoadedDem& dem, const geo::LocalFrame& frame,
+                                           double exaggeration);
+inline constexpr std::size_t kMostFromFile = 10'000;
+
+/// Keeps where marks stand until file, DEM or exaggeration change.
+class MarksOnGround {
+  public:
+    std::shared_ptr<const StandingMarks> of(const std::shared_ptr<const MarkPlaces>& places,
+                                            const std::shared_ptr<const LoadedDem>& dem,
+                                            const geo::LocalFrame& frame, double exaggeration);
+
+  private:
+    struct Entry {
+        std::shared_ptr<const LoadedDem> dem;
+        double exaggeration;
+        std::shared_ptr<const StandingMarks> standing;
+    };
+    std::vector<Entry> known_;  // the latest last
+};
+
+/// A list of marks as a frame shows it.
+struct Marks {
+    std::shared_ptr<const StandingMarks> standing;
+    chart::MarkStyle style;
+    effect::MarksSpec::Order order = effect::MarksSpec::Order::Rank;
+    double above_m = 0;  ///< raises all marks, in the DEM's heights
+    render::Displacement displacement;
+    double exaggeration = 1;
+    double pixel_error = 0;  ///< of the drawn ground against the posts [px]
+};
+
+/// With the values that an effect's parameters have now.
+Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> standing,
+               const shader::ParamStore& values, const render::Displacement& displacement,
+               const scene::Scene& scene);
+
+/// A picture in which marks are placed.
+struct MarkView {
+    const scene::Camera& camera;
+    int width_px, height_px;
+    /// Depths of pixels, counted from the upper left corner [m]; infinite without ground.
+    std::function<std::vector<float>(std::span<const glm::ivec2> pixels)> depths_m;
+};
+
+/// A picture with the depths of all its pixels, as render::Renderer::read_depths(), which must
+/// outlive the result.
+MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
+                 const std::vector<float>& depths_m);
+
+/// The marks that are in the picture and not hidden by ground, the most important first. A mark on
+/// the ground stands where the frame shows ground at its place: displaced by effects, and coarser
+/// than the posts by up to `pixel_error`. So much, and at least kHidden_px, may hide of a mark
+/// whose place is just behind a crest: it stands on the crest then. Ground that is before a mark by
+/// less than kNear of its depth does not hide it.
+std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& view);
+inline constexpr double kHidden_px = 3;
+inline constexpr double kNear = 0.005;
+
+/// Draws the visible marks of all lists without overlap.
+/// @param within  where they may stand; all of the picture or a half
+void draw_marks(std::span<const Marks> lists, const MarkView& view, const chart::Rect& within,
+                chart::Drawing& drawing);
+
+}  // namespace relevo::session
