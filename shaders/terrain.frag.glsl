@@ -18,6 +18,8 @@
 //@ include lib/tangent.glsl
 
 uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
+uniform sampler2D instance_colour;  // from instance.frag.glsl, where a plugin has instances
+uniform sampler2D instance_direction;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 light_out;
@@ -57,6 +59,20 @@ void overlay_as_reflectance(inout Surface s, in vec4 laid) {
     s.emissive *= 1.0 - laid.a;
     // The image has its own texture: bumps of materials would be drawn over it.
     s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
+}
+#endif
+
+#ifdef INSTANCES
+/// Makes the point that of an instance, which stands on the ground where the light is found.
+/// @returns whether the pixel shows one
+bool instance_as_surface(inout Surface s, in ivec2 pixel) {
+    vec4 colour = texelFetch(instance_colour, pixel, 0);
+    if (colour.a == 0.0) return false;
+    s.normal = normal_from_octahedral(2.0 * texelFetch(instance_direction, pixel, 0).rg - 1.0);
+    s.geometric_normal = s.normal;
+    s.diffuse = s.ambient = colour.rgb * colour.rgb;
+    s.specular = s.emissive = vec3(0.0);
+    return true;
 }
 #endif
 
@@ -135,6 +151,9 @@ void main() {
     vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
     if (frame.overlay_shape.w > 0.0) overlay_as_reflectance(s, laid);
 #endif
+#ifdef INSTANCES
+    bool is_instance = instance_as_surface(s, pixel);
+#endif
 
     vec3 to_sun;
     vec3 irradiance = sun_light(s.up, to_sun);
@@ -158,6 +177,9 @@ void main() {
     hook_display(s, over);
 #ifdef OVERLAY_RASTER
     over += (1.0 - over.a) * (1.0 - frame.overlay_shape.w) * laid;
+#endif
+#ifdef INSTANCES
+    over *= is_instance ? 0.0 : 1.0;  // instances hide what lies on the ground
 #endif
     // What is stored may be clamped to a number.
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shader/param_store.h"
+#include "shader/instance_set.h"
 #include "shader/plugin_pass.h"
 
 namespace relevo::effect {
@@ -81,6 +82,7 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::vector<shader::PluginPass> passes;
+    std::vector<shader::InstanceSet> instances;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty

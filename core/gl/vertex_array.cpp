@@ -41,6 +41,11 @@ void VertexArray::feed(int binding, const RingBuffer::Place& place, int stride) 
                               static_cast<GLintptr>(place.offset), stride);
 }
 
+void VertexArray::hold(int binding) const {
+    constexpr GLuint kMoreThanInstances = 1U << 30;
+    glVertexArrayBindingDivisor(handle_.name(), static_cast<GLuint>(binding), kMoreThanInstances);
+}
+
 void VertexArray::indices(const Buffer& buffer) {
     glVertexArrayElementBuffer(handle_.name(), buffer.name());
 }

@@ -20,6 +20,9 @@ class VertexArray {
                     int components, bool per_instance);
     /// The same from memory that feed() names.
     void attributes(int binding, int first_location, int count, int components, bool per_instance);
+    /// Inputs of a binding stay the same for all instances of a draw, which Draw::first_instance
+    /// selects.
+    void hold(int binding) const;
     /// @param stride  from one vertex or instance to the next [bytes]
     void feed(int binding, const RingBuffer::Place& place, int stride) const;
     void indices(const Buffer& buffer);  ///< 16-bit

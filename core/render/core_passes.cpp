@@ -69,6 +69,8 @@ class Declaration {
         prepare();
         natives();
         geometry();
+        for (const shader::InstanceSet& set : facts_.instances)
+            instances(set);
         for (const shader::PluginPass& pass : facts_.plugin_passes)
             plugin_pass(pass);
         terrain();
@@ -106,6 +108,10 @@ class Declaration {
                          .kind = ResourceKind::Texture2DArray,
                          .format = RGBA32F,
                          .size = {.depth = facts_.varying_targets}});
+        if (!facts_.instances.empty()) {
+            add(Resource{.name = "instance_colour", .format = RGBA8});
+            add(Resource{.name = "instance_direction", .format = RG8});
+        }
         if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
         if (facts_.radiance)
             add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});
@@ -195,6 +201,34 @@ class Declaration {
         add(std::move(pass));
     }
 
+    /// Meshes on the ground. Sets are drawn one after the other into the same targets.
+    void instances(const shader::InstanceSet& set) {
+        shader::ProgramRecipe recipe{.vertex_main = PassTexts::name_of(set),
+                                     .fragment_main = "instance.frag.glsl"};
+        if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        const bool first = covering_ == "geometry";
+        Pass pass{.name = set.resource,
+                  .kind = PassKind::Geometry,
+                  .program = program(set.resource.c_str(), recipe),
+                  .reads = {"tiles"},
+                  .colours = {{.resource = "gbuffer", .updates = true}},
+                  .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
+                  .after = {covering_},
+                  .body = [resource = set.resource](PassContext& frame) {
+                      frame.services.draw_instances(resource, frame);
+                  }};
+        if (first) {
+            pass.colours.push_back({"instance_colour", kNothing});
+            pass.colours.push_back({"instance_direction", kNothing});
+        } else {
+            pass.colours.push_back({.resource = "instance_colour", .updates = true});
+            pass.colours.push_back({.resource = "instance_direction", .updates = true});
+        }
+        covering_ = set.resource;
+        add(std::move(pass));
+    }
+
     void plugin_pass(const shader::PluginPass& pass) {
         const When when = when_of(pass.when);
         add(Resource{.name = pass.resource,
@@ -235,13 +269,14 @@ class Declaration {
                                      .fragment_main = "terrain.frag.glsl",
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
+        if (!facts_.instances.empty()) recipe.defines.push_back({"INSTANCES", ""});
         if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
         Pass pass{.name = "terrain",
                   .program = program("terrain", recipe, outside_word()),
                   .colours = {{shaded_}},
-                  .depth = Depth{"depth@geometry", DepthTest::Covered}};
+                  .depth = Depth{"depth@" + covering_, DepthTest::Covered}};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
         add(std::move(pass));
@@ -257,6 +292,7 @@ class Declaration {
                   .reads = {"tiles"},
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
+                  .after = {covering_},
                   .body = [](PassContext& frame) {
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
                   }};
@@ -312,6 +348,7 @@ class Declaration {
     }
 
     const FrameFacts& facts_;
+    std::string covering_ = "geometry";  // last pass that changes what a pixel shows of the ground
     std::string tone_mapped_;  // resource of the tonemapped colours
     std::string shaded_;  // resource that the shading passes draw into: tone_mapped_ or radiance
     std::vector<shader::Define> end_defines_;  // of the shading programs

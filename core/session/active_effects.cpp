@@ -91,6 +91,7 @@ render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
     inputs.stitch.snippets = loaded.selection.snippets();
     inputs.stitch.passes = loaded.selection.passes();
+    inputs.stitch.instances = loaded.selection.instances();
     inputs.stitch.capabilities = loaded.selection.capabilities;
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)

@@ -1,0 +1,74 @@
+#include "render/instances.h"
+
+#include <algorithm>
+#include <span>
+
+namespace relevo::render {
+namespace {
+
+constexpr int kPositionBinding = 0, kBlockBinding = 1, kNormalBinding = 2;
+constexpr int kBlockInput = 1, kNormalInput = 15;
+constexpr int kComponents = 4;  // of a vector
+
+// Share of the distance by which an instance may change its mesh sooner or later: kDetailJitter of
+// instance.vert.glsl, half of it either way.
+constexpr double kJitter = 0.1;
+
+/// Inputs of a draw: the tile's, the cells, the distances of the mesh.
+struct BlockInputs {
+    TileMesh::Instance tile;
+    glm::vec4 cells, detail;
+};
+constexpr int kBlockVectors = TileMesh::kInstanceVectors + 2;
+static_assert(sizeof(BlockInputs) == kBlockVectors * sizeof(glm::vec4));
+
+}  // namespace
+
+Instances::Set::Set(const shader::InstanceSet& of) : set(of), mesh(of) {
+    array.attributes(kPositionBinding, mesh.positions, 0, 1, kComponents, false);
+    array.attributes(kNormalBinding, mesh.normals, kNormalInput, 1, kComponents, false);
+    array.attributes(kBlockBinding, kBlockInput, kBlockVectors, kComponents, true);
+    array.hold(kBlockBinding);
+    array.indices(mesh.indices);
+}
+
+Instances::Instances(const std::vector<shader::InstanceSet>& sets) {
+    for (const shader::InstanceSet& set : sets)
+        sets_.push_back(std::make_unique<Set>(set));
+}
+
+void Instances::draw(std::string_view resource, Terrain& terrain, const TileSelection& selection,
+                     const LodView& lod_view, double pixel_rad) {
+    Set& set = **std::ranges::find_if(
+        sets_, [&](const auto& each) { return each->set.resource == resource; });
+    const InstanceView view(set.set, terrain, lod_view, pixel_rad);
+    const std::vector<InstanceBlock> blocks =
+        instance_blocks(set.set, terrain, selection, view);
+    std::vector<BlockInputs> inputs;
+    std::vector<gl::VertexArray::Draw> draws;
+    const std::size_t levels = set.set.levels.size();
+    for (std::size_t level = 0; level < levels; ++level) {
+        const InstanceMesh::Part& part = set.mesh.parts[level];
+        const double from_m =
+            level == 0 ? 0 : view.distance_m(set.set, set.set.levels[level].below_px);
+        const double to_m = level + 1 == levels
+                                ? 2 * view.range_m
+                                : view.distance_m(set.set, set.set.levels[level + 1].below_px);
+        for (const InstanceBlock& block : blocks) {
+            if (block.farthest_m * (1 + kJitter) < from_m || block.nearest_m * (1 - kJitter) > to_m)
+                continue;
+            draws.push_back({part.indices, static_cast<std::uint32_t>(block.count),
+                             part.first_index, part.first_vertex,
+                             static_cast<std::uint32_t>(inputs.size())});
+            inputs.push_back({block.tile, block.cells,
+                              glm::vec4(from_m, to_m, view.cells_per_post)});
+        }
+    }
+    if (draws.empty()) return;
+    set.array.feed(kBlockBinding,
+                   set.blocks.write(std::as_bytes(std::span(inputs)), sizeof(glm::vec4)),
+                   sizeof(BlockInputs));
+    set.array.draw(set.draws.write(std::as_bytes(std::span(draws)), sizeof(std::uint32_t)));
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,93 @@
+//! provides  instances of a plugin's meshes: each stands at a site of a jittered grid, on the ground as it is drawn
+//! reads     a tile's net and height page (lib/tile.glsl); a rectangle of the tile and the cells of the grid in it
+//! writes    what geometry passes store, the reflectance and the normal of the instance
+//!
+//! One draw has a rectangle of cells: gl_InstanceID is the cell in it. place_instance() stands for the function of
+//! the plugin, <id>_place_<name>. A site that has no instance ends outside of the picture.
+
+//@ include lib/instances.glsl
+//@ include lib/tile.glsl
+
+layout(location = 0) in vec4 mesh_position;  // xyz: of the mesh, height 1 and width 1
+layout(location = 13) in vec4 cells;   // xy: first cell, z: cells in a row; w: range_m
+layout(location = 14) in vec4 detail;  // xy: distances between which this mesh is drawn [m]; zw: cells per post
+layout(location = 15) in vec4 mesh_normal;  // xyz: unit; w: colour, 8 bits each
+
+const float kDetailJitter = 0.2;  // share of the distance by which instances change their meshes sooner or later
+
+out vec2 post;
+out float height_m;
+out vec3 instance_normal;
+out vec3 instance_reflectance;
+
+/// The rectangle of posts whose sites this draw has: first and last, half open.
+vec4 rectangle() {
+    return vec4(net_uuvv.w, up_0.w, up_u.w, up_v.w);
+}
+
+/// The ground at a place of the tile, on its drawn triangles. Coverage is 0 on voids.
+/// @param vertex  column and row in quads
+VertexFrame ground_of(in vec2 vertex, out vec3 normal, out float coverage) {
+    vec2 quad = floor(vertex), t = vertex - quad;
+    bool far = t.x + t.y > 1.0;  // each quad has two triangles, which share the corners b and c
+    vec4 a = texelFetch(height_pages, net_texel(quad + (far ? 1.0 : 0.0)), 0);
+    vec4 b = texelFetch(height_pages, net_texel(quad + vec2(1.0, 0.0)), 0);
+    vec4 c = texelFetch(height_pages, net_texel(quad + vec2(0.0, 1.0)), 0);
+    vec2 way = far ? vec2(1.0) - t.yx : t;
+    vec2 at = net_place(vertex);
+    float morph = net_morph(length(placed(at, a.r)));
+    vec2 ha = morphed(a, morph), hb = morphed(b, morph), hc = morphed(c, morph);
+    float height = ha.r + way.x * (hb.r - ha.r) + way.y * (hc.r - ha.r);
+    coverage = min(ha.g, min(hb.g, hc.g));
+
+    VertexFrame v = net_vertex(vertex, height);
+    vec2 rise = far ? vec2(ha.r - hc.r, ha.r - hb.r) : vec2(hb.r - ha.r, hc.r - ha.r);
+    vec3 along = net_u.xyz / net_quads().x + rise.x * v.up, down = net_v.xyz / net_quads().y + rise.y * v.up;
+    vec3 crossed = normalize(cross(along, down));
+    normal = dot(crossed, v.up) < 0.0 ? -crossed : crossed;
+    return v;
+}
+
+vec3 mesh_colour() {
+    uint bits = uint(mesh_normal.w);
+    return vec3(bits & 255u, bits >> 8u & 255u, bits >> 16u) / 255.0;
+}
+
+void main() {
+    int row = gl_InstanceID / int(cells.z);
+    ivec2 cell = ivec2(cells.xy) + ivec2(gl_InstanceID - row * int(cells.z), row);
+    vec4 chance = instances_random(cell, 0u);
+    vec2 place = (vec2(cell) + 0.1 + 0.8 * chance.xy) / detail.zw;
+    vec2 vertex = (place - vec2(net_v.w, net_uv.w)) / net_uuv.w;
+    vec4 within = rectangle();
+    bool here = all(greaterThanEqual(place, within.xy)) && all(lessThan(place, within.zw));
+
+    InstanceSite site;
+    float coverage;
+    site.ground = ground_of(clamp(vertex, vec2(0.0), net_quads()), site.normal, coverage);
+    site.random = instances_random(cell, 1u);
+    Instance it = Instance(1.0, 0.0, 0.0, 6.2831853 * site.random.x, vec3(1.0));
+    place_instance(site, it);
+
+    VertexFrame foot = site.ground;
+    float seen_m = foot.distance_m * (1.0 + kDetailJitter * (chance.z - 0.5));
+    bool fine = seen_m >= detail.x && seen_m < detail.y;
+    bool kept = chance.w < it.density * instances_share(foot.distance_m, cells.w);
+    bool drawn = here && fine && kept && coverage > 0.99 && it.height_m > 0.0;
+
+    vec3 east = east_at(foot.up), north = cross(foot.up, east);
+    float cosine = cos(it.turn), sine = sin(it.turn);
+    vec3 right = cosine * east + sine * north, ahead = cosine * north - sine * east;
+    vec3 size = vec3(it.width_m, it.width_m, it.height_m);
+    vec3 local = mesh_position.xyz * size;
+    vec3 position_m = foot.position_m + local.x * right + local.y * ahead + local.z * foot.up;
+    vec3 turned = mesh_normal.xyz / max(size, vec3(1e-3));
+    // Far away the mesh becomes flat, as the cover of the ground is that takes its place.
+    float flatness = smoothstep(0.1, kInstanceFade, foot.distance_m / cells.w);
+    instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
+                                    flatness));
+    instance_reflectance = clamp(it.colour * mesh_colour(), 0.0, 1.0);
+    post = foot.post;
+    height_m = foot.height_m;
+    gl_Position = drawn ? clipped(position_m) : vec4(2.0, 2.0, 0.5, 1.0);
+}

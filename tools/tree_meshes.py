@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Writes the meshes of the effect `trees` as Wavefront OBJ: a conifer and a broadleaf tree in three levels each.
+
+Usage: tree_meshes.py FOLDER. Metres, y up, standing on y = 0. Colours are factors on the reflectance of a tree;
+their mean over the surface is MEAN at every level, so that levels are equally bright.
+"""
+
+import math
+import pathlib
+import sys
+
+MEAN = 0.8
+TRUNK = (0.55, 0.42, 0.30)
+
+
+class Mesh:
+    def __init__(self):
+        self.points, self.colours, self.faces = [], [], []
+
+    def point(self, x, y, z, shade):
+        self.points.append((x, y, z))
+        self.colours.append((shade,) * 3 if isinstance(shade, float) else shade)
+        return len(self.points)
+
+    def ring(self, sides, radius, y, shade, turn=0.0, wave=0.0):
+        """Points around the axis; every other one is `wave` of the radius nearer to it."""
+        at = []
+        for i in range(sides):
+            angle = 2 * math.pi * i / sides + turn
+            r = radius * (1 - wave * (i % 2))
+            at.append(self.point(r * math.cos(angle), y, r * math.sin(angle), shade))
+        return at
+
+    def fan(self, ring, top, upwards=True):
+        for i, a in enumerate(ring):
+            b = ring[(i + 1) % len(ring)]
+            self.faces.append((b, a, top) if upwards else (a, b, top))
+
+    def band(self, low, high):
+        for i, a in enumerate(low):
+            j = (i + 1) % len(low)
+            self.faces += [(low[j], a, high[i]), (low[j], high[i], high[j])]
+
+    def trunk(self, radius, height):
+        self.band(self.ring(4, radius, 0.0, TRUNK), self.ring(4, 0.8 * radius, height, TRUNK))
+
+    def scale_colours(self):
+        """Makes the mean over the surface MEAN."""
+        area = total = 0.0
+        for face in self.faces:
+            a, b, c = (self.points[i - 1] for i in face)
+            u, v = ([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)])
+            cross = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+            size = math.sqrt(sum(x * x for x in cross)) / 2
+            area += size
+            total += size * sum(self.colours[i - 1][1] for i in face) / 3
+        factor = MEAN * area / total
+        self.colours = [tuple(min(1.0, factor * x) for x in colour) for colour in self.colours]
+
+    def write(self, file):
+        self.scale_colours()
+        lines = ["# made by tools/tree_meshes.py"]
+        for point, colour in zip(self.points, self.colours):
+            lines.append("v " + " ".join(f"{x:.4g}" for x in point + colour))
+        lines += ["f " + " ".join(map(str, face)) for face in self.faces]
+        file.write_text("\n".join(lines) + "\n")
+
+
+def conifer(tiers, sides, trunk):
+    """Cones one over the other, 16 m high and 5 m wide."""
+    mesh = Mesh()
+    if trunk:
+        mesh.trunk(0.22, 2.0)
+    low, high = 1.2, 16.0
+    for tier in range(tiers):
+        t = tier / tiers
+        foot = low + (high - low) * t
+        top = high if tier == tiers - 1 else foot + 1.7 * (high - low) / tiers
+        radius = 2.5 * (1 - t) ** 0.85
+        wave = 0.18 if sides > 6 else 0.0
+        ring = mesh.ring(sides, radius, foot, 0.62, turn=0.7 * tier, wave=wave)
+        mesh.fan(ring, mesh.point(0.0, top, 0.0, 1.0))
+    return mesh
+
+
+def broadleaf(rings, sides, trunk):
+    """An ellipsoid on a trunk, 12 m high and 9 m wide, irregular where it has many sides."""
+    mesh = Mesh()
+    if trunk:
+        mesh.trunk(0.3, 3.0)
+    low, high, radius = 1.6, 12.0, 4.5
+    middle, half = (low + high) / 2, (high - low) / 2
+    before = None
+    for ring in range(1, rings + 1):
+        angle = math.pi * (ring / (rings + 1) - 0.5)
+        y = middle + half * math.sin(angle)
+        wave = 0.16 if sides > 6 else 0.0
+        shade = 0.5 + 0.5 * (y - low) / (high - low)
+        at = mesh.ring(sides, radius * math.cos(angle) ** 0.8, y, shade, turn=2.4 * ring, wave=wave)
+        if before:
+            mesh.band(before, at)
+        else:
+            mesh.fan(at, mesh.point(0.0, low, 0.0, 0.5), upwards=False)
+        before = at
+    mesh.fan(before, mesh.point(0.0, high, 0.0, 1.0))
+    return mesh
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    for level, (tiers, sides, trunk) in enumerate([(5, 8, True), (2, 6, False), (1, 3, False)]):
+        conifer(tiers, sides, trunk).write(folder / f"conifer_{level}.obj")
+    for level, (rings, sides, trunk) in enumerate([(5, 9, True), (3, 6, False), (1, 4, False)]):
+        broadleaf(rings, sides, trunk).write(folder / f"broadleaf_{level}.obj")
+
+
+if __name__ == "__main__":
+    main()
