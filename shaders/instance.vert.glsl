@@ -2,14 +2,14 @@
 //! reads     a tile's net and height page (lib/tile.glsl); a rectangle of the tile and the cells of the grid in it
 //! writes    what geometry passes store, the reflectance and the normal of the instance
 //!
-//! One draw has a rectangle of cells: gl_InstanceID is the cell in it. place_instance() stands for the function of
+//! One draw has a rectangle of cells: an instance has a row of them, with a copy of the mesh for each. place_instance() stands for the function of
 //! the plugin, <id>_place_<name>. A site that has no instance ends outside of the picture.
 
 //@ include lib/instances.glsl
 //@ include lib/tile.glsl
 
-layout(location = 0) in vec4 mesh_position;  // xyz: of the mesh, height 1 and width 1
-layout(location = 13) in vec4 cells;   // xy: first cell, z: cells in a row; w: range_m
+layout(location = 0) in vec4 mesh_position;  // xyz: of the mesh, height 1 and width 1; w: number of the copy
+layout(location = 13) in vec4 cells;   // xy: first cell; w: instances_range_m()
 layout(location = 14) in vec4 detail;  // xy: distances between which this mesh is drawn [m]; zw: cells per post
 layout(location = 15) in vec4 mesh_normal;  // xyz: unit; w: colour, 8 bits each
 
@@ -54,8 +54,7 @@ vec3 mesh_colour() {
 }
 
 void main() {
-    int row = gl_InstanceID / int(cells.z);
-    ivec2 cell = ivec2(cells.xy) + ivec2(gl_InstanceID - row * int(cells.z), row);
+    ivec2 cell = ivec2(cells.xy) + ivec2(int(mesh_position.w), gl_InstanceID);
     vec4 chance = instances_random(cell, 0u);
     vec2 place = (vec2(cell) + 0.1 + 0.8 * chance.xy) / detail.zw;
     vec2 vertex = (place - vec2(net_v.w, net_uv.w)) / net_uuv.w;

@@ -94,9 +94,9 @@ def broadleaf(rings, sides, trunk):
     for ring in range(1, rings + 1):
         angle = math.pi * (ring / (rings + 1) - 0.5)
         y = middle + half * math.sin(angle)
-        wave = 0.16 if sides > 6 else 0.0
         shade = 0.5 + 0.5 * (y - low) / (high - low)
-        at = mesh.ring(sides, radius * math.cos(angle) ** 0.8, y, shade, turn=2.4 * ring, wave=wave)
+        bulge = 1 + (0.07 * math.sin(5 * ring) if sides > 6 else 0.0)
+        at = mesh.ring(sides, bulge * radius * math.cos(angle) ** 0.8, y, shade, turn=math.pi / sides * (ring % 2))
         if before:
             mesh.band(before, at)
         else:

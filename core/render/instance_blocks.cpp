@@ -15,7 +15,7 @@ namespace {
 
 /// Blocks are divided until they are small as seen from the eye, or have few cells: what a block
 /// has outside of the view is drawn for nothing, and each block costs a draw.
-constexpr double kFewCells = 200;
+constexpr double kFewCells = 600;
 constexpr double kSmall = 0.25;  // diagonal, as a share of the distance
 
 class Finder {
@@ -66,8 +66,8 @@ class Finder {
         const glm::dvec2 first = floor(low * view_.cells_per_post);
         const glm::ivec2 count(floor(high * view_.cells_per_post) - first + 1.0);
         InstanceBlock block{.tile = tile_,
-                            .cells = glm::vec4(first, count.x, view_.range_m),
-                            .count = count.x * count.y,
+                            .cells = glm::vec4(first, 0, view_.range_m),
+                            .count = count,
                             .nearest_m = nearest_m,
                             .farthest_m = farthest_m};
         block.tile[8].w = static_cast<float>(low.x);

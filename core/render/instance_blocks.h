@@ -20,8 +20,8 @@ inline constexpr double kMostCells = 640;  ///< from the eye; bounds how many ar
 /// A rectangle of sites of instances, within one quadrant of a tile of the ground.
 struct InstanceBlock {
     TileMesh::Instance tile{};  ///< with the rectangle, as instance.vert.glsl reads it
-    glm::vec4 cells{0};         ///< first column and row, columns; w: range [m]
-    int count = 0;              ///< of cells
+    glm::vec4 cells{0};         ///< first column and row; w: range [m]
+    glm::ivec2 count{0};        ///< of columns and rows
     double nearest_m = 0, farthest_m = 0;  ///< from the eye
 };
 

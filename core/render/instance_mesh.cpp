@@ -13,6 +13,8 @@ namespace {
 
 constexpr float kLeast_m = 1e-6F;  // sides of flat meshes
 
+constexpr std::size_t kMostCopies = 64;
+
 /// Colours of 8 bits in one number, which a float holds exactly.
 float packed(const glm::vec3& colour) {
     const glm::vec3 bytes = round(255.0F * colour);
@@ -33,15 +35,22 @@ InstanceMesh::InstanceMesh(const shader::InstanceSet& set) {
     std::vector<std::uint16_t> all_indices;
     for (const shader::InstanceSet::Level& level : set.levels) {
         const mesh::Mesh mesh = mesh::read(level.mesh);
+        const std::size_t count = mesh.vertices.size();
+        const auto copies =
+            static_cast<int>(std::clamp<std::size_t>(mesh::kMaxVertices / count, 1, kMostCopies));
         parts.push_back({static_cast<std::uint32_t>(all_indices.size()),
                          static_cast<std::uint32_t>(mesh.indices.size()),
-                         static_cast<std::int32_t>(all_positions.size())});
+                         static_cast<std::int32_t>(all_positions.size()), copies});
         const glm::vec3 scale = to_unit(mesh);
-        for (const mesh::Vertex& vertex : mesh.vertices) {
-            all_positions.emplace_back(scale * vertex.position_m, 1);
-            all_normals.emplace_back(normalize(vertex.normal / scale), packed(vertex.colour));
+        for (int copy = 0; copy < copies; ++copy) {
+            for (const mesh::Vertex& vertex : mesh.vertices) {
+                all_positions.emplace_back(scale * vertex.position_m, copy);
+                all_normals.emplace_back(normalize(vertex.normal / scale), packed(vertex.colour));
+            }
+            for (const std::uint16_t index : mesh.indices)
+                all_indices.push_back(
+                    static_cast<std::uint16_t>(index + static_cast<std::size_t>(copy) * count));
         }
-        all_indices.insert(all_indices.end(), mesh.indices.begin(), mesh.indices.end());
     }
     positions = gl::Buffer::of<glm::vec4>(all_positions, set.resource + " positions");
     normals = gl::Buffer::of<glm::vec4>(all_normals, set.resource + " normals");

@@ -11,11 +11,14 @@
 namespace relevo::render {
 
 /// The meshes of an InstanceSet on the device, as instance.vert.glsl reads them: each with height 1
-/// and width 1, standing on z = 0.
+/// and width 1, standing on z = 0; w is the number of the copy.
 struct InstanceMesh {
+    /// A level: copies of its mesh, for the cells of a row. Meshes of few vertices that are instanced
+    /// one by one take most of the time for each instance, on GPUs too.
     struct Part {
-        std::uint32_t first_index = 0, indices = 0;
+        std::uint32_t first_index = 0, indices = 0;  ///< of one copy
         std::int32_t first_vertex = 0;
+        int copies = 1;
     };
     gl::Buffer positions, normals;  ///< one vector a vertex
     gl::Buffer indices;

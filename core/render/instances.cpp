@@ -57,11 +57,15 @@ void Instances::draw(std::string_view resource, Terrain& terrain, const TileSele
         for (const InstanceBlock& block : blocks) {
             if (block.farthest_m * (1 + kJitter) < from_m || block.nearest_m * (1 - kJitter) > to_m)
                 continue;
-            draws.push_back({part.indices, static_cast<std::uint32_t>(block.count),
-                             part.first_index, part.first_vertex,
-                             static_cast<std::uint32_t>(inputs.size())});
-            inputs.push_back({block.tile, block.cells,
-                              glm::vec4(from_m, to_m, view.cells_per_post)});
+            // A copy of the mesh for each cell of a row, an instance for each row.
+            for (int x = 0; x < block.count.x; x += part.copies) {
+                const int copies = std::min(part.copies, block.count.x - x);
+                draws.push_back({part.indices * static_cast<std::uint32_t>(copies),
+                                 static_cast<std::uint32_t>(block.count.y), part.first_index,
+                                 part.first_vertex, static_cast<std::uint32_t>(inputs.size())});
+                inputs.push_back({block.tile, block.cells + glm::vec4(x, 0, 0, 0),
+                                  glm::vec4(from_m, to_m, view.cells_per_post)});
+            }
         }
     }
     if (draws.empty()) return;
