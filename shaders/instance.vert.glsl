@@ -9,7 +9,7 @@
 //@ include lib/tile.glsl
 
 layout(location = 0) in vec4 mesh_position;  // xyz: of the mesh, height 1 and width 1; w: number of the copy
-layout(location = 13) in vec4 cells;   // xy: first cell; w: instances_range_m()
+layout(location = 13) in vec4 cells;   // xy: first cell; z: kind; w: instances_range_m()
 layout(location = 14) in vec4 detail;  // xy: distances between which this mesh is drawn [m]; zw: cells per post
 layout(location = 15) in vec4 mesh_normal;  // xyz: unit; w: colour, 8 bits each
 
@@ -19,6 +19,7 @@ out vec2 post;
 out float height_m;
 out vec3 instance_normal;
 out vec3 instance_reflectance;
+out vec4 instance_shape;  // of a sprite; xy: the point's side over its width and height, z: taper, w: flatness
 
 /// The rectangle of posts whose sites this draw has: first and last, half open.
 vec4 rectangle() {
@@ -48,10 +49,45 @@ VertexFrame ground_of(in vec2 vertex, out vec3 normal, out float coverage) {
     return v;
 }
 
+/// Of mean 1.
 vec3 mesh_colour() {
     uint bits = uint(mesh_normal.w);
-    return vec3(bits & 255u, bits >> 8u & 255u, bits >> 16u) / 255.0;
+    return vec3(bits & 255u, bits >> 8u & 255u, bits >> 16u) / 127.5;
 }
+
+#ifdef SPRITES
+/// A point over the whole of a crown.
+/// @param flatness  how far it is shaded as the ground below it
+vec4 sprite_at(in InstanceSite site, in Instance it, in float flatness) {
+    VertexFrame foot = site.ground;
+    vec3 middle_m = foot.position_m + 0.5 * it.height_m * foot.up;
+    float cosine = dot(normalize(middle_m), foot.up), sine2 = 1.0 - cosine * cosine;
+    vec4 position = clipped(middle_m);
+    // As seen by the eye: an ellipsoid of the crown's height and width.
+    float high = sqrt(it.height_m * it.height_m * sine2 + it.width_m * it.width_m * cosine * cosine);
+    float across = max(it.width_m, high);
+    gl_PointSize = max(across / (position.w * length(frame.pixel_ray_dx.xyz)), 1.0);
+    instance_shape = vec4(across / it.width_m, across / high, it.taper * sine2, flatness);
+    instance_normal = site.normal;
+    instance_reflectance = it.colour;
+    return position;
+}
+#else
+/// A vertex of the mesh, turned and scaled.
+vec4 vertex_at(in InstanceSite site, in Instance it, in float flatness) {
+    VertexFrame foot = site.ground;
+    vec3 east = east_at(foot.up), north = cross(foot.up, east);
+    float cosine = cos(it.turn), sine = sin(it.turn);
+    vec3 right = cosine * east + sine * north, ahead = cosine * north - sine * east;
+    vec3 size = vec3(it.width_m, it.width_m, it.height_m);
+    vec3 local = mesh_position.xyz * size;
+    vec3 turned = mesh_normal.xyz / max(size, vec3(1e-3));
+    instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
+                                    flatness));
+    instance_reflectance = it.colour * mesh_colour();
+    return clipped(foot.position_m + local.x * right + local.y * ahead + local.z * foot.up);
+}
+#endif
 
 void main() {
     ivec2 cell = ivec2(cells.xy) + ivec2(int(mesh_position.w), gl_InstanceID);
@@ -65,28 +101,25 @@ void main() {
     float coverage;
     site.ground = ground_of(clamp(vertex, vec2(0.0), net_quads()), site.normal, coverage);
     site.random = instances_random(cell, 1u);
-    Instance it = Instance(1.0, 0.0, 0.0, 6.2831853 * site.random.x, vec3(1.0));
+    Instance it = Instance(1.0, 0.0, 0.0, 6.2831853 * site.random.x, vec3(0.3), 0, 0.0);
     place_instance(site, it);
 
-    VertexFrame foot = site.ground;
-    float seen_m = foot.distance_m * (1.0 + kDetailJitter * (chance.z - 0.5));
+    float away_m = site.ground.distance_m, seen_m = away_m * (1.0 + kDetailJitter * (chance.z - 0.5));
     bool fine = seen_m >= detail.x && seen_m < detail.y;
-    bool kept = chance.w < it.density * instances_share(foot.distance_m, cells.w);
-    bool drawn = here && fine && kept && coverage > 0.99 && it.height_m > 0.0;
-
-    vec3 east = east_at(foot.up), north = cross(foot.up, east);
-    float cosine = cos(it.turn), sine = sin(it.turn);
-    vec3 right = cosine * east + sine * north, ahead = cosine * north - sine * east;
-    vec3 size = vec3(it.width_m, it.width_m, it.height_m);
-    vec3 local = mesh_position.xyz * size;
-    vec3 position_m = foot.position_m + local.x * right + local.y * ahead + local.z * foot.up;
-    vec3 turned = mesh_normal.xyz / max(size, vec3(1e-3));
-    // Far away the mesh becomes flat, as the cover of the ground is that takes its place.
-    float flatness = smoothstep(0.1, kInstanceFade, foot.distance_m / cells.w);
-    instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
-                                    flatness));
-    instance_reflectance = clamp(it.colour * mesh_colour(), 0.0, 1.0);
-    post = foot.post;
-    height_m = foot.height_m;
-    gl_Position = drawn ? clipped(position_m) : vec4(2.0, 2.0, 0.5, 1.0);
+    bool kept = chance.w < it.density * instances_share(away_m, cells.w);
+#ifndef SPRITES
+    kept = kept && it.kind == int(cells.z);
+#endif
+    bool drawn = here && fine && kept && coverage > 0.99 && it.height_m > 0.0 && it.width_m > 0.0;
+    // Far away instances are shaded as the cover of the ground that takes their place.
+    float flatness = smoothstep(0.1, kInstanceFade, away_m / cells.w);
+    it.colour = clamp(it.colour, 0.0, 1.0);
+    post = site.ground.post;
+    height_m = site.ground.height_m;
+#ifdef SPRITES
+    vec4 position = sprite_at(site, it, flatness);
+#else
+    vec4 position = vertex_at(site, it, flatness);
+#endif
+    gl_Position = drawn ? position : vec4(2.0, 2.0, 0.5, 1.0);
 }

@@ -5,10 +5,35 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::size_t kMaxLevels = 8;
+constexpr std::size_t kMaxLevels = 8, kMaxKinds = 8;
 constexpr double kMinSpacing_m = 0.05, kMaxSpacing_m = 1e5;
 constexpr double kMinHeight_m = 0.01, kMaxHeight_m = 1e4;
 constexpr double kMax_px = 1e4;
+
+/// @param before   levels before this one
+/// @param most_px  limit of below_px
+shader::InstanceSet::Level level_of(json::ObjectReader object, const shader::InstanceSet& before,
+                                    double most_px, const FileOfKey& file_of) {
+    shader::InstanceSet::Level level;
+    const bool is_first = before.levels.empty();
+    if (is_first == object.has("below_px"))
+        object.fail(object.line_of("below_px"), "below_px",
+                    "expected the height on the screen below which a level is drawn, of each level "
+                    "but the first");
+    level.below_px = object.number("below_px", 0, is_first ? 0 : 1, most_px, false);
+    for (const std::string& mesh : object.strings("meshes"))
+        level.meshes.push_back(file_of(object, "meshes", mesh));
+    const bool follows_sprites = !is_first && before.has_sprites();
+    const std::size_t kinds = is_first ? level.meshes.size() : before.levels[0].meshes.size();
+    if (level.meshes.size() > kMaxKinds || follows_sprites || (is_first && kinds == 0) ||
+        (!level.is_sprite() && level.meshes.size() != kinds))
+        object.fail(object.line_of("meshes"), "meshes",
+                    fmt::format("expected a mesh of each kind, 1 to {} at every level, or none at "
+                                "the last level, for sprites",
+                                kMaxKinds));
+    object.finish();
+    return level;
+}
 
 }  // namespace
 
@@ -28,18 +53,8 @@ shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::str
         object.fail(levels.line, "levels",
                     fmt::format("expected a list of 1 to {} meshes, finest first", kMaxLevels));
     for (const json::Value& item : levels.items) {
-        json::ObjectReader level = object.inner("levels", item);
-        shader::InstanceSet::Level read;
-        read.mesh = file_of(level, "mesh", level.string("mesh"));
-        if (set.levels.empty() == level.has("below_px"))
-            level.fail(level.line(), "below_px",
-                       "expected the height on the screen below which a level is drawn, of each "
-                       "level but the first");
-        const double most =
-            set.levels.empty() || set.levels.size() == 1 ? kMax_px : set.levels.back().below_px;
-        read.below_px = level.number("below_px", 0, set.levels.empty() ? 0 : 1, most, false);
-        level.finish();
-        set.levels.push_back(std::move(read));
+        const double most_px = set.levels.size() > 1 ? set.levels.back().below_px : kMax_px;
+        set.levels.push_back(level_of(object.inner("levels", item), set, most_px, file_of));
     }
     object.finish();
     return set;

@@ -35,9 +35,12 @@ class VertexArray {
     };
     /// Draws all with one command. @param draws  written to a ring with an alignment of 4
     void draw(const RingBuffer::Place& draws) const;
+    /// The same of points, whose size the vertex program sets.
+    void draw_points(const RingBuffer::Place& draws) const;
     void bind() const;
 
   private:
+    void draw(unsigned primitive, const RingBuffer::Place& draws) const;
     static void destroy(unsigned name);
     Handle<&VertexArray::destroy> handle_;
 };

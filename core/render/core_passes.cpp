@@ -69,8 +69,10 @@ class Declaration {
         prepare();
         natives();
         geometry();
-        for (const shader::InstanceSet& set : facts_.instances)
-            instances(set);
+        for (const shader::InstanceSet& set : facts_.instances) {
+            instances(set, false);
+            if (set.has_sprites()) instances(set, true);
+        }
         for (const shader::PluginPass& pass : facts_.plugin_passes)
             plugin_pass(pass);
         terrain();
@@ -201,22 +203,24 @@ class Declaration {
         add(std::move(pass));
     }
 
-    /// Meshes on the ground. Sets are drawn one after the other into the same targets.
-    void instances(const shader::InstanceSet& set) {
+    /// Meshes on the ground, or their sprites. All are drawn into the same targets.
+    void instances(const shader::InstanceSet& set, bool sprites) {
+        const std::string name = set.resource + (sprites ? ".sprites" : "");
         shader::ProgramRecipe recipe{.vertex_main = PassTexts::name_of(set),
                                      .fragment_main = "instance.frag.glsl"};
         if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        if (sprites) recipe.defines.push_back({"SPRITES", ""});
         const bool first = covering_ == "geometry";
-        Pass pass{.name = set.resource,
+        Pass pass{.name = name,
                   .kind = PassKind::Geometry,
-                  .program = program(set.resource.c_str(), recipe),
+                  .program = program(name.c_str(), recipe),
                   .reads = {"tiles"},
                   .colours = {{.resource = "gbuffer", .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
                   .after = {covering_},
-                  .body = [resource = set.resource](PassContext& frame) {
-                      frame.services.draw_instances(resource, frame);
+                  .body = [resource = set.resource, sprites](PassContext& frame) {
+                      frame.services.draw_instances(resource, sprites, frame);
                   }};
         if (first) {
             pass.colours.push_back({"instance_colour", kNothing});
@@ -225,7 +229,7 @@ class Declaration {
             pass.colours.push_back({.resource = "instance_colour", .updates = true});
             pass.colours.push_back({.resource = "instance_direction", .updates = true});
         }
-        covering_ = set.resource;
+        covering_ = name;
         add(std::move(pass));
     }
 

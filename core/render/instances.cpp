@@ -20,6 +20,24 @@ struct BlockInputs {
     glm::vec4 cells, detail;
 };
 constexpr int kBlockVectors = TileMesh::kInstanceVectors + 2;
+/// Draws with their inputs.
+struct Batch {
+    std::vector<BlockInputs> inputs;
+    std::vector<gl::VertexArray::Draw> draws;
+
+    /// A copy of the mesh for each cell of a row, an instance for each row.
+    void add(const InstanceMesh::Part& part, int kind, const InstanceBlock& block,
+             const glm::vec4& detail) {
+        for (int x = 0; x < block.count.x; x += part.copies) {
+            const int copies = std::min(part.copies, block.count.x - x);
+            draws.push_back({part.indices * static_cast<std::uint32_t>(copies),
+                             static_cast<std::uint32_t>(block.count.y), part.first_index,
+                             part.first_vertex, static_cast<std::uint32_t>(inputs.size())});
+            inputs.push_back({block.tile, block.cells + glm::vec4(x, 0, kind, 0), detail});
+        }
+    }
+};
+
 static_assert(sizeof(BlockInputs) == kBlockVectors * sizeof(glm::vec4));
 
 }  // namespace
@@ -37,42 +55,39 @@ Instances::Instances(const std::vector<shader::InstanceSet>& sets) {
         sets_.push_back(std::make_unique<Set>(set));
 }
 
-void Instances::draw(std::string_view resource, Terrain& terrain, const TileSelection& selection,
-                     const LodView& lod_view, double pixel_rad) {
-    Set& set = **std::ranges::find_if(
+Instances::Set& Instances::find(std::string_view resource) {
+    return **std::ranges::find_if(
         sets_, [&](const auto& each) { return each->set.resource == resource; });
+}
+
+void Instances::draw(std::string_view resource, bool sprites, Terrain& terrain,
+                     const TileSelection& selection, const LodView& lod_view, double pixel_rad) {
+    Set& set = find(resource);
     const InstanceView view(set.set, terrain, lod_view, pixel_rad);
-    const std::vector<InstanceBlock> blocks =
-        instance_blocks(set.set, terrain, selection, view);
-    std::vector<BlockInputs> inputs;
-    std::vector<gl::VertexArray::Draw> draws;
-    const std::size_t levels = set.set.levels.size();
-    for (std::size_t level = 0; level < levels; ++level) {
-        const InstanceMesh::Part& part = set.mesh.parts[level];
-        const double from_m =
-            level == 0 ? 0 : view.distance_m(set.set, set.set.levels[level].below_px);
-        const double to_m = level + 1 == levels
-                                ? 2 * view.range_m
-                                : view.distance_m(set.set, set.set.levels[level + 1].below_px);
+    const std::vector<InstanceBlock> blocks = instance_blocks(set.set, terrain, selection, view);
+    Batch batch;
+    const std::vector<shader::InstanceSet::Level>& levels = set.set.levels;
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        if (levels[level].is_sprite() != sprites) continue;
+        const bool is_last = level + 1 == levels.size();
+        const double from_m = level == 0 ? 0 : view.distance_m(set.set, levels[level].below_px);
+        const double to_m =
+            is_last ? 2 * view.range_m : view.distance_m(set.set, levels[level + 1].below_px);
         for (const InstanceBlock& block : blocks) {
             if (block.farthest_m * (1 + kJitter) < from_m || block.nearest_m * (1 - kJitter) > to_m)
                 continue;
-            // A copy of the mesh for each cell of a row, an instance for each row.
-            for (int x = 0; x < block.count.x; x += part.copies) {
-                const int copies = std::min(part.copies, block.count.x - x);
-                draws.push_back({part.indices * static_cast<std::uint32_t>(copies),
-                                 static_cast<std::uint32_t>(block.count.y), part.first_index,
-                                 part.first_vertex, static_cast<std::uint32_t>(inputs.size())});
-                inputs.push_back({block.tile, block.cells + glm::vec4(x, 0, 0, 0),
-                                  glm::vec4(from_m, to_m, view.cells_per_post)});
-            }
+            const glm::vec4 detail(from_m, to_m, view.cells_per_post);
+            for (std::size_t kind = 0; kind < set.mesh.levels[level].size(); ++kind)
+                batch.add(set.mesh.levels[level][kind], static_cast<int>(kind), block, detail);
         }
     }
-    if (draws.empty()) return;
+    if (batch.draws.empty()) return;
     set.array.feed(kBlockBinding,
-                   set.blocks.write(std::as_bytes(std::span(inputs)), sizeof(glm::vec4)),
+                   set.blocks.write(std::as_bytes(std::span(batch.inputs)), sizeof(glm::vec4)),
                    sizeof(BlockInputs));
-    set.array.draw(set.draws.write(std::as_bytes(std::span(draws)), sizeof(std::uint32_t)));
+    const auto draws =
+        set.draws.write(std::as_bytes(std::span(batch.draws)), sizeof(std::uint32_t));
+    sprites ? set.array.draw_points(draws) : set.array.draw(draws);
 }
 
 }  // namespace relevo::render

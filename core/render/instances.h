@@ -22,10 +22,11 @@ class Instances {
 
     /// Draws a set with the bound program, framebuffer and textures.
     /// @param resource   names the set
+    /// @param sprites    draws the level of sprites instead of meshes
     /// @param view       of the frame; its eye is the origin of positions
     /// @param pixel_rad  a pixel at the frame's centre
-    void draw(std::string_view resource, Terrain& terrain, const TileSelection& selection,
-              const LodView& view, double pixel_rad);
+    void draw(std::string_view resource, bool sprites, Terrain& terrain,
+              const TileSelection& selection, const LodView& view, double pixel_rad);
 
   private:
     struct Set {
@@ -35,6 +36,7 @@ class Instances {
         gl::VertexArray array;
         gl::RingBuffer blocks{"instance blocks"}, draws{"instance draws"};
     };
+    Set& find(std::string_view resource);
     std::vector<std::unique_ptr<Set>> sets_;
 };
 

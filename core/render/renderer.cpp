@@ -216,10 +216,10 @@ struct Renderer::Impl : FrameServices {
 
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
 
-    void draw_instances(const std::string& resource, PassContext& frame) override {
+    void draw_instances(const std::string& resource, bool sprites, PassContext& frame) override {
         const LodView view = LodView::of_camera(frame.inputs.camera, frame.width_px,
                                                 frame.height_px, 1, frame.inputs.exaggeration);
-        instances.draw(resource, frame.terrain, frame.tiles, view,
+        instances.draw(resource, sprites, frame.terrain, frame.tiles, view,
                        length(glm::vec3(frame.block.pixel_ray_dx)));
     }
 

@@ -1,5 +1,5 @@
 //! provides  trees: conifers and broadleaf trees near the eye, and the forest's cover farther away
-//! hook      material; places conifer and broadleaf
+//! hook      material; places tree
 //! reads     the climate's tables, height, slope, water
 //! writes    diffuse, ambient, specular of the ground below trees and of the cover
 //! source    lib/crown.glsl: gaps between crowns
@@ -22,7 +22,6 @@ uniform vec3 trees_autumn = vec3(0.125, 0.082, 0.034); //@ colour label("Leaves 
 
 const float trees_spacing_m = 9.0;   // plugin.json
 const float trees_highest_m = 28.0;  // plugin.json
-const float trees_mesh_colour = 0.8;  // mean of the meshes: tools/tree_meshes.py
 
 /// What stands at a place.
 struct trees_Stand {
@@ -68,43 +67,52 @@ trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 a
 const float trees_conifer_width = 0.34;  // over the height
 const float trees_broadleaf_width = 0.72;
 
-trees_Stand trees_stand_at(in InstanceSite at) {
-    return trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
-                       water_at(at.ground.post, 1.0).x);
+/// Crowns of the mean tree of a kind.
+Crown trees_crown(in trees_Stand stand, in bool conifer) {
+    float height_m = (conifer ? 1.0 : 0.8) * stand.height_m;
+    return Crown(height_m, height_m * (conifer ? trees_conifer_width : trees_broadleaf_width), trees_light);
 }
 
-void trees_place_conifer(in InstanceSite at, inout Instance it) {
-    trees_Stand stand = trees_stand_at(at);
-    it.density = at.random.y < stand.conifers ? stand.density : 0.0;
-    it.height_m = stand.height_m * (0.65 + 0.7 * at.random.z);
-    it.width_m = it.height_m * trees_conifer_width * (0.85 + 0.3 * at.random.w);
-    it.colour = trees_needles * (0.8 + 0.4 * at.random.w);
+void trees_place_tree(in InstanceSite at, inout Instance it) {
+    trees_Stand stand = trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
+                                    water_at(at.ground.post, 1.0).x);
+    bool conifer = at.random.y < stand.conifers;
+    Crown crown = trees_crown(stand, conifer);
+    it.kind = conifer ? 0 : 1;
+    it.taper = conifer ? 1.0 : 0.0;
+    it.density = stand.density;
+    it.height_m = crown.height_m * (0.65 + 0.7 * at.random.z);
+    it.width_m = crown.width_m * (0.65 + 0.7 * at.random.z) * (0.85 + 0.3 * at.random.w);
+    it.colour = (conifer ? trees_needles : stand.leaves) * (0.8 + 0.4 * at.random.w);
 }
 
-void trees_place_broadleaf(in InstanceSite at, inout Instance it) {
-    trees_Stand stand = trees_stand_at(at);
-    it.density = at.random.y < stand.conifers ? 0.0 : stand.density;
-    it.height_m = 0.8 * stand.height_m * (0.65 + 0.7 * at.random.z);
-    it.width_m = it.height_m * trees_broadleaf_width * (0.85 + 0.3 * at.random.w);
-    it.colour = stand.leaves * (0.8 + 0.4 * at.random.w);
+/// What crowns of both kinds hide from a direction. @param per_m2  trees on a square metre
+vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
+    return per_m2 * vec2(stand.conifers * crown_area_m2(trees_crown(stand, true), cosine),
+                         (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
+}
+
+/// Share of a direction's light that reaches the ground, through gaps and through crowns.
+float trees_lit(in trees_Stand stand, in float per_m2, in float cosine) {
+    vec2 filled = trees_filled(stand, per_m2, cosine);
+    return mix(trees_light, 1.0, crown_gap(filled.x + filled.y));
 }
 
 void trees_on_material(inout Surface s) {
     trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x);
-    float width = mix(0.8 * trees_broadleaf_width, trees_conifer_width, stand.conifers);
-    Crown crown = Crown(stand.height_m * mix(0.8, 1.0, stand.conifers), stand.height_m * width, trees_light);
     float per_m2 = stand.density / (trees_spacing_m * trees_spacing_m);
 
     // The ground between the trees.
-    float sun = crown_light(crown, per_m2, dot(frame.sun_direction.xyz, s.up));
+    float sun = trees_lit(stand, per_m2, dot(frame.sun_direction.xyz, s.up));
     s.diffuse *= sun;
     s.specular *= sun;
-    s.ambient *= crown_light(crown, per_m2, 0.6);  // the sky's light comes from 53 degrees off the vertical in the mean
+    s.ambient *= trees_lit(stand, per_m2, 0.6);  // the sky's light comes from 53 degrees off the vertical in the mean
 
-    // What is not drawn as a mesh.
-    float far = 1.0 - instances_share(s.distance_m, instances_range_m(trees_highest_m, trees_spacing_m));
-    float cover = 1.0 - crown_gap(crown, far * per_m2, dot(-s.position_m, s.up) / s.distance_m);
-    vec3 colour = trees_mesh_colour * mix(stand.leaves, trees_needles, stand.conifers);
+    // The cover stands for the trees that are not drawn.
+    float left = 1.0 - instances_share(s.distance_m, instances_range_m(trees_highest_m, trees_spacing_m));
+    vec2 filled = trees_filled(stand, left * per_m2, dot(-s.position_m, s.up) / s.distance_m);
+    float both = filled.x + filled.y, cover = 1.0 - crown_gap(both);
+    vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(both, 1e-6));
     s.diffuse = mix(s.diffuse, colour, cover);
     s.ambient = mix(s.ambient, colour, cover);
     s.specular *= 1.0 - cover;

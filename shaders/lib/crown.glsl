@@ -18,13 +18,8 @@ float crown_area_m2(in Crown crown, in float cosine) {
     return 0.785398 * crown.width_m * crown.width_m * sqrt(1.0 + stretch * stretch * (1.0 - c * c) / (c * c));
 }
 
-/// Share of the ground that no crown hides from a direction, 0..1. @param per_m2  crowns on a square metre
-float crown_gap(in Crown crown, in float per_m2, in float cosine) {
-    float filled = min(per_m2 * crown_area_m2(crown, cosine), kCrownOrder);
-    return pow(1.0 - filled / kCrownOrder, kCrownOrder);
-}
-
-/// Share of a direction's light that reaches the ground, through gaps and through crowns.
-float crown_light(in Crown crown, in float per_m2, in float cosine) {
-    return mix(crown.light, 1.0, crown_gap(crown, per_m2, cosine));
+/// Share of the ground that no crown hides from a direction, 0..1.
+/// @param filled  area that crowns hide, crown_area_m2() of each, over the ground's area
+float crown_gap(in float filled) {
+    return pow(1.0 - min(filled, kCrownOrder) / kCrownOrder, kCrownOrder);
 }

@@ -70,7 +70,9 @@ struct Instance {
     float height_m;  // of the mesh above its foot, at most `height_m` of plugin.json
     float width_m;   // of the mesh along its longer horizontal side
     float turn;      // about the vertical, counter-clockwise as seen from above [rad]
-    vec3 colour;     // reflectance, linear; a factor on the colours of the mesh
+    vec3 colour;     // mean reflectance, linear; meshes vary it
+    int kind;        // which of the meshes, from 0
+    float taper;     // of its sprite: 0 an ellipse, 1 a cone
 };
 
 /// A texel of a plugin's pass.
