@@ -20,7 +20,7 @@ uniform vec3 trees_needles = vec3(0.030, 0.048, 0.024); //@ colour label("Needle
 uniform vec3 trees_leaves = vec3(0.055, 0.088, 0.026); //@ colour label("Leaves")
 uniform vec3 trees_autumn = vec3(0.125, 0.082, 0.034); //@ colour label("Leaves when they fall")
 
-const float trees_spacing_m = 9.0;   // plugin.json
+const float trees_spacing_m = 10.0;   // plugin.json
 const float trees_highest_m = 28.0;  // plugin.json
 
 /// What stands at a place.
