@@ -16,7 +16,7 @@ layout(location = 2) out vec2 instance_direction_out;
 
 #ifdef SPRITES
 /// Shapes a point to a crown, which is rounded towards the eye and darker below.
-void shape_sprite(inout vec3 normal, inout vec3 reflectance) {
+void instance_shaped(inout vec3 normal, inout vec3 reflectance) {
     vec2 at = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0) * instance_shape.xy;
     float top = 0.5 + 0.5 * at.y;
     float side = mix(sqrt(max(1.0 - at.y * at.y, 0.0)), 1.0 - top, instance_shape.z);
@@ -36,7 +36,7 @@ void main() {
 #endif
     vec3 normal = normalize(instance_normal), reflectance = instance_reflectance;
 #ifdef SPRITES
-    shape_sprite(normal, reflectance);
+    instance_shaped(normal, reflectance);
 #endif
     vec2 direction = normal_octahedral(normal);
 #ifdef TERRAIN_NORMAL_VERTEX

@@ -8,10 +8,10 @@
 //@ include lib/instances.glsl
 //@ include lib/tile.glsl
 
-layout(location = 0) in vec4 mesh_position;  // xyz: of the mesh, height 1 and width 1; w: number of the copy
-layout(location = 13) in vec4 cells;   // xy: first cell; z: kind; w: instances_range_m()
-layout(location = 14) in vec4 detail;  // xy: distances between which this mesh is drawn [m]; zw: cells per post
-layout(location = 15) in vec4 mesh_normal;  // xyz: unit; w: colour, 8 bits each
+layout(location = 0) in vec4 instance_vertex;  // xyz: of the mesh, height 1 and width 1; w: number of the copy
+layout(location = 13) in vec4 instance_cells;   // xy: first cell; z: kind; w: instances_range_m()
+layout(location = 14) in vec4 instance_detail;  // xy: distances between which this mesh is drawn [m]; zw: cells per post
+layout(location = 15) in vec4 instance_packed;  // xyz: unit; w: colour, 8 bits each
 
 const float kDetailJitter = 0.2;  // share of the distance by which instances change their meshes sooner or later
 
@@ -22,7 +22,7 @@ out vec3 instance_reflectance;
 out vec4 instance_shape;  // of a sprite; xy: the point's side over its width and height, z: taper, w: flatness
 
 /// The rectangle of posts whose sites this draw has: first and last, half open.
-vec4 rectangle() {
+vec4 instance_rectangle() {
     return vec4(net_uuvv.w, up_0.w, up_u.w, up_v.w);
 }
 
@@ -50,15 +50,15 @@ VertexFrame ground_of(in vec2 vertex, out vec3 normal, out float coverage) {
 }
 
 /// Of mean 1.
-vec3 mesh_colour() {
-    uint bits = uint(mesh_normal.w);
+vec3 instance_mesh_colour() {
+    uint bits = uint(instance_packed.w);
     return vec3(bits & 255u, bits >> 8u & 255u, bits >> 16u) / 127.5;
 }
 
 #ifdef SPRITES
 /// A point over the whole of a crown.
 /// @param flatness  how far it is shaded as the ground below it
-vec4 sprite_at(in InstanceSite site, in Instance it, in float flatness) {
+vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness) {
     VertexFrame foot = site.ground;
     vec3 middle_m = foot.position_m + 0.5 * it.height_m * foot.up;
     float cosine = dot(normalize(middle_m), foot.up), sine2 = 1.0 - cosine * cosine;
@@ -74,27 +74,27 @@ vec4 sprite_at(in InstanceSite site, in Instance it, in float flatness) {
 }
 #else
 /// A vertex of the mesh, turned and scaled.
-vec4 vertex_at(in InstanceSite site, in Instance it, in float flatness) {
+vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness) {
     VertexFrame foot = site.ground;
     vec3 east = east_at(foot.up), north = cross(foot.up, east);
     float cosine = cos(it.turn), sine = sin(it.turn);
     vec3 right = cosine * east + sine * north, ahead = cosine * north - sine * east;
     vec3 size = vec3(it.width_m, it.width_m, it.height_m);
-    vec3 local = mesh_position.xyz * size;
-    vec3 turned = mesh_normal.xyz / max(size, vec3(1e-3));
+    vec3 local = instance_vertex.xyz * size;
+    vec3 turned = instance_packed.xyz / max(size, vec3(1e-3));
     instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
                                     flatness));
-    instance_reflectance = it.colour * mesh_colour();
+    instance_reflectance = it.colour * instance_mesh_colour();
     return clipped(foot.position_m + local.x * right + local.y * ahead + local.z * foot.up);
 }
 #endif
 
 void main() {
-    ivec2 cell = ivec2(cells.xy) + ivec2(int(mesh_position.w), gl_InstanceID);
+    ivec2 cell = ivec2(instance_cells.xy) + ivec2(int(instance_vertex.w), gl_InstanceID);
     vec4 chance = instances_random(cell, 0u);
-    vec2 place = (vec2(cell) + 0.1 + 0.8 * chance.xy) / detail.zw;
+    vec2 place = (vec2(cell) + 0.1 + 0.8 * chance.xy) / instance_detail.zw;
     vec2 vertex = (place - vec2(net_v.w, net_uv.w)) / net_uuv.w;
-    vec4 within = rectangle();
+    vec4 within = instance_rectangle();
     bool here = all(greaterThanEqual(place, within.xy)) && all(lessThan(place, within.zw));
 
     InstanceSite site;
@@ -105,21 +105,21 @@ void main() {
     place_instance(site, it);
 
     float away_m = site.ground.distance_m, seen_m = away_m * (1.0 + kDetailJitter * (chance.z - 0.5));
-    bool fine = seen_m >= detail.x && seen_m < detail.y;
-    bool kept = chance.w < it.density * instances_share(away_m, cells.w);
+    bool fine = seen_m >= instance_detail.x && seen_m < instance_detail.y;
+    bool kept = chance.w < it.density * instances_share(away_m, instance_cells.w);
 #ifndef SPRITES
-    kept = kept && it.kind == int(cells.z);
+    kept = kept && it.kind == int(instance_cells.z);
 #endif
     bool drawn = here && fine && kept && coverage > 0.99 && it.height_m > 0.0 && it.width_m > 0.0;
     // Far away instances are shaded as the cover of the ground that takes their place.
-    float flatness = smoothstep(0.1, kInstanceFade, away_m / cells.w);
+    float flatness = smoothstep(0.1, kInstanceFade, away_m / instance_cells.w);
     it.colour = clamp(it.colour, 0.0, 1.0);
     post = site.ground.post;
     height_m = site.ground.height_m;
 #ifdef SPRITES
-    vec4 position = sprite_at(site, it, flatness);
+    vec4 position = instance_sprite(site, it, flatness);
 #else
-    vec4 position = vertex_at(site, it, flatness);
+    vec4 position = instance_mesh(site, it, flatness);
 #endif
     gl_Position = drawn ? position : vec4(2.0, 2.0, 0.5, 1.0);
 }

@@ -21,14 +21,13 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 49> kReserved = {
-    "all",       "antialias", "backdrop", "background", "camera",   "climate", "colour",
-    "copy",      "core",      "data",     "depth",      "east",     "edges",   "floor",
-    "footprint", "frame",     "gbuffer",  "geometry",   "gl",       "ground",  "height",
-    "hook",      "light",     "load",     "net",        "none",     "normal",  "overlay",
-    "page",      "pixel",     "place",    "post",       "scene",    "screen",  "select",
-    "side",      "slope",     "srgb",     "steps",      "store",    "stored",  "sun",
-    "surface",   "tangent",   "terrain",  "up",         "varyings", "vertex",  "water"};
+constexpr std::array<std::string_view, 52> kReserved = {
+    "all", "antialias", "backdrop", "background", "camera", "climate", "colour", "copy", "core",
+    "crown", "data", "depth", "east", "edges", "floor", "footprint", "frame", "gbuffer",
+    "geometry", "gl", "ground", "height", "hook", "instance", "instances", "light", "load", "net",
+    "none", "normal", "overlay", "page", "pixel", "place", "post", "scene", "screen", "select",
+    "side", "slope", "srgb", "steps", "store", "stored", "sun", "surface", "tangent", "terrain",
+    "up", "varyings", "vertex", "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
