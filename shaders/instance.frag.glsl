@@ -11,8 +11,8 @@ in vec3 instance_reflectance;
 in vec4 instance_shape;
 
 layout(location = 0) out uvec4 gbuffer_out;
-layout(location = 1) out vec4 instance_colour_out;
-layout(location = 2) out vec2 instance_direction_out;
+layout(location = INSTANCE_COLOUR) out vec4 instance_colour_out;
+layout(location = INSTANCE_DIRECTION) out vec2 instance_direction_out;
 
 #ifdef SPRITES
 /// Shapes a point to a crown, which is rounded towards the eye and darker below.
@@ -47,4 +47,5 @@ void main() {
     gbuffer_out = uvec4(ground, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
     instance_colour_out = vec4(sqrt(clamp(reflectance, 0.0, 1.0)), 1.0);
     instance_direction_out = 0.5 + 0.5 * direction;
+    store_varyings();
 }

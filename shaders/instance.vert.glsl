@@ -57,8 +57,9 @@ vec3 instance_mesh_colour() {
 
 #ifdef SPRITES
 /// A point over the whole of a crown.
-/// @param flatness  how far it is shaded as the ground below it
-vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness) {
+/// @param flatness    how far it is shaded as the ground below it
+/// @param position_m  its middle, relative to the eye
+vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness, out vec3 position_m) {
     VertexFrame foot = site.ground;
     vec3 middle_m = foot.position_m + 0.5 * it.height_m * foot.up;
     float cosine = dot(normalize(middle_m), foot.up), sine2 = 1.0 - cosine * cosine;
@@ -66,6 +67,7 @@ vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness) {
     // As seen by the eye: an ellipsoid of the crown's height and width.
     float high = sqrt(it.height_m * it.height_m * sine2 + it.width_m * it.width_m * cosine * cosine);
     float across = max(it.width_m, high);
+    position_m = middle_m;
     gl_PointSize = max(across / (position.w * length(frame.pixel_ray_dx.xyz)), 1.0);
     instance_shape = vec4(across / it.width_m, across / high, it.taper * sine2, flatness);
     instance_normal = site.normal;
@@ -74,7 +76,7 @@ vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness) {
 }
 #else
 /// A vertex of the mesh, turned and scaled.
-vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness) {
+vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness, out vec3 position_m) {
     VertexFrame foot = site.ground;
     vec3 east = east_at(foot.up), north = cross(foot.up, east);
     float cosine = cos(it.turn), sine = sin(it.turn);
@@ -85,7 +87,8 @@ vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness) {
     instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
                                     flatness));
     instance_reflectance = it.colour * instance_mesh_colour();
-    return clipped(foot.position_m + local.x * right + local.y * ahead + local.z * foot.up);
+    position_m = foot.position_m + local.x * right + local.y * ahead + local.z * foot.up;
+    return clipped(position_m);
 }
 #endif
 
@@ -116,10 +119,14 @@ void main() {
     it.colour = clamp(it.colour, 0.0, 1.0);
     post = site.ground.post;
     height_m = site.ground.height_m;
+    VertexFrame v = site.ground;
 #ifdef SPRITES
-    vec4 position = instance_sprite(site, it, flatness);
+    vec4 position = instance_sprite(site, it, flatness, v.position_m);
 #else
-    vec4 position = instance_mesh(site, it, flatness);
+    vec4 position = instance_mesh(site, it, flatness, v.position_m);
 #endif
+    v.distance_m = length(v.position_m);
+    v.drawn_height_m += dot(v.position_m - site.ground.position_m, v.up);
+    hook_vertex(v);
     gl_Position = drawn ? position : vec4(2.0, 2.0, 0.5, 1.0);
 }

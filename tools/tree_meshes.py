@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the meshes of the effect `trees` as Wavefront OBJ: a conifer and a broadleaf tree in three levels each.
+"""Writes the meshes of the effect `trees` as Wavefront OBJ: a conifer and a broadleaf tree in two levels each.
 
 Usage: tree_meshes.py FOLDER. Metres, y up, standing on y = 0. Colours are factors on the reflectance of a tree;
 their mean over the surface is MEAN at every level, so that levels are equally bright.
@@ -7,6 +7,7 @@ their mean over the surface is MEAN at every level, so that levels are equally b
 
 import math
 import pathlib
+import random
 import sys
 
 MEAN = 0.8
@@ -16,19 +17,27 @@ TRUNK = (0.55, 0.42, 0.30)
 class Mesh:
     def __init__(self):
         self.points, self.colours, self.faces = [], [], []
+        self.chance = random.Random(1)
 
     def point(self, x, y, z, shade):
         self.points.append((x, y, z))
         self.colours.append((shade,) * 3 if isinstance(shade, float) else shade)
         return len(self.points)
 
-    def ring(self, sides, radius, y, shade, turn=0.0, wave=0.0):
-        """Points around the axis; every other one is `wave` of the radius nearer to it."""
+    def ring(self, sides, radius, y, shade, turn=0.0, wave=0.0, rough=0.0):
+        """Points around the axis.
+
+        wave: every other one is nearer to it and higher by this share of the radius
+        rough: all are moved and shaded by chance, by up to this share
+        """
         at = []
         for i in range(sides):
             angle = 2 * math.pi * i / sides + turn
-            r = radius * (1 - wave * (i % 2))
-            at.append(self.point(r * math.cos(angle), y, r * math.sin(angle), shade))
+            chance = self.chance.uniform(-rough, rough)
+            r = radius * (1 - wave * (i % 2)) * (1 + chance)
+            lift = radius * (0.6 * wave * (i % 2) + self.chance.uniform(-rough, rough))
+            tone = shade if isinstance(shade, tuple) else shade * (1 + 1.5 * chance)
+            at.append(self.point(r * math.cos(angle), y + lift, r * math.sin(angle), tone))
         return at
 
     def fan(self, ring, top, upwards=True):
@@ -77,8 +86,8 @@ def conifer(tiers, sides, trunk):
         foot = low + (high - low) * t
         top = high if tier == tiers - 1 else foot + 1.7 * (high - low) / tiers
         radius = 2.5 * (1 - t) ** 0.85
-        wave = 0.18 if sides > 6 else 0.0
-        ring = mesh.ring(sides, radius, foot, 0.62, turn=0.7 * tier, wave=wave)
+        wave, rough = (0.3, 0.06) if sides > 6 else (0.0, 0.0)
+        ring = mesh.ring(sides, radius, foot, 0.55, turn=0.7 * tier, wave=wave, rough=rough)
         mesh.fan(ring, mesh.point(0.0, top, 0.0, 1.0))
     return mesh
 
@@ -95,8 +104,8 @@ def broadleaf(rings, sides, trunk):
         angle = math.pi * (ring / (rings + 1) - 0.5)
         y = middle + half * math.sin(angle)
         shade = 0.5 + 0.5 * (y - low) / (high - low)
-        bulge = 1 + (0.07 * math.sin(5 * ring) if sides > 6 else 0.0)
-        at = mesh.ring(sides, bulge * radius * math.cos(angle) ** 0.8, y, shade, turn=math.pi / sides * (ring % 2))
+        rough = 0.14 if sides > 6 else 0.0
+        at = mesh.ring(sides, radius * math.cos(angle) ** 0.8, y, shade, turn=math.pi / sides * (ring % 2), rough=rough)
         if before:
             mesh.band(before, at)
         else:
@@ -108,9 +117,9 @@ def broadleaf(rings, sides, trunk):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    for level, (tiers, sides, trunk) in enumerate([(5, 8, True), (2, 6, False), (1, 3, False)]):
+    for level, (tiers, sides, trunk) in enumerate([(7, 10, True), (3, 6, False)]):
         conifer(tiers, sides, trunk).write(folder / f"conifer_{level}.obj")
-    for level, (rings, sides, trunk) in enumerate([(5, 9, True), (3, 6, False), (1, 4, False)]):
+    for level, (rings, sides, trunk) in enumerate([(6, 11, True), (3, 6, False)]):
         broadleaf(rings, sides, trunk).write(folder / f"broadleaf_{level}.obj")
 
 

@@ -206,8 +206,17 @@ class Declaration {
     /// Meshes on the ground, or their sprites. All are drawn into the same targets.
     void instances(const shader::InstanceSet& set, bool sprites) {
         const std::string name = set.resource + (sprites ? ".sprites" : "");
+        const int colour = 1 + facts_.varying_targets;
+        if (colour + 2 > kMaxStored + 1)
+            bad_input("render: instances: expected varyings of up to " +
+                      std::to_string(4 * (kMaxStored - 2)) + " floats in addition but got " +
+                      std::to_string(facts_.varying_targets) +
+                      " textures of four; switch an effect off");
         shader::ProgramRecipe recipe{.vertex_main = PassTexts::name_of(set),
-                                     .fragment_main = "instance.frag.glsl"};
+                                     .fragment_main = "instance.frag.glsl",
+                                     .defines = {{"INSTANCE_COLOUR", std::to_string(colour)},
+                                                 {"INSTANCE_DIRECTION", std::to_string(colour + 1)}},
+                                     .shaded_by = "terrain.frag.glsl"};
         if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
         if (sprites) recipe.defines.push_back({"SPRITES", ""});
@@ -222,6 +231,9 @@ class Declaration {
                   .body = [resource = set.resource, sprites](PassContext& frame) {
                       frame.services.draw_instances(resource, sprites, frame);
                   }};
+        if (facts_.varying_targets > 0)
+            pass.colours.push_back(
+                {.resource = shader::StoredVaryings::kTexture, .updates = true});
         if (first) {
             pass.colours.push_back({"instance_colour", kNothing});
             pass.colours.push_back({"instance_direction", kNothing});

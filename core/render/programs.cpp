@@ -100,11 +100,12 @@ class Stitcher {
     FrameGraph graph() {
         facts_.varying_targets = 0;
         facts_.height_steps = false;
-        if (reads_height_steps(input_)) {
-            // Their target follows the varyings, whose number the geometry program determines.
+        const bool steps = reads_height_steps(input_);
+        if (steps || !facts_.instances.empty()) {
+            // Other targets follow the varyings, whose number the geometry program determines.
             const CoreFrame without = core_frame(facts_);
             facts_.varying_targets = stitched(geometry_of(without)).varying_targets;
-            facts_.height_steps = true;
+            facts_.height_steps = steps;
         }
         CoreFrame frame = core_frame(facts_);
         for (const ProgramRecipe& recipe : frame.programs)
