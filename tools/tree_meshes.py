@@ -92,26 +92,43 @@ def conifer(tiers, sides, trunk):
     return mesh
 
 
-def broadleaf(rings, sides, trunk):
-    """An ellipsoid on a trunk, 12 m high and 9 m wide, irregular where it has many sides."""
-    mesh = Mesh()
-    if trunk:
-        mesh.trunk(0.3, 3.0)
-    low, high, radius = 1.6, 12.0, 4.5
-    middle, half = (low + high) / 2, (high - low) / 2
+def blob(mesh, centre, radius, half, rings, sides, rough=0.0, low=1.6, high=12.0):
+    """An ellipsoid; its colour is that of its height in the crown."""
+    x, middle, z = centre
+
+    def shade(y):
+        return 0.4 + 0.6 * (y - low) / (high - low)
+
+    first = len(mesh.points)
     before = None
     for ring in range(1, rings + 1):
         angle = math.pi * (ring / (rings + 1) - 0.5)
         y = middle + half * math.sin(angle)
-        shade = 0.5 + 0.5 * (y - low) / (high - low)
-        rough = 0.14 if sides > 6 else 0.0
-        at = mesh.ring(sides, radius * math.cos(angle) ** 0.8, y, shade, turn=math.pi / sides * (ring % 2), rough=rough)
+        at = mesh.ring(sides, radius * math.cos(angle) ** 0.8, y, shade(y), turn=math.pi / sides * (ring % 2),
+                       rough=rough)
         if before:
             mesh.band(before, at)
         else:
-            mesh.fan(at, mesh.point(0.0, low, 0.0, 0.5), upwards=False)
+            mesh.fan(at, mesh.point(0.0, middle - half, 0.0, shade(middle - half)), upwards=False)
         before = at
-    mesh.fan(before, mesh.point(0.0, high, 0.0, 1.0))
+    mesh.fan(before, mesh.point(0.0, middle + half, 0.0, shade(middle + half)))
+    for i in range(first, len(mesh.points)):
+        px, py, pz = mesh.points[i]
+        mesh.points[i] = (px + x, py, pz + z)
+
+
+def broadleaf(detailed):
+    """A crown on a trunk, 12 m high and 9 m wide: boughs of leaves, or one ellipsoid."""
+    mesh = Mesh()
+    if not detailed:
+        blob(mesh, (0.0, 6.8, 0.0), 4.5, 5.2, 3, 6)
+        return mesh
+    mesh.trunk(0.3, 4.0)
+    blob(mesh, (0.0, 8.2, 0.0), 3.0, 3.8, 3, 8, rough=0.1)
+    for i in range(6):
+        angle = 2 * math.pi * i / 6 + 0.3 * (i % 2)
+        out, middle = (2.5, 5.2) if i % 2 else (2.3, 7.0)
+        blob(mesh, (out * math.cos(angle), middle, out * math.sin(angle)), 2.2, 2.3 + 0.5 * (i % 2), 3, 7, rough=0.12)
     return mesh
 
 
@@ -119,8 +136,8 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     for level, (tiers, sides, trunk) in enumerate([(7, 10, True), (3, 6, False)]):
         conifer(tiers, sides, trunk).write(folder / f"conifer_{level}.obj")
-    for level, (rings, sides, trunk) in enumerate([(6, 11, True), (3, 6, False)]):
-        broadleaf(rings, sides, trunk).write(folder / f"broadleaf_{level}.obj")
+    for level, detailed in enumerate([True, False]):
+        broadleaf(detailed).write(folder / f"broadleaf_{level}.obj")
 
 
 if __name__ == "__main__":

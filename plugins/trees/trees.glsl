@@ -59,7 +59,9 @@ trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 a
     // Trees are lower near the tree line and in dry country.
     float vigour = smoothstep(0.8, 2.2, growth) * smoothstep(0.8, 2.4, ground.dryness);
     stand.height_m = trees_size * mix(5.0, 20.0, vigour);
-    float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature));
+    // Leaves fall where winters are cold and summers moist.
+    float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature)) *
+                  smoothstep(1.2, 1.8, ground.dryness);
     stand.leaves = mix(trees_leaves, trees_autumn, falls * (1.0 - ground.green));
     return stand;
 }

@@ -181,7 +181,7 @@ std::string text(const std::string& members) {
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, default_where, provides, "
     "exclusive, requires, "
-    "wants, after, module, glsl, textures, passes, texts, displaces, invents, $schema";
+    "wants, after, module, glsl, textures, passes, instances, texts, displaces, invents, $schema";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
