@@ -145,13 +145,13 @@ void check_instances(const Effect& effect) {
         names.push_back(set.name);
         std::ptrdiff_t functions = 0;
         for (const shader::Snippet& snippet : effect.snippets)
-            functions +=
-                std::ranges::count(snippet.places, set.name, &shader::PassFunction::name);
+            functions += std::ranges::count(snippet.places, set.name, &shader::PassFunction::name);
         if (functions != 1)
-            fail(file, set.line,
-                 fmt::format("instances.{}: expected one function void {}(in InstanceSite at, inout "
-                             "Instance it) in the plugin's GLSL but got {}",
-                             set.name, set.function, functions));
+            fail(
+                file, set.line,
+                fmt::format("instances.{}: expected one function void {}(in InstanceSite at, inout "
+                            "Instance it) in the plugin's GLSL but got {}",
+                            set.name, set.function, functions));
         if (find_pass(effect, set.name))
             fail(file, set.line,
                  fmt::format("instances.{}: a pass has this name too; rename one", set.name));

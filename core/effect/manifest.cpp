@@ -22,12 +22,13 @@ constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
 constexpr std::array<std::string_view, 52> kReserved = {
-    "all", "antialias", "backdrop", "background", "camera", "climate", "colour", "copy", "core",
-    "crown", "data", "depth", "east", "edges", "floor", "footprint", "frame", "gbuffer",
-    "geometry", "gl", "ground", "height", "hook", "instance", "instances", "light", "load", "net",
-    "none", "normal", "overlay", "page", "pixel", "place", "post", "scene", "screen", "select",
-    "side", "slope", "srgb", "steps", "store", "stored", "sun", "surface", "tangent", "terrain",
-    "up", "varyings", "vertex", "water"};
+    "all",       "antialias", "backdrop", "background", "camera", "climate", "colour",  "copy",
+    "core",      "crown",     "data",     "depth",      "east",   "edges",   "floor",   "footprint",
+    "frame",     "gbuffer",   "geometry", "gl",         "ground", "height",  "hook",    "instance",
+    "instances", "light",     "load",     "net",        "none",   "normal",  "overlay", "page",
+    "pixel",     "place",     "post",     "scene",      "screen", "select",  "side",    "slope",
+    "srgb",      "steps",     "store",    "stored",     "sun",    "surface", "tangent", "terrain",
+    "up",        "varyings",  "vertex",   "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
@@ -249,13 +250,14 @@ class ManifestReader {
     }
 
     void instances(json::ObjectReader& object) {
-        named(object, "instances", "meshes", [&](const std::string& name, const json::Value& value) {
-            json::ObjectReader entry(kWho, manifest_.file.string(), "instances." + name, value);
-            manifest_.instances.push_back(read_instance_set(
-                entry, manifest_.id, name,
-                [&](const json::ObjectReader& level, const std::string& key,
-                    const std::string& file) { return data_file(level, key, file); }));
-        });
+        named(
+            object, "instances", "meshes", [&](const std::string& name, const json::Value& value) {
+                json::ObjectReader entry(kWho, manifest_.file.string(), "instances." + name, value);
+                manifest_.instances.push_back(read_instance_set(
+                    entry, manifest_.id, name,
+                    [&](const json::ObjectReader& level, const std::string& key,
+                        const std::string& file) { return data_file(level, key, file); }));
+            });
         if (manifest_.instances.size() > kMaxInstanceSets)
             object.fail(object.line_of("instances"), "instances",
                         fmt::format("expected at most {} but got {}", kMaxInstanceSets,

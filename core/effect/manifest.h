@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "shader/param_store.h"
 #include "shader/instance_set.h"
+#include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 
 namespace relevo::effect {

@@ -49,8 +49,9 @@ struct Accessor {
         }
     }
     glm::vec3 vector(std::size_t element) const {
-        const double most =
-            component == Component::U8 ? 255.0 : component == Component::U16 ? 65535.0 : 1.0;
+        const double most = component == Component::U8    ? 255.0
+                            : component == Component::U16 ? 65535.0
+                                                          : 1.0;
         return {at(element, 0) / most, at(element, 1) / most, at(element, 2) / most};
     }
 };
@@ -90,8 +91,8 @@ class GltfReader {
         const Value* const values = find(parts_.root, list);
         const std::size_t count = values ? values->items.size() : 0;
         if (index >= count)
-            fail(file_, fmt::format("{}: expected a number below {} but got {}", list, count,
-                                    index));
+            fail(file_,
+                 fmt::format("{}: expected a number below {} but got {}", list, count, index));
         return values->items[index];
     }
     template <std::size_t N>
@@ -100,16 +101,15 @@ class GltfReader {
         const Value* const list = find(object, key);
         if (!list) return otherwise;
         if (list->items.size() != N)
-            fail(file_, fmt::format("{}: expected {} numbers but got {}", key, N,
-                                    list->items.size()));
+            fail(file_,
+                 fmt::format("{}: expected {} numbers but got {}", key, N, list->items.size()));
         for (std::size_t i = 0; i < N; ++i)
             otherwise[i] = static_cast<float>(list->items[i].number);
         return otherwise;
     }
 
     glm::mat4 matrix_of(const Value& node) const {
-        const auto m =
-            floats<16>(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+        const auto m = floats<16>(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
         glm::mat4 matrix;
         for (int i = 0; i < 16; ++i)
             matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
@@ -131,8 +131,8 @@ class GltfReader {
         const Value& node = element("nodes", index);
         if (seen_.size() <= index) seen_.resize(index + 1);
         if (seen_[index])
-            fail(file_, fmt::format("nodes: node {} is its own ancestor, or has two parents",
-                                    index));
+            fail(file_,
+                 fmt::format("nodes: node {} is its own ancestor, or has two parents", index));
         seen_[index] = true;
         const glm::mat4 matrix = parent * matrix_of(node);
         if (find(node, "mesh")) add_mesh(element("meshes", whole(node, "mesh", 0)), matrix);
@@ -148,8 +148,8 @@ class GltfReader {
             constexpr std::size_t kTriangles = 4;
             const std::size_t mode = whole(primitive, "mode", kTriangles);
             if (mode != kTriangles)
-                fail(file_, fmt::format("primitives: expected triangles (mode 4) but got mode {}",
-                                        mode));
+                fail(file_,
+                     fmt::format("primitives: expected triangles (mode 4) but got mode {}", mode));
             add_primitive(primitive, matrix);
         }
     }
@@ -201,8 +201,8 @@ class GltfReader {
         for (std::size_t i = 0; i < corners; ++i) {
             const auto index = indices ? static_cast<std::size_t>(indices->at(i, 0)) : i;
             if (index >= count)
-                fail(file_, fmt::format("indices: expected a number below {} but got {}", count,
-                                        index));
+                fail(file_,
+                     fmt::format("indices: expected a number below {} but got {}", count, index));
             mesh_.indices.push_back(static_cast<std::uint16_t>(first + index));
         }
     }
@@ -230,7 +230,7 @@ class GltfReader {
         result.component = static_cast<Component>(type);
         const Value* const shape = find(given, "type");
         const std::string name = shape ? shape->text : "";
-        const bool fits = is_colour  ? name == "VEC3" || name == "VEC4"
+        const bool fits = is_colour   ? name == "VEC3" || name == "VEC4"
                           : is_vector ? name == "VEC3"
                                       : name == "SCALAR";
         if (!fits) fail(file_, fmt::format("{}: expected another type than \"{}\"", what, name));

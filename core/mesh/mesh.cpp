@@ -64,8 +64,8 @@ Mesh finished(const std::filesystem::path& file, Mesh mesh, bool has_normals) {
     const glm::vec3 side_m = mesh.high_m() - mesh.low_m();
     const float longest_m = std::max({side_m.x, side_m.y, side_m.z});
     if (!(longest_m > 0 && longest_m <= kMaxSide_m))
-        fail(file, fmt::format("expected a size of up to {} m but got {:g} m", kMaxSide_m,
-                               longest_m));
+        fail(file,
+             fmt::format("expected a size of up to {} m but got {:g} m", kMaxSide_m, longest_m));
     if (!has_normals) compute_normals(mesh);
     for (Vertex& vertex : mesh.vertices) {
         const float length = glm::length(vertex.normal);

@@ -16,9 +16,9 @@ inline constexpr std::size_t kMaxVertices = 65535;
 inline constexpr std::size_t kMaxTriangles = 65536;
 
 struct Vertex {
-    glm::vec3 position_m{0};       ///< x east, y north, z up
-    glm::vec3 normal{0, 0, 1};     ///< unit
-    glm::vec3 colour{1, 1, 1};     ///< factor on reflectance, 0..1, linear
+    glm::vec3 position_m{0};    ///< x east, y north, z up
+    glm::vec3 normal{0, 0, 1};  ///< unit
+    glm::vec3 colour{1, 1, 1};  ///< factor on reflectance, 0..1, linear
 };
 
 struct Mesh {

@@ -103,8 +103,9 @@ class ObjReader {
             if (const std::size_t second = word.find('/', first + 1); second != word.npos)
                 normal = place(word.substr(second + 1), normals_.size());
         if (!normal) has_normals_ = false;
-        const auto [known, fresh] = corners_.try_emplace(
-            {position, normal ? *normal + 1 : 0}, static_cast<std::uint16_t>(mesh_.vertices.size()));
+        const auto [known, fresh] =
+            corners_.try_emplace({position, normal ? *normal + 1 : 0},
+                                 static_cast<std::uint16_t>(mesh_.vertices.size()));
         if (!fresh) return known->second;
         if (mesh_.vertices.size() >= kMaxVertices)
             fail_line(fmt::format("expected at most {} vertices", kMaxVertices));

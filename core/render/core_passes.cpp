@@ -187,7 +187,7 @@ class Declaration {
                                      .fragment_main = "geometry.frag.glsl",
                                      .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
-        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        stored_defines(recipe);
         Pass pass{.name = "geometry",
                   .kind = PassKind::Geometry,
                   .program = program("geometry", recipe, outside_word()),
@@ -212,18 +212,19 @@ class Declaration {
                       std::to_string(4 * (kMaxStored - 2)) + " floats in addition but got " +
                       std::to_string(facts_.varying_targets) +
                       " textures of four; switch an effect off");
-        shader::ProgramRecipe recipe{.vertex_main = PassTexts::name_of(set),
-                                     .fragment_main = "instance.frag.glsl",
-                                     .defines = {{"INSTANCE_COLOUR", std::to_string(colour)},
-                                                 {"INSTANCE_DIRECTION", std::to_string(colour + 1)}},
-                                     .shaded_by = "terrain.frag.glsl"};
-        if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
-        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        shader::ProgramRecipe recipe{
+            .vertex_main = PassTexts::name_of(set),
+            .fragment_main = "instance.frag.glsl",
+            .defines = {{"INSTANCE_COLOUR", std::to_string(colour)},
+                        {"INSTANCE_DIRECTION", std::to_string(colour + 1)}},
+            .shaded_by = "terrain.frag.glsl"};
+        ground_defines(recipe);
+        stored_defines(recipe);
         if (sprites) recipe.defines.push_back({"SPRITES", ""});
         const bool first = covering_ == "geometry";
         Pass pass{.name = name,
                   .kind = PassKind::Geometry,
-                  .program = program(name.c_str(), recipe),
+                  .program = program(name.c_str(), recipe, outside_word()),
                   .reads = {"tiles"},
                   .colours = {{.resource = "gbuffer", .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
@@ -232,8 +233,7 @@ class Declaration {
                       frame.services.draw_instances(resource, sprites, frame);
                   }};
         if (facts_.varying_targets > 0)
-            pass.colours.push_back(
-                {.resource = shader::StoredVaryings::kTexture, .updates = true});
+            pass.colours.push_back({.resource = shader::StoredVaryings::kTexture, .updates = true});
         if (first) {
             pass.colours.push_back({"instance_colour", kNothing});
             pass.colours.push_back({"instance_direction", kNothing});
@@ -260,6 +260,11 @@ class Declaration {
             .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
                                                        .fragment_main = PassTexts::name_of(pass)}),
             .colours = {{pass.resource}}});
+    }
+
+    /// Of programs that fill the G-buffer.
+    void stored_defines(shader::ProgramRecipe& recipe) const {
+        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
     }
 
     void ground_defines(shader::ProgramRecipe& recipe) const {
@@ -365,7 +370,7 @@ class Declaration {
 
     const FrameFacts& facts_;
     std::string covering_ = "geometry";  // last pass that changes what a pixel shows of the ground
-    std::string tone_mapped_;  // resource of the tonemapped colours
+    std::string tone_mapped_;            // resource of the tonemapped colours
     std::string shaded_;  // resource that the shading passes draw into: tone_mapped_ or radiance
     std::vector<shader::Define> end_defines_;  // of the shading programs
     CoreFrame frame_;

@@ -14,14 +14,14 @@
 namespace relevo::render {
 
 // shaders/lib/instances.glsl has these too.
-inline constexpr double kLowest_px = 4;   ///< lowest instances that are drawn as meshes
+inline constexpr double kLowest_px = 4;    ///< lowest instances that are drawn as meshes
 inline constexpr double kMostCells = 400;  ///< from the eye; bounds how many are drawn
 
 /// A rectangle of sites of instances, within one quadrant of a tile of the ground.
 struct InstanceBlock {
-    TileMesh::Instance tile{};  ///< with the rectangle, as instance.vert.glsl reads it
-    glm::vec4 cells{0};         ///< first column and row; w: range [m]
-    glm::ivec2 count{0};        ///< of columns and rows
+    TileMesh::Instance tile{};             ///< with the rectangle, as instance.vert.glsl reads it
+    glm::vec4 cells{0};                    ///< first column and row; w: range [m]
+    glm::ivec2 count{0};                   ///< of columns and rows
     double nearest_m = 0, farthest_m = 0;  ///< from the eye
 };
 

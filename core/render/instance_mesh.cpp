@@ -36,8 +36,7 @@ glm::vec3 mean_colour(const mesh::Mesh& mesh) {
         const mesh::Vertex& a = mesh.vertices[mesh.indices[i]];
         const mesh::Vertex& b = mesh.vertices[mesh.indices[i + 1]];
         const mesh::Vertex& c = mesh.vertices[mesh.indices[i + 2]];
-        const float size =
-            length(cross(b.position_m - a.position_m, c.position_m - a.position_m));
+        const float size = length(cross(b.position_m - a.position_m, c.position_m - a.position_m));
         sum += size * (a.colour + b.colour + c.colour) / 3.0F;
         area += size;
     }

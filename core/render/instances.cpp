@@ -56,8 +56,8 @@ Instances::Instances(const std::vector<shader::InstanceSet>& sets) {
 }
 
 Instances::Set& Instances::find(std::string_view resource) {
-    return **std::ranges::find_if(
-        sets_, [&](const auto& each) { return each->set.resource == resource; });
+    return **std::ranges::find_if(sets_,
+                                  [&](const auto& each) { return each->set.resource == resource; });
 }
 
 void Instances::draw(std::string_view resource, bool sprites, Terrain& terrain,

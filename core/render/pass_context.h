@@ -19,8 +19,7 @@ class FrameServices {
     /// Creates the texture `floor_ground`.
     virtual void make_footprint(const Footprint& footprint) = 0;
     /// Draws a set of instances: its meshes, or its sprites.
-    virtual void draw_instances(const std::string& resource, bool sprites,
-                                PassContext& frame) = 0;
+    virtual void draw_instances(const std::string& resource, bool sprites, PassContext& frame) = 0;
     /// Calls a native effect's prepare().
     virtual void prepare_native(const std::string& id, PassContext& frame) = 0;
 };

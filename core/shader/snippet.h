@@ -37,8 +37,8 @@ struct Snippet {
     std::vector<HookFunction> hooks;  ///< in the order of the file
     std::vector<PassFunction> passes;
     std::vector<PassFunction> places;  ///< `<id>_place_<name>`, for InstanceSet
-    std::vector<Wanted> wanted;  ///< each word once
-    Source source;               ///< text, parameters, samplers, varyings, includes
+    std::vector<Wanted> wanted;        ///< each word once
+    Source source;                     ///< text, parameters, samplers, varyings, includes
 
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };

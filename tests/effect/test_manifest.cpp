@@ -503,10 +503,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "plugin: plugins/haze/plugin.json:1: instances.oak: expected one function void "
                  "haze_place_oak(in InstanceSite at, inout Instance it) in the plugin's GLSL but "
                  "got 0"},
-        Mismatch{"InstancesOfNoName", "",
-                 "void haze_place_oak(in InstanceSite at, inout Instance it) {}",
-                 "plugin: plugins/haze/haze.glsl:1: haze_place_oak: plugins/haze/plugin.json has no "
-                 "instances oak; add \"instances\": {\"oak\": {...}}"},
+        Mismatch{
+            "InstancesOfNoName", "",
+            "void haze_place_oak(in InstanceSite at, inout Instance it) {}",
+            "plugin: plugins/haze/haze.glsl:1: haze_place_oak: plugins/haze/plugin.json has no "
+            "instances oak; add \"instances\": {\"oak\": {...}}"},
         Mismatch{"InstancesWithoutAMesh",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "levels": [{}]}})", kHook,
                  "plugin: plugins/haze/plugin.json:1: instances.oak.levels.meshes: expected a mesh "

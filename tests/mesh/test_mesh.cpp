@@ -31,8 +31,7 @@ TEST(Obj, YUpBecomesZUpAndZSouth) {
 }
 
 TEST(Obj, PolygonsBecomeFansAndNegativeNumbersCountFromTheEnd) {
-    const Mesh mesh =
-        parse_obj("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\r\n");
+    const Mesh mesh = parse_obj("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\r\n");
     EXPECT_EQ(mesh.indices, (std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}));
     // Counter-clockwise as seen from south, which normals point to.
     expect_near(mesh.vertices[0].normal, {0, -1, 0});
@@ -46,13 +45,13 @@ std::string triangle_buffer() {
     return bytes + std::string("\0\1\2\0", 4);
 }
 
-std::string gltf_json(const std::string& buffer = R"({"byteLength": 40})",
-                      const std::string& node = R"({"mesh": 0})",
-                      const std::string& positions =
-                          R"({"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3})",
-                      const std::string& indices =
-                          R"({"bufferView": 1, "componentType": 5121, "type": "SCALAR", "count": 3})",
-                      const std::string& more = "") {
+std::string gltf_json(
+    const std::string& buffer = R"({"byteLength": 40})", const std::string& node = R"({"mesh": 0})",
+    const std::string& positions =
+        R"({"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3})",
+    const std::string& indices =
+        R"({"bufferView": 1, "componentType": 5121, "type": "SCALAR", "count": 3})",
+    const std::string& more = "") {
     return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [)" + node +
            R"(], "buffers": [)" + buffer +
            R"(], "bufferViews": [{"buffer": 0, "byteLength": 36},
@@ -82,8 +81,8 @@ TEST(Gltf, BinaryFilesNodesAndMaterialsAreRead) {
     const std::string node =
         R"({"mesh": 0, "scale": [2, 2, 2], "translation": [10, 0, 0],
             "rotation": [0, 0.70710678, 0, 0.70710678]})";
-    const Mesh mesh = parse_gltf("a.glb", glb(gltf_json(R"({"byteLength": 40})", node),
-                                              triangle_buffer()));
+    const Mesh mesh =
+        parse_gltf("a.glb", glb(gltf_json(R"({"byteLength": 40})", node), triangle_buffer()));
     ASSERT_EQ(mesh.indices, (std::vector<std::uint16_t>{0, 1, 2}));
     expect_near(mesh.vertices[1].position_m, {10, 0, 4});
     // A quarter turn about the axis y brings x to -z, which is north.
@@ -98,9 +97,8 @@ TEST(Gltf, BuffersOfFilesAndOfDataUrisAreRead) {
     std::ofstream(folder / "a.gltf") << gltf_json(R"({"byteLength": 40, "uri": "a.bin"})");
     const Mesh from_file = read(folder / "a.gltf");
     const Mesh from_uri = parse_gltf(
-        "b.gltf",
-        gltf_json(R"({"byteLength": 40, "uri": "data:application/octet-stream;base64,)"
-                  "AAAAAAAAAAAAAAAAAAAAAAAAAEAAAAAAAACAPwAAAAAAAAAAAAECAA==\"}"));
+        "b.gltf", gltf_json(R"({"byteLength": 40, "uri": "data:application/octet-stream;base64,)"
+                            "AAAAAAAAAAAAAAAAAAAAAAAAAEAAAAAAAACAPwAAAAAAAAAAAAECAA==\"}"));
     ASSERT_EQ(from_file.vertices.size(), 3U);
     ASSERT_EQ(from_uri.vertices.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i)
@@ -141,8 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Fault{"obj_nan", "a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
               "mesh: a.obj: expected finite numbers but got NaN or infinity"},
-        Fault{"obj_word", "a.obj", "v 1 x 3\n",
-              "mesh: a.obj:1: expected a number but got \"x\""},
+        Fault{"obj_word", "a.obj", "v 1 x 3\n", "mesh: a.obj:1: expected a number but got \"x\""},
         Fault{"obj_index", "a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 1000000000\n",
               "mesh: a.obj:3: expected a number from 1 to 2 but got 1000000000"},
         Fault{"obj_empty", "a.obj", "", "mesh: a.obj: expected triangles but got none"},
@@ -167,8 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
                   triangle_buffer()),
               "mesh: a.glb: POSITION: expected 3 elements in a buffer of 40 bytes but they end at "
               "byte 4294967331"},
-        Fault{"negative", "a.glb",
-              glb(gltf_json(kPlain, R"({"mesh": -1})"), triangle_buffer()),
+        Fault{"negative", "a.glb", glb(gltf_json(kPlain, R"({"mesh": -1})"), triangle_buffer()),
               "mesh: a.glb: mesh: expected a whole number but got -1"},
         Fault{"index", "a.glb",
               glb(gltf_json(kPlain, kNode, kPositions,
@@ -192,8 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
               "\"KHR_draco_mesh_compression\""},
         Fault{"outside", "a.gltf", gltf_json(R"({"byteLength": 40, "uri": "../a.bin"})"),
               "mesh: a.gltf: buffers: expected a file of its own folder but got \"../a.bin\""},
-        Fault{"net", "a.gltf",
-              gltf_json(R"({"byteLength": 40, "uri": "data:text/plain,abc"})"),
+        Fault{"net", "a.gltf", gltf_json(R"({"byteLength": 40, "uri": "data:text/plain,abc"})"),
               "mesh: a.gltf: buffers: expected base64 in its data URI"}),
     [](const auto& fault) { return fault.param.name; });
 

@@ -106,9 +106,9 @@ Found find(Drawn& drawn) {
             const glm::dvec3 to = drawn.ground().frame.to_local(place) - camera.eye_m;
             const double depth = dot(to, camera.forward);
             if (depth <= 1) continue;
-            const glm::dvec2 at(drawn.width_px() / 2.0 +
-                                    scale * dot(to, cross(camera.forward, camera.up)) / depth,
-                                drawn.height_px() / 2.0 - scale * dot(to, camera.up) / depth);
+            const glm::dvec2 at(
+                drawn.width_px() / 2.0 + scale * dot(to, cross(camera.forward, camera.up)) / depth,
+                drawn.height_px() / 2.0 - scale * dot(to, camera.up) / depth);
             if (at.x < 8 || at.y < 8 || at.x > drawn.width_px() - 8 || at.y > drawn.height_px() - 8)
                 continue;
             ++found.sites;

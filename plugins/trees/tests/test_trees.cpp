@@ -68,9 +68,10 @@ TEST(Trees, BecomeCoverOfTheSameColour) {
         worst = std::max(worst, step(before, here));
         before = here;
     }
-    fmt::print("[ trees ] from all trees to cover alone: {:.1f} of 255, at most {:.1f} for a tenth "
-               "of the distance; green {:.1f}\n",
-               step(drawn_all, before), worst, before[1]);
+    fmt::print(
+        "[ trees ] from all trees to cover alone: {:.1f} of 255, at most {:.1f} for a tenth "
+        "of the distance; green {:.1f}\n",
+        step(drawn_all, before), worst, before[1]);
     EXPECT_LT(worst, 2);
     EXPECT_LT(step(drawn_all, before), 4);
 }
@@ -86,7 +87,8 @@ TEST(Trees, LevelsAreEquallyBright) {
 }
 
 TEST(Trees, ThereAreNoneAboveTheTreeLine) {
-    test::Drawn with = forest({{"trees.line_m", "-3000"}}), without = forest({{"trees.density", "0"}});
+    test::Drawn with = forest({{"trees.line_m", "-3000"}}),
+                without = forest({{"trees.density", "0"}});
     EXPECT_LT(step(colour_from(with, 500), colour_from(without, 500)), 0.01);
     test::Drawn all = forest({});
     EXPECT_GT(step(colour_from(all, 500), colour_from(without, 500)), 10);
@@ -96,11 +98,10 @@ TEST(Trees, ConstantsAreThoseOfTheManifest) {
     const effect::Effect effect = trees();
     ASSERT_EQ(effect.manifest.instances.size(), 1U);
     EXPECT_EQ(effect.manifest.instances[0].height_m, kHighest_m);
-    const std::string glsl =
-        read_text(test::source_dir() / "plugins/trees/trees.glsl", "test");
-    EXPECT_NE(glsl.find(fmt::format("trees_spacing_m = {:.1f};",
-                                    effect.manifest.instances[0].spacing_m)),
-              std::string::npos);
+    const std::string glsl = read_text(test::source_dir() / "plugins/trees/trees.glsl", "test");
+    EXPECT_NE(
+        glsl.find(fmt::format("trees_spacing_m = {:.1f};", effect.manifest.instances[0].spacing_m)),
+        std::string::npos);
     EXPECT_NE(glsl.find(fmt::format("trees_highest_m = {:.1f};", kHighest_m)), std::string::npos);
 }
 
