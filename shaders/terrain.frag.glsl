@@ -153,6 +153,8 @@ void main() {
 #endif
 #ifdef INSTANCES
     bool is_instance = instance_as_surface(s, pixel);
+#else
+    const bool is_instance = false;
 #endif
 
     vec3 to_sun;
@@ -164,7 +166,8 @@ void main() {
     float seen = 1.0;
     hook_visibility(s, to_sun, seen);
     bool faces = dot(s.geometric_normal, to_sun) > 0.0;
-    audit_out = vec4(s.post, surface_moved_up_m(s) == 0.0 ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
+    bool is_ground = !is_instance && surface_moved_up_m(s) == 0.0;
+    audit_out = vec4(s.post, is_ground ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
 #endif
     hook_visibility(s, to_sun, lit);
     // The part of the sky that a slope sees, of the light on level ground.

@@ -69,8 +69,7 @@ class Stitcher {
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
              const ProgramOptions& options)
         : core_(core, input.passes, input.instances), input_(input) {
-        // Audits are of the ground.
-        if (!options.audited) facts_.instances = input.instances;
+        facts_.instances = input.instances;
         facts_.plugin_passes = input.passes;
         facts_.radiance = !options.shown || reads(input, "core.radiance");
         facts_.antialias = options.antialias;
