@@ -60,4 +60,12 @@ shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::str
     return set;
 }
 
+std::vector<std::filesystem::path> mesh_files(const Manifest& manifest) {
+    std::vector<std::filesystem::path> files;
+    for (const shader::InstanceSet& set : manifest.instances)
+        for (const shader::InstanceSet::Level& level : set.levels)
+            files.insert(files.end(), level.meshes.begin(), level.meshes.end());
+    return files;
+}
+
 }  // namespace relevo::effect

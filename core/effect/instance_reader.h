@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "effect/manifest.h"
 #include "json/object_reader.h"
 #include "shader/instance_set.h"
 
@@ -19,5 +21,8 @@ using FileOfKey = std::function<std::filesystem::path(
 /// @throws Error (BadInput) `plugin: folder/plugin.json:line: ...`
 shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::string& id,
                                       const std::string& name, const FileOfKey& file_of);
+
+/// The meshes of all sets of instances.
+std::vector<std::filesystem::path> mesh_files(const Manifest& manifest);
 
 }  // namespace relevo::effect

@@ -15,7 +15,7 @@ namespace {
 
 /// Blocks are divided until they are small as seen from the eye, or have few cells: what a block
 /// has outside of the view is drawn for nothing, and each block costs a draw.
-constexpr double kFewCells = 100;
+constexpr double kFewCells = 25;
 constexpr double kSmall = 0.25;  // diagonal, as a share of the distance
 
 class Finder {

@@ -7,6 +7,7 @@
 
 #include "base/contains.h"
 #include "base/log.h"
+#include "effect/instance_reader.h"
 
 namespace relevo::session {
 
@@ -124,6 +125,8 @@ void ActiveEffects::visit_files(
         for (const effect::TextureSpec& texture : manifest.textures)
             for (const std::filesystem::path& file : texture.files)
                 visit(file, what);
+        for (const std::filesystem::path& mesh : effect::mesh_files(manifest))
+            visit(mesh, what);
     }
     for (const shader::TextParam* text : values.texts())
         if (const std::string file = values.text(text->address); text->is_file && !file.empty())
