@@ -90,7 +90,8 @@ void trees_place_tree(in InstanceSite at, inout Instance it) {
 
 /// What crowns of both kinds hide from a direction. @param per_m2  trees on a square metre
 vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
-    return per_m2 * vec2(stand.conifers * crown_area_m2(trees_crown(stand, true), cosine),
+    const float unequal = 1.05;  // mean area of crowns of trees_place_tree() over that of the mean crown
+    return unequal * per_m2 * vec2(stand.conifers * crown_area_m2(trees_crown(stand, true), cosine),
                          (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
 }
 

@@ -9,7 +9,7 @@ struct Crown {
     float light;  // share of the light that passes through it, 0..1
 };
 
-const float kCrownOrder = 3.0;  // of the binomial: infinite for stands by chance, 1 for one that fills its cells
+const float kCrownOrder = 1.2;  // of the binomial: infinite for stands by chance, 1 for one that fills its cells
 
 /// Level ground that a crown hides from a direction [m2]. @param cosine  of the direction's angle to the vertical
 float crown_area_m2(in Crown crown, in float cosine) {

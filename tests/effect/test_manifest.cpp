@@ -505,7 +505,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "got 0"},
         Mismatch{
             "InstancesOfNoName", "",
-            "void haze_place_oak(in InstanceSite at, inout Instance it) {}",
+            "void haze_place_oak(in InstanceSite at, inout Instance it) {}\n" + kHook,
             "plugin: plugins/haze/haze.glsl:1: haze_place_oak: plugins/haze/plugin.json has no "
             "instances oak; add \"instances\": {\"oak\": {...}}"},
         Mismatch{"InstancesWithoutAMesh",
@@ -521,8 +521,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"InstancesTooClose",
                  R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})",
                  kHook,
-                 "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number "
-                 "from 0.05 to 100000 but got 1e-09"},
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
+                 "[0.05, 100000] but got 1e-09"},
         Mismatch{"InstancesOfAMeshOutside",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["../oak.obj"]}]}})",
