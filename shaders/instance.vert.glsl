@@ -122,6 +122,8 @@ void main() {
     VertexFrame v = site.ground;
 #ifdef SPRITES
     vec4 position = instance_sprite(site, it, flatness, v.position_m);
+    // OpenGL clips a point by its centre; some drivers do not.
+    drawn = drawn && all(lessThan(abs(position.xy), position.ww));
 #else
     vec4 position = instance_mesh(site, it, flatness, v.position_m);
 #endif
