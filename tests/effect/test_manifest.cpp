@@ -518,11 +518,11 @@ INSTANTIATE_TEST_SUITE_P(
                  kHook,
                  "plugin: plugins/haze/plugin.json:2: instances.oak.levels.meshes: "
                  "plugins/haze/oak.obj: no such file"},
-        Mismatch{"InstancesTooClose",
-                 R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})",
-                 kHook,
-                 "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
-                 "[0.05, 100000] but got 1e-09"},
+        Mismatch{
+            "InstancesTooClose",
+            R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})", kHook,
+            "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
+            "[0.05, 100000] but got 1e-09"},
         Mismatch{"InstancesOfAMeshOutside",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["../oak.obj"]}]}})",

@@ -122,7 +122,9 @@ TEST(Crown, AreaAndGapsAreThoseOfAnEllipsoid) {
         const double zenith = 10 * x * kPi_ / 180, filled = 0.25 * x;
         const double along = std::hypot(2.0, 6.0 * std::tan(zenith));
         EXPECT_NEAR(results[static_cast<std::size_t>(x)].x / (kPi_ * 2.0 * along), 1, 1e-3) << x;
-        EXPECT_NEAR(results[static_cast<std::size_t>(x)].y, std::pow(1 - std::min(filled / 1.2, 1.0), 1.2), 1e-5) << x;
+        EXPECT_NEAR(results[static_cast<std::size_t>(x)].y,
+                    std::pow(1 - std::min(filled / 1.2, 1.0), 1.2), 1e-5)
+            << x;
     }
 }
 
