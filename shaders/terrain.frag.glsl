@@ -19,6 +19,8 @@
 //@ include lib/tangent.glsl
 
 uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
+uniform sampler2D instance_colour;  // from instance.frag.glsl, where a plugin has instances
+uniform sampler2D instance_direction;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 light_out;
@@ -61,6 +63,20 @@ void overlay_as_reflectance(inout Surface s, in vec4 laid) {
     s.emissive *= 1.0 - laid.a;
     // The image has its own texture: bumps of materials would be drawn over it.
     s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
+}
+#endif
+
+#ifdef INSTANCES
+/// Makes the point that of an instance, which stands on the ground where the light is found.
+/// @returns whether the pixel shows one
+bool instance_as_surface(inout Surface s, in ivec2 pixel) {
+    vec4 colour = texelFetch(instance_colour, pixel, 0);
+    if (colour.a == 0.0) return false;
+    s.normal = normal_from_octahedral(2.0 * texelFetch(instance_direction, pixel, 0).rg - 1.0);
+    s.geometric_normal = s.normal;
+    s.diffuse = s.ambient = colour.rgb * colour.rgb;
+    s.specular = s.emissive = vec3(0.0);
+    return true;
 }
 #endif
 
@@ -139,6 +155,11 @@ void main() {
     vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
     if (frame.overlay_shape.w > 0.0) overlay_as_reflectance(s, laid);
 #endif
+#ifdef INSTANCES
+    bool is_instance = instance_as_surface(s, pixel);
+#else
+    const bool is_instance = false;
+#endif
 
     vec3 to_sun;
     vec3 irradiance = sun_light(s.up, to_sun);
@@ -149,7 +170,8 @@ void main() {
     float seen = 1.0;
     hook_visibility(s, to_sun, seen);
     bool faces = dot(s.geometric_normal, to_sun) > 0.0;
-    audit_out = vec4(s.post, surface_moved_up_m(s) == 0.0 ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
+    bool is_ground = !is_instance && surface_moved_up_m(s) == 0.0;
+    audit_out = vec4(s.post, is_ground ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
 #endif
 #ifdef SURFACE_OUTPUT
     float visible = 1.0;
@@ -167,6 +189,9 @@ void main() {
     hook_display(s, over);
 #ifdef OVERLAY_RASTER
     over += (1.0 - over.a) * (1.0 - frame.overlay_shape.w) * laid;
+#endif
+#ifdef INSTANCES
+    over *= is_instance ? 0.0 : 1.0;  // instances hide what lies on the ground
 #endif
     // What is stored may be clamped to a number.
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "effect/instance_reader.h"
 #include "effect/new_plugin.h"
 
 namespace relevo::effect {
@@ -133,12 +134,14 @@ PluginFiles copied_plugin(const std::string& id, const Effect& effect) {
     files.emplace_back("README.md",
                        fmt::format("{}\nA copy of {} {}.\n\n{}", readme, effect.id(),
                                    effect.manifest.version, usage_section(id, /*is_on=*/false)));
+    std::vector<fs::path> data = mesh_files(effect.manifest);
     for (const TextureSpec& texture : effect.manifest.textures)
-        for (const fs::path& path : texture.files) {
-            const std::string file = path.lexically_relative(folder).string();
-            if (!file.starts_with("..") && done.insert(file).second)
-                files.emplace_back(renaming.file(file), read_text(path, "plugins new"));
-        }
+        data.insert(data.end(), texture.files.begin(), texture.files.end());
+    for (const fs::path& path : data) {
+        const std::string file = path.lexically_relative(folder).string();
+        if (!file.starts_with("..") && done.insert(file).second)
+            files.emplace_back(renaming.file(file), read_text(path, "plugins new"));
+    }
     return files;
 }
 

@@ -149,6 +149,34 @@ void check_passes(const Effect& effect) {
                                  function.name));
 }
 
+/// Each set of instances has one function, and each such function its set.
+void check_instances(const Effect& effect) {
+    const std::string file = effect.manifest.file.string();
+    std::vector<std::string> names;
+    for (const shader::InstanceSet& set : effect.manifest.instances) {
+        names.push_back(set.name);
+        std::ptrdiff_t functions = 0;
+        for (const shader::Snippet& snippet : effect.snippets)
+            functions += std::ranges::count(snippet.places, set.name, &shader::PassFunction::name);
+        if (functions != 1)
+            fail(
+                file, set.line,
+                fmt::format("instances.{}: expected one function void {}(in InstanceSite at, inout "
+                            "Instance it) in the plugin's GLSL but got {}",
+                            set.name, set.function, functions));
+        if (find_pass(effect, set.name))
+            fail(file, set.line,
+                 fmt::format("instances.{}: a pass has this name too; rename one", set.name));
+    }
+    for (const shader::Snippet& snippet : effect.snippets)
+        for (const shader::PassFunction& function : snippet.places)
+            if (!contains(names, function.name))
+                fail(snippet.file, function.line,
+                     fmt::format("{0}_place_{1}: {2} has no instances {1}; add \"instances\": "
+                                 "{{\"{1}\": {{...}}}}",
+                                 effect.id(), function.name, file));
+}
+
 void check_textures(const Effect& effect) {
     for (const shader::Snippet& snippet : effect.snippets)
         for (const shader::Sampler& sampler : snippet.source.samplers)
@@ -272,7 +300,8 @@ void check_hooks(const Effect& effect) {
     }
     const bool any = std::ranges::any_of(effect.snippets,
                                          [](const shader::Snippet& s) { return !s.hooks.empty(); });
-    if (!any && effect.manifest.module.empty() && effect.manifest.marks.empty())
+    if (!any && effect.manifest.module.empty() && effect.manifest.marks.empty() &&
+        effect.manifest.instances.empty())
         bad_input(
             fmt::format("{}: {}: no hook, module or marks, so it does nothing; define a "
                         "function such as {}_on_albedo",
@@ -322,6 +351,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
         check_named(effect, invents->address, "invents", invents->line);
     check_wants(effect);
     check_passes(effect);
+    check_instances(effect);
     check_textures(effect);
     check_texts(effect);
     check_marks(effect);

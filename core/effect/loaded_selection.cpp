@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "effect/instance_reader.h"
+#include "mesh/mesh.h"
 
 namespace relevo::effect {
 namespace {
@@ -31,6 +33,8 @@ class Loader {
                 texture = textures_.insert_or_assign(spec.resource, load_texture(spec)).first;
             if (limits_) check_limits(texture->second, *limits_);
         }
+        for (const std::filesystem::path& file : mesh_files(effect.manifest))
+            mesh::read(file);  // the device's are read again when it is drawn
         if (!effect.manifest.module.empty() && modules_.count(effect.id()) == 0)
             modules_.emplace(effect.id(), NativeModule::load(effect.manifest, values_));
     }

@@ -10,6 +10,7 @@
 #include "base/contains.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "effect/instance_reader.h"
 #include "json/object_reader.h"
 
 namespace relevo::effect {
@@ -20,17 +21,18 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 51> kReserved = {
-    "all",      "antialias", "backdrop", "background", "camera",  "climate", "colour",    "copy",
-    "core",     "data",      "depth",    "east",       "edges",   "floor",   "footprint", "frame",
-    "gbuffer",  "geometry",  "gl",       "ground",     "height",  "hook",    "light",     "lines",
-    "load",     "net",       "none",     "normal",     "overlay", "page",    "pixel",     "place",
-    "post",     "raster",    "scene",    "screen",     "select",  "side",    "slope",     "srgb",
-    "steps",    "store",     "stored",   "sun",        "surface", "tangent", "terrain",   "up",
-    "varyings", "vertex",    "water"};
+constexpr std::array<std::string_view, 54> kReserved = {
+    "all",       "antialias", "backdrop", "background", "camera", "climate", "colour", "copy",
+    "core",      "crown",     "data",     "depth",      "east",   "edges",   "floor",  "footprint",
+    "frame",     "gbuffer",   "geometry", "gl",         "ground", "height",  "hook",   "instance",
+    "instances", "light",     "lines",    "load",       "net",    "none",    "normal", "overlay",
+    "page",      "pixel",     "place",    "post",       "raster", "scene",   "screen", "select",
+    "side",      "slope",     "srgb",     "steps",      "store",  "stored",  "sun",    "surface",
+    "tangent",   "terrain",   "up",       "varyings",   "vertex", "water"};
 
 constexpr int kMaxPassSide = 4096;
 constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxInstanceSets = 16;
 constexpr double kMinPassScale = 1.0 / 64;
 constexpr std::array<std::pair<PixelFormat, std::string_view>, 7> kPassFormats = {
     std::pair(PixelFormat::RGBA16F, "rgba16f"),
@@ -139,6 +141,7 @@ class ManifestReader {
         glsl(object);
         textures(object);
         passes(object);
+        instances(object);
         marks(object);
         texts(object);
         displaces(object);
@@ -276,6 +279,21 @@ class ManifestReader {
                                     "{} and {}",
                                     kMaxPasses, kMaxPassBytes >> 20, manifest_.passes.size(),
                                     (bytes + (1 << 20) - 1) >> 20));
+    }
+
+    void instances(json::ObjectReader& object) {
+        named(
+            object, "instances", "meshes", [&](const std::string& name, const json::Value& value) {
+                json::ObjectReader entry(kWho, manifest_.file.string(), "instances." + name, value);
+                manifest_.instances.push_back(read_instance_set(
+                    entry, manifest_.id, name,
+                    [&](const json::ObjectReader& level, const std::string& key,
+                        const std::string& file) { return data_file(level, key, file); }));
+            });
+        if (manifest_.instances.size() > kMaxInstanceSets)
+            object.fail(object.line_of("instances"), "instances",
+                        fmt::format("expected at most {} but got {}", kMaxInstanceSets,
+                                    manifest_.instances.size()));
     }
 
     /// A fraction of the frame's size, or a fixed size.

@@ -9,6 +9,7 @@
 
 #include "effect/ground_data.h"
 #include "effect/marks_spec.h"
+#include "shader/instance_set.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 
@@ -88,6 +89,7 @@ struct Manifest {
     std::vector<LinesSpec> lines;
     std::vector<shader::PluginPass> passes;
     std::vector<MarksSpec> marks;
+    std::vector<shader::InstanceSet> instances;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty

@@ -135,6 +135,8 @@ class Linter {
         std::vector<std::string> called = hook_functions([](const auto&) { return true; });
         for (const shader::PluginPass& pass : effect_.manifest.passes)
             called.push_back(pass.function);
+        for (const shader::InstanceSet& set : effect_.manifest.instances)
+            called.push_back(set.function);
         const std::set<std::string> reached = reached_from(called);
         const std::set<std::string> named = named_elsewhere();
         for (const shader::Param& param : effect_.params())

@@ -390,6 +390,14 @@ std::vector<shader::PluginPass> Selection::passes() const {
     return result;
 }
 
+std::vector<shader::InstanceSet> Selection::instances() const {
+    std::vector<shader::InstanceSet> result;
+    for (const Effect* effect : effects)
+        result.insert(result.end(), effect->manifest.instances.begin(),
+                      effect->manifest.instances.end());
+    return result;
+}
+
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable,
                  const GroundWords& ground) {

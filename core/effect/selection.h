@@ -24,6 +24,7 @@ struct Selection {
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
     std::vector<shader::PluginPass> passes() const;        ///< for shader::StitchInput
+    std::vector<shader::InstanceSet> instances() const;    ///< for shader::StitchInput
 };
 
 /// Effects that cannot be on, by id, and why.

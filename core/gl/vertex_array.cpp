@@ -41,15 +41,30 @@ void VertexArray::feed(int binding, const RingBuffer::Place& place, int stride) 
                               static_cast<GLintptr>(place.offset), stride);
 }
 
+void VertexArray::hold(int binding) const {
+    constexpr GLuint kMoreThanInstances = 1U << 30;
+    glVertexArrayBindingDivisor(handle_.name(), static_cast<GLuint>(binding), kMoreThanInstances);
+}
+
 void VertexArray::indices(const Buffer& buffer) {
     glVertexArrayElementBuffer(handle_.name(), buffer.name());
 }
 
 void VertexArray::draw(const RingBuffer::Place& draws) const {
+    draw(GL_TRIANGLES, draws);
+}
+
+void VertexArray::draw_points(const RingBuffer::Place& draws) const {
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    draw(GL_POINTS, draws);
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void VertexArray::draw(unsigned primitive, const RingBuffer::Place& draws) const {
     static_assert(sizeof(Draw) == 5 * sizeof(std::uint32_t));
     glBindVertexArray(handle_.name());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.buffer);
-    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT,
+    glMultiDrawElementsIndirect(primitive, GL_UNSIGNED_SHORT,
                                 reinterpret_cast<const void*>(draws.offset),
                                 static_cast<GLsizei>(draws.size / sizeof(Draw)), 0);
 }

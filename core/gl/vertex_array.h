@@ -20,6 +20,9 @@ class VertexArray {
                     int components, bool per_instance);
     /// The same from memory that feed() names.
     void attributes(int binding, int first_location, int count, int components, bool per_instance);
+    /// Inputs of a binding stay the same for all instances of a draw, which Draw::first_instance
+    /// selects.
+    void hold(int binding) const;
     /// @param stride  from one vertex or instance to the next [bytes]
     void feed(int binding, const RingBuffer::Place& place, int stride) const;
     void indices(const Buffer& buffer);  ///< 16-bit
@@ -32,9 +35,12 @@ class VertexArray {
     };
     /// Draws all with one command. @param draws  written to a ring with an alignment of 4
     void draw(const RingBuffer::Place& draws) const;
+    /// The same of points, whose size the vertex program sets.
+    void draw_points(const RingBuffer::Place& draws) const;
     void bind() const;
 
   private:
+    void draw(unsigned primitive, const RingBuffer::Place& draws) const;
     static void destroy(unsigned name);
     Handle<&VertexArray::destroy> handle_;
 };

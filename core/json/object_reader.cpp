@@ -26,6 +26,11 @@ void ObjectReader::fail(int line, std::string_view key, std::string_view message
                           message));
 }
 
+ObjectReader ObjectReader::inner(std::string_view key, const Value& value) const {
+    const std::string dot = path_.empty() ? "" : ".";
+    return {who_, file_, path_ + dot + std::string(key), value};
+}
+
 int ObjectReader::line_of(std::string_view key) const {
     for (const auto& [name, value] : object_.members)
         if (name == key) return value.line;

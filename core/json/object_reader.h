@@ -38,6 +38,9 @@ class ObjectReader {
     /// @throws Error (BadInput) for the first member that was not read, with the nearest known key
     void finish() const;
 
+    /// A reader of an object inside, for messages as `path.key`.
+    ObjectReader inner(std::string_view key, const Value& value) const;
+
     /// Throws `Error(BadInput, "who: file:line: path.key: message")`.
     [[noreturn]] void fail(int line, std::string_view key, std::string_view message) const;
     int line() const { return object_.line; }

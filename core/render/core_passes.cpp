@@ -70,6 +70,10 @@ class Declaration {
         prepare();
         natives();
         geometry();
+        for (const shader::InstanceSet& set : facts_.instances) {
+            instances(set, false);
+            if (set.has_sprites()) instances(set, true);
+        }
         for (const shader::PluginPass& pass : facts_.plugin_passes)
             plugin_pass(pass);
         terrain();
@@ -107,6 +111,10 @@ class Declaration {
                          .kind = ResourceKind::Texture2DArray,
                          .format = RGBA32F,
                          .size = {.depth = facts_.varying_targets}});
+        if (!facts_.instances.empty()) {
+            add(Resource{.name = "instance_colour", .format = RGBA8});
+            add(Resource{.name = "instance_direction", .format = RG8});
+        }
         if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
         if (facts_.radiance)
             add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});
@@ -182,7 +190,7 @@ class Declaration {
                                      .fragment_main = "geometry.frag.glsl",
                                      .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
-        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        stored_defines(recipe);
         Pass pass{.name = "geometry",
                   .kind = PassKind::Geometry,
                   .program = program("geometry", recipe, outside_word()),
@@ -195,6 +203,48 @@ class Declaration {
                   }};
         if (facts_.varying_targets > 0) pass.colours.push_back({shader::StoredVaryings::kTexture});
         if (facts_.height_steps) pass.colours.push_back({kHeightStepsTexture});
+        add(std::move(pass));
+    }
+
+    /// Meshes on the ground, or their sprites. All are drawn into the same targets.
+    void instances(const shader::InstanceSet& set, bool sprites) {
+        const std::string name = set.resource + (sprites ? ".sprites" : "");
+        const int colour = 1 + facts_.varying_targets;
+        if (colour + 2 > kMaxStored + 1)
+            bad_input("render: instances: expected varyings of up to " +
+                      std::to_string(4 * (kMaxStored - 2)) + " floats in addition but got " +
+                      std::to_string(facts_.varying_targets) +
+                      " textures of four; switch an effect off");
+        shader::ProgramRecipe recipe{
+            .vertex_main = PassTexts::name_of(set),
+            .fragment_main = "instance.frag.glsl",
+            .defines = {{"INSTANCE_COLOUR", std::to_string(colour)},
+                        {"INSTANCE_DIRECTION", std::to_string(colour + 1)}},
+            .shaded_by = "terrain.frag.glsl"};
+        ground_defines(recipe);
+        stored_defines(recipe);
+        if (sprites) recipe.defines.push_back({"SPRITES", ""});
+        const bool first = covering_ == "geometry";
+        Pass pass{.name = name,
+                  .kind = PassKind::Geometry,
+                  .program = program(name.c_str(), recipe, outside_word()),
+                  .reads = {"tiles"},
+                  .colours = {{.resource = "gbuffer", .updates = true}},
+                  .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
+                  .after = {covering_},
+                  .body = [resource = set.resource, sprites](PassContext& frame) {
+                      frame.services.draw_instances(resource, sprites, frame);
+                  }};
+        if (facts_.varying_targets > 0)
+            pass.colours.push_back({.resource = shader::StoredVaryings::kTexture, .updates = true});
+        if (first) {
+            pass.colours.push_back({"instance_colour", kNothing});
+            pass.colours.push_back({"instance_direction", kNothing});
+        } else {
+            pass.colours.push_back({.resource = "instance_colour", .updates = true});
+            pass.colours.push_back({.resource = "instance_direction", .updates = true});
+        }
+        covering_ = name;
         add(std::move(pass));
     }
 
@@ -213,6 +263,11 @@ class Declaration {
             .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
                                                        .fragment_main = PassTexts::name_of(pass)}),
             .colours = {{pass.resource}}});
+    }
+
+    /// Of programs that fill the G-buffer.
+    void stored_defines(shader::ProgramRecipe& recipe) const {
+        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
     }
 
     void ground_defines(shader::ProgramRecipe& recipe) const {
@@ -238,6 +293,7 @@ class Declaration {
                                      .fragment_main = "terrain.frag.glsl",
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
+        if (!facts_.instances.empty()) recipe.defines.push_back({"INSTANCES", ""});
         if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited)
@@ -246,7 +302,7 @@ class Declaration {
         Pass pass{.name = "terrain",
                   .program = program("terrain", recipe, outside_word()),
                   .colours = {{shaded_}},
-                  .depth = Depth{"depth@geometry", DepthTest::Covered}};
+                  .depth = Depth{"depth@" + covering_, DepthTest::Covered}};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
         if (facts_.surface) pass.colours.push_back({kSurfaceTexture, kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
@@ -263,6 +319,7 @@ class Declaration {
                   .reads = {"tiles"},
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
+                  .after = {covering_},
                   .body = [](PassContext& frame) {
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
                   }};
@@ -319,7 +376,8 @@ class Declaration {
     }
 
     const FrameFacts& facts_;
-    std::string tone_mapped_;  // resource of the tonemapped colours
+    std::string covering_ = "geometry";  // last pass that changes what a pixel shows of the ground
+    std::string tone_mapped_;            // resource of the tonemapped colours
     std::string shaded_;  // resource that the shading passes draw into: tone_mapped_ or radiance
     std::vector<shader::Define> end_defines_;  // of the shading programs
     CoreFrame frame_;

@@ -49,6 +49,7 @@ struct FrameFacts {
     int varying_targets = 0;             ///< layers of stored varyings (shader::Stitched)
     std::vector<std::string> natives{};  ///< ids of native effects, in their order
     std::vector<shader::PluginPass> plugin_passes{};
+    std::vector<shader::InstanceSet> instances{};
 };
 
 /// A program of core before stitching.

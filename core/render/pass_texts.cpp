@@ -25,7 +25,24 @@ const shader::PluginPass* PassTexts::find(std::string_view name) const {
     return found == passes_.end() ? nullptr : &*found;
 }
 
+std::string PassTexts::name_of(const shader::InstanceSet& set) {
+    return set.resource + ".vert.glsl";
+}
+
+const shader::InstanceSet* PassTexts::find_instances(std::string_view name) const {
+    const auto found = std::ranges::find_if(
+        instances_, [&](const shader::InstanceSet& set) { return name_of(set) == name; });
+    return found == instances_.end() ? nullptr : &*found;
+}
+
 std::optional<std::string> PassTexts::text(std::string_view name) const {
+    if (const shader::InstanceSet* const set = find_instances(name)) {
+        std::string main = files_.text("instance.vert.glsl").value_or("");
+        constexpr std::string_view kCall = "    place_instance(";
+        const std::size_t at = main.find(kCall);
+        if (at != main.npos) main.replace(at, kCall.size(), "    " + set->function + "(");
+        return main;
+    }
     const shader::PluginPass* const pass = find(name);
     if (!pass) return files_.text(name);
     return fmt::format(
@@ -39,6 +56,7 @@ std::optional<std::string> PassTexts::text(std::string_view name) const {
 }
 
 std::string PassTexts::file(std::string_view name) const {
+    if (find_instances(name)) return files_.file("instance.vert.glsl");
     return find(name) ? std::string(name) : files_.file(name);
 }
 

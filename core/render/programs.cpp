@@ -68,7 +68,8 @@ class Stitcher {
   public:
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
              const ProgramOptions& options)
-        : core_(core, input.passes), input_(input) {
+        : core_(core, input.passes, input.instances), input_(input) {
+        facts_.instances = input.instances;
         facts_.plugin_passes = input.passes;
         facts_.radiance = !options.shown || reads(input, "core.radiance");
         facts_.antialias = options.antialias;
@@ -99,11 +100,12 @@ class Stitcher {
     FrameGraph graph() {
         facts_.varying_targets = 0;
         facts_.height_steps = false;
-        if (reads_height_steps(input_)) {
-            // Their target follows the varyings, whose number the geometry program determines.
+        const bool steps = reads_height_steps(input_);
+        if (steps || !facts_.instances.empty()) {
+            // Other targets follow the varyings, whose number the geometry program determines.
             const CoreFrame without = core_frame(facts_);
             facts_.varying_targets = stitched(geometry_of(without)).varying_targets;
-            facts_.height_steps = true;
+            facts_.height_steps = steps;
         }
         CoreFrame frame = core_frame(facts_);
         for (const ProgramRecipe& recipe : frame.programs)

@@ -20,6 +20,7 @@
 #include "render/footprint_texture.h"
 #include "render/frame_runner.h"
 #include "render/ground_probe.h"
+#include "render/instances.h"
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "render/readback.h"
@@ -120,6 +121,7 @@ struct Renderer::Impl : FrameServices {
     gl::RingBuffer::Place frame_block;  // last upload
     gl::Buffer params_block;
     std::vector<effect::DisplaceSpec> displaces;
+    Instances instances;
     shader::ParamStore values;  // as given; native modules also write host parameters
     double exposure = 1;        // of the last frame
     TileSelection tiles;        // of the last frame
@@ -145,6 +147,7 @@ struct Renderer::Impl : FrameServices {
           effect_textures(effects.textures, anisotropy, shared.textures),
           line_textures(effects.lines),
           displaces(effects.displaces),
+          instances(effects.stitch.instances),
           outside(o.outside && shows_block()),
           runner(
               c, frames, programs, shared.targets,
@@ -215,6 +218,13 @@ struct Renderer::Impl : FrameServices {
     }
 
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
+
+    void draw_instances(const std::string& resource, bool sprites, PassContext& frame) override {
+        const LodView view = LodView::of_camera(frame.inputs.camera, frame.width_px,
+                                                frame.height_px, 1, frame.inputs.exaggeration);
+        instances.draw(resource, sprites, frame.terrain, frame.tiles, view,
+                       length(glm::vec3(frame.block.pixel_ray_dx)));
+    }
 
     void prepare_native(const std::string& id, PassContext& frame) override {
         if (frame.inputs.freeze_native && native_is_current) return;

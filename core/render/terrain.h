@@ -112,6 +112,15 @@ class Terrain {
     /// to `origin_m`. A selection is valid until the next one is made, unless that keeps it.
     void draw(const TileSelection& selection, const glm::dvec3& origin_m);
 
+    /// The tiles of a selection with the inputs of lib/tile.glsl.
+    std::vector<TileMesh::Tile> tiles_of(const TileSelection& selection,
+                                         const glm::dvec3& origin_m);
+    /// TileTree::box() and hidden().
+    std::optional<Box> box(const glm::dvec2& first, const glm::dvec2& last, double exaggeration) {
+        return tree_.box(first, last, exaggeration);
+    }
+    bool hidden(const Box& box, const LodView& view) const { return tree_.hidden(box, view); }
+
     /// As draw(), of the walls below the edges of the ground.
     void draw_sides(const TileSelection& selection, const glm::dvec3& origin_m);
 
@@ -175,8 +184,6 @@ class Terrain {
     void update_surface_layers();
     std::vector<std::byte> make_normals(const TileKey& key) const;
     TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
-    std::vector<TileMesh::Tile> tiles_of(const TileSelection& selection,
-                                         const glm::dvec3& origin_m);
 
     std::uint64_t serial_;
     TerrainOptions options_;

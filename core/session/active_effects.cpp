@@ -7,6 +7,7 @@
 
 #include "base/contains.h"
 #include "base/log.h"
+#include "effect/instance_reader.h"
 
 namespace relevo::session {
 
@@ -91,6 +92,7 @@ render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
     inputs.stitch.snippets = loaded.selection.snippets();
     inputs.stitch.passes = loaded.selection.passes();
+    inputs.stitch.instances = loaded.selection.instances();
     inputs.stitch.capabilities = loaded.selection.capabilities;
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)
@@ -129,6 +131,8 @@ void ActiveEffects::visit_files(
         for (const effect::TextureSpec& texture : manifest.textures)
             for (const std::filesystem::path& file : texture.files)
                 visit(file, what);
+        for (const std::filesystem::path& mesh : effect::mesh_files(manifest))
+            visit(mesh, what);
     }
     for (const shader::TextParam* text : values.texts())
         if (const std::string file = values.text(text->address); text->is_file && !file.empty())

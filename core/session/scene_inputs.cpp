@@ -12,6 +12,7 @@
 #include "base/sha256.h"
 #include "dem/files_of.h"
 #include "dem/remote.h"
+#include "effect/instance_reader.h"
 #include "effect/native_module.h"
 #include "effect/selection.h"
 
@@ -48,6 +49,8 @@ std::vector<fs::path> files_of(const effect::Effect& effect) {
     files.insert(files.end(), manifest.glsl.begin(), manifest.glsl.end());
     for (const effect::TextureSpec& texture : manifest.textures)
         files.insert(files.end(), texture.files.begin(), texture.files.end());
+    const std::vector<fs::path> meshes = effect::mesh_files(manifest);
+    files.insert(files.end(), meshes.begin(), meshes.end());
     if (manifest.module.empty()) return files;
     try {
         files.push_back(effect::module_file(manifest));

@@ -52,13 +52,15 @@ void read_hook(Snippet& snippet, const Item& item) {
     snippet.hooks.push_back({hook, function, item.name_line});
 }
 
-void read_pass(Snippet& snippet, const Item& item) {
+/// @param found  receives a function `<id>_<word>_<name>`
+void read_named(Snippet& snippet, const Item& item, const std::string& word,
+                std::string_view signature, std::vector<PassFunction>& found) {
     const std::string& function = item.names[0];
-    const std::string prefix = snippet.id + "_pass_";
+    const std::string prefix = snippet.id + '_' + word + '_';
     if (function.substr(0, prefix.size()) != prefix) return;
-    check_signature(snippet, item, "vec4 pass(in Texel t)");
+    check_signature(snippet, item, signature);
     if (item.kind == Item::Kind::Function)
-        snippet.passes.push_back({function.substr(prefix.size()), item.name_line});
+        found.push_back({function.substr(prefix.size()), item.name_line});
 }
 
 void read_wanted(Snippet& snippet, const Token& word) {
@@ -117,7 +119,9 @@ Snippet parse_snippet(std::string_view id, std::string_view file, std::string_vi
     for (const Item& item : snippet.source.items)
         if (item.kind == Item::Kind::Function || item.kind == Item::Kind::Prototype) {
             read_hook(snippet, item);
-            read_pass(snippet, item);
+            read_named(snippet, item, "pass", "vec4 pass(in Texel t)", snippet.passes);
+            read_named(snippet, item, "place", "void place(in InstanceSite at, inout Instance it)",
+                       snippet.places);
         }
     for (const Token& token : snippet.source.tokens) {
         if (token.kind != TokenKind::Directive) {

@@ -36,8 +36,9 @@ struct Snippet {
     std::string file;
     std::vector<HookFunction> hooks;  ///< in the order of the file
     std::vector<PassFunction> passes;
-    std::vector<Wanted> wanted;  ///< each word once
-    Source source;               ///< text, parameters, samplers, varyings, includes
+    std::vector<PassFunction> places;  ///< `<id>_place_<name>`, for InstanceSet
+    std::vector<Wanted> wanted;        ///< each word once
+    Source source;                     ///< text, parameters, samplers, varyings, includes
 
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };
@@ -46,6 +47,7 @@ struct Snippet {
 /// - every global (function, constant, struct, macro, variable) begins with `<id>_`;
 /// - `<id>_on_<hook>` with the hook's exact types is the registration;
 /// - `vec4 <id>_pass_<name>(in Texel t)` computes the texture of the pass `name`;
+/// - `void <id>_place_<name>(in InstanceSite at, inout Instance it)` places the instances `name`;
 /// - `uniform` is a parameter (`= default; //@ annotation`) or a sampler, `out` a varying: one a
 ///   line, never under #if;
 /// - `//@ include lib/NAME.glsl` includes core's shared functions.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "shader/core_texts.h"
+#include "shader/instance_set.h"
 #include "shader/line_map.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
@@ -39,6 +40,7 @@ struct StitchInput {
     std::vector<const Snippet*> snippets;   ///< of the enabled plugins, in calling order
     std::vector<std::string> capabilities;  ///< that they provide: HAS_<word> is 1
     std::vector<PluginPass> passes{};       ///< of the enabled plugins
+    std::vector<InstanceSet> instances{};   ///< of the enabled plugins
     const ParamStore* values = nullptr;     ///< of static parameters; null: their defaults
     int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
     /// Textures equal to another one, with the name of that one on the device.

@@ -1,4 +1,4 @@
-//! provides  VertexFrame, Surface, Pixel, Texel: what hooks and passes get. Append-only: plugins rely on every member.
+//! provides  VertexFrame, Surface, Pixel, Texel, InstanceSite, Instance: what hooks and passes get. Append-only: plugins rely on every member.
 //!
 //! What tells the ground's kind is the DEM's own, whatever --exaggerate: height_m, height_unit,
 //! ground_m, ground_normal and the steps of these. What light needs is of the ground as it is drawn:
@@ -55,6 +55,24 @@ struct Pixel {
     vec2 at;           // the same as shares of the picture's width and height, 0..1
     vec3 direction;    // of its ray in the local frame, unit
     float distance_m;  // from the eye to the ground or a wall; 1e9 in the sky [m]
+};
+
+/// A candidate site of an instance on the ground.
+struct InstanceSite {
+    VertexFrame ground;  // below its foot, as drawn
+    vec3 normal;         // of the drawn ground there, not exaggerated, unit
+    vec4 random;         // of this site, the same from every eye, 0..1
+};
+
+/// An instance as the function of its plugin places it. At first it is not there: height_m is 0.
+struct Instance {
+    float density;   // share of sites like this one that have an instance, 0..1
+    float height_m;  // of the mesh above its foot, at most `height_m` of plugin.json
+    float width_m;   // of the mesh along its longer horizontal side
+    float turn;      // about the vertical, counter-clockwise as seen from above [rad]
+    vec3 colour;     // mean reflectance, linear; meshes vary it
+    int kind;        // which of the meshes, from 0
+    float taper;     // of its sprite: 0 an ellipse, 1 a cone
 };
 
 /// A texel of a plugin's pass.

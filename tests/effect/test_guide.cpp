@@ -73,6 +73,18 @@ TEST(PluginGuide, ItsGlowIsAPlugin) {
     EXPECT_EQ(registry.effects()[0].manifest.passes.size(), 1U);
 }
 
+TEST(PluginGuide, ItsStonesAreAPlugin) {
+    const Plugins plugins;
+    plugins.write("plugins/stones/stone.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    plugins.add("stones",
+                R"("instances": {"stone": {"spacing_m": 5, "height_m": 2,
+                   "levels": [{"meshes": ["stone.obj"]}]}})",
+                block(guide(), "glsl stones.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    EXPECT_EQ(registry.effects()[0].manifest.instances.size(), 1U);
+}
+
 TEST(PluginGuide, ItsRampIsOne) {
     const Plugins plugins;
     const std::string glsl = block(guide(), "glsl rain.glsl");
@@ -142,7 +154,7 @@ TEST(PluginGuide, HasEveryKey) {
         relevo::test::error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
     const std::string list = error.substr(error.find("there are ") + 10);
     const std::vector<std::string> keys = split(list, ',');
-    EXPECT_EQ(keys.size(), 21u);
+    EXPECT_EQ(keys.size(), 22u);
     for (const std::string& key : keys)
         EXPECT_THAT(text, HasSubstr('`' + std::string(trimmed(key)) + '`'));
     for (const MarkKey& key : mark_keys())

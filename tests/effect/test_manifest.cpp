@@ -181,7 +181,8 @@ std::string text(const std::string& members) {
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, default_where, provides, "
     "exclusive, requires, "
-    "wants, after, module, glsl, textures, passes, marks, texts, displaces, invents, $schema";
+    "wants, after, module, glsl, textures, passes, instances, "
+    "marks, texts, displaces, invents, $schema";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -515,6 +516,39 @@ INSTANTIATE_TEST_SUITE_P(
                  "vec4 haze_pass_blur(in vec2 at) { return vec4(0.0); }\n" + kHook,
                  "shader: plugins/haze/haze.glsl:1: haze_pass_blur: wrong signature, expected "
                  "vec4 haze_pass_blur(in Texel) but got vec4 haze_pass_blur(in vec2)"},
+        Mismatch{"InstancesWithoutAFunction",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
+                    "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak: expected one function void "
+                 "haze_place_oak(in InstanceSite at, inout Instance it) in the plugin's GLSL but "
+                 "got 0"},
+        Mismatch{
+            "InstancesOfNoName", "",
+            "void haze_place_oak(in InstanceSite at, inout Instance it) {}\n" + kHook,
+            "plugin: plugins/haze/haze.glsl:1: haze_place_oak: plugins/haze/plugin.json has no "
+            "instances oak; add \"instances\": {\"oak\": {...}}"},
+        Mismatch{"InstancesWithoutAMesh",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "levels": [{}]}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.levels.meshes: expected a mesh "
+                 "of each kind, 1 to 8 at every level, or none at the last level, for sprites"},
+        Mismatch{"InstancesOfAMeshThatIsNotThere",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
+                    "levels": [{"meshes": ["oak.obj"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: instances.oak.levels.meshes: "
+                 "plugins/haze/oak.obj: no such file"},
+        Mismatch{
+            "InstancesTooClose",
+            R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})", kHook,
+            "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
+            "[0.05, 100000] but got 1e-09"},
+        Mismatch{"InstancesOfAMeshOutside",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
+                    "levels": [{"meshes": ["../oak.obj"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: instances.oak.levels.meshes: expected a file "
+                 "of the plugin's own folder but got ../oak.obj"},
         Mismatch{"PassOfTwoSizes", R"("passes": {"blur": {"scale": 0.5, "width": 4, "height": 4}})",
                  kHook,
                  "plugin: plugins/haze/plugin.json:1: passes.blur.scale: expected a scale of the "

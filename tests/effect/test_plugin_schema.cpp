@@ -52,6 +52,15 @@ TEST(PluginSchema, HasTheLoadersKeys) {
     EXPECT_THAT(keys(member(properties, "invents")),
                 UnorderedElementsAreArray(
                     known_keys(R"("invents": {"what": "w", "by": "b", )" + unknown + "}")));
+    const std::string sizes = R"("spacing_m": 1, "height_m": 1)";
+    EXPECT_THAT(keys(member(objects, "instances")),
+                UnorderedElementsAreArray(
+                    known_keys(R"("instances": {"a": {"levels": [{"meshes": ["dust.glsl"]}], )" +
+                               sizes + ", " + unknown + "}}")));
+    EXPECT_THAT(keys(member(objects, "instance_level")),
+                UnorderedElementsAreArray(
+                    known_keys(R"("instances": {"a": {"levels": [{"meshes": ["dust.glsl"], )" +
+                               unknown + "}], " + sizes + "}}")));
     EXPECT_THAT(keys(member(objects, "text")),
                 UnorderedElementsAreArray(
                     known_keys(R"("module": "dust", "texts": {"a": {)" + unknown + "}}")));

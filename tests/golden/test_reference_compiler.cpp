@@ -64,6 +64,7 @@ class Programs {
         shader::StitchInput input;
         input.snippets = selection.snippets();
         input.passes = selection.passes();
+        input.instances = selection.instances();
         input.capabilities = selection.capabilities;
         input.values = &values;
         input.max_texture_units = 32;

@@ -61,6 +61,8 @@ class Drawn {
                                               manifest.provides.begin(), manifest.provides.end());
             inputs.stitch.passes.insert(inputs.stitch.passes.end(), manifest.passes.begin(),
                                         manifest.passes.end());
+            inputs.stitch.instances.insert(inputs.stitch.instances.end(),
+                                           manifest.instances.begin(), manifest.instances.end());
             if (manifest.displaces) inputs.displaces.push_back(*manifest.displaces);
         }
         snippets_.reserve(effects.size());

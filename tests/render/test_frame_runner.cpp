@@ -20,6 +20,7 @@ Resource kept(const std::string& name, double share) {
 struct NoServices : FrameServices {
     void upload_blocks(const FrameBlock&) override {}
     void make_footprint(const Footprint&) override {}
+    void draw_instances(const std::string&, bool, PassContext&) override {}
     void prepare_native(const std::string&, PassContext&) override {}
 };
 

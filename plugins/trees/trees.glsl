@@ -1,0 +1,122 @@
+//! provides  trees: conifers and broadleaf trees near the eye, and the forest's cover farther away
+//! hook      material; places tree
+//! reads     the climate's tables, height, slope, water
+//! writes    diffuse, ambient, specular of the ground below trees and of the cover
+//! source    lib/crown.glsl: gaps between crowns
+
+//@ include lib/climate.glsl
+//@ include lib/crown.glsl
+//@ include lib/instances.glsl
+//@ include lib/repeats.glsl
+//@ include lib/water.glsl
+
+uniform float trees_density = 0.85; //@ range(0, 1) label("Density") description("Share of the sites of closed forest that have a tree")
+uniform float trees_size = 1.0; //@ range(0.3, 1.3) label("Size") description("Factor on the height and width of trees")
+uniform float trees_line_m = 0.0; //@ range(-3000, 3000) unit(m) label("Tree line shift") description("Added to the climate's tree line")
+uniform float trees_clearings = 0.6; //@ range(0, 1) label("Clearings") description("How much thinner forest is in its clearings")
+uniform float trees_light = 0.2; //@ range(0, 1) label("Light") description("Share of the light that passes through a crown")
+uniform vec2 trees_slope_deg = vec2(38.0, 52.0); //@ range(0, 90) unit(deg) label("Slopes from, to") description("Slopes between which trees become rare")
+uniform vec3 trees_needles = vec3(0.030, 0.048, 0.024); //@ colour label("Needles")
+uniform vec3 trees_leaves = vec3(0.055, 0.088, 0.026); //@ colour label("Leaves")
+uniform vec3 trees_autumn = vec3(0.125, 0.082, 0.034); //@ colour label("Leaves when they fall")
+
+const float trees_spacing_m = 10.0;   // plugin.json
+const float trees_highest_m = 28.0;  // plugin.json
+
+/// What stands at a place.
+struct trees_Stand {
+    float density;     // share of sites that have a tree
+    float conifers;    // share of them
+    float height_m;    // mean
+    vec3 leaves;       // reflectance of broadleaf trees
+};
+
+/// Smooth noise of cells of the ground, 0..1, of mean 0.5.
+float trees_patch(in vec2 anchored_m) {
+    vec2 t;
+    ivec2 cell = ground_cell(anchored_m, mat2(1.0 / 140.0), t);
+    t = t * t * (3.0 - 2.0 * t);
+    const uint stream = 7u;
+    float a = instances_random(cell, stream).x, b = instances_random(cell + ivec2(1, 0), stream).x;
+    float c = instances_random(cell + ivec2(0, 1), stream).x, d = instances_random(cell + ivec2(1, 1), stream).x;
+    return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
+}
+
+/// @param normal  of the ground, not exaggerated
+/// @param water   share of the ground that is water
+trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 anchored_m, in float water) {
+    ClimateGround ground = climate_ground(climate_place(up), height_m);
+    float growth = ground.growth + trees_line_m / 450.0;
+    float cosine = clamp(dot(normal, up), 0.02, 1.0);
+    float steep = sqrt(1.0 - cosine * cosine) / cosine;
+    vec2 slopes = tan(radians(min(trees_slope_deg, vec2(89.0))));
+    trees_Stand stand;
+    float wooded = smoothstep(1.0, 2.1, ground.dryness) * smoothstep(0.85, 1.2, growth - 0.06 * steep);
+    float closed = mix(1.0, smoothstep(0.2, 0.55, trees_patch(anchored_m)), trees_clearings);
+    stand.density = trees_density * wooded * closed * (1.0 - smoothstep(slopes.x, max(slopes.y, slopes.x + 1e-3), steep)) *
+                    (1.0 - smoothstep(0.0, 0.5, water));
+    stand.conifers = 1.0 - smoothstep(3.0, 11.0, ground.temperature);
+    // Trees are lower near the tree line and in dry country.
+    float vigour = smoothstep(0.8, 2.2, growth) * smoothstep(0.8, 2.4, ground.dryness);
+    stand.height_m = trees_size * mix(5.0, 20.0, vigour);
+    // Leaves fall where winters are cold and summers moist.
+    float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature)) *
+                  smoothstep(1.2, 1.8, ground.dryness);
+    stand.leaves = mix(trees_leaves, trees_autumn, falls * (1.0 - ground.green));
+    return stand;
+}
+
+const float trees_conifer_width = 0.34;  // over the height
+const float trees_broadleaf_width = 0.72;
+
+/// Crowns of the mean tree of a kind.
+Crown trees_crown(in trees_Stand stand, in bool conifer) {
+    float height_m = (conifer ? 1.0 : 0.8) * stand.height_m;
+    return Crown(height_m, height_m * (conifer ? trees_conifer_width : trees_broadleaf_width), trees_light);
+}
+
+void trees_place_tree(in InstanceSite at, inout Instance it) {
+    trees_Stand stand = trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
+                                    water_at(at.ground.post, 1.0).x);
+    bool conifer = at.random.y < stand.conifers;
+    Crown crown = trees_crown(stand, conifer);
+    it.kind = conifer ? 0 : 1;
+    it.taper = conifer ? 1.0 : 0.0;
+    it.density = stand.density;
+    it.height_m = crown.height_m * (0.65 + 0.7 * at.random.z);
+    it.width_m = crown.width_m * (0.65 + 0.7 * at.random.z) * (0.85 + 0.3 * at.random.w);
+    it.colour = (conifer ? trees_needles : stand.leaves) * (0.8 + 0.4 * at.random.w);
+}
+
+/// What crowns of both kinds hide from a direction. @param per_m2  trees on a square metre
+vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
+    const float unequal = 1.05;  // mean area of crowns of trees_place_tree() over that of the mean crown
+    return unequal * per_m2 * vec2(stand.conifers * crown_area_m2(trees_crown(stand, true), cosine),
+                         (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
+}
+
+/// Share of a direction's light that reaches the ground, through gaps and through crowns.
+float trees_lit(in trees_Stand stand, in float per_m2, in float cosine) {
+    vec2 filled = trees_filled(stand, per_m2, cosine);
+    return mix(trees_light, 1.0, crown_gap(filled.x + filled.y));
+}
+
+void trees_on_material(inout Surface s) {
+    trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x);
+    float per_m2 = stand.density / (trees_spacing_m * trees_spacing_m);
+
+    // The ground between the trees.
+    float sun = trees_lit(stand, per_m2, dot(frame.sun_direction.xyz, s.up));
+    s.diffuse *= sun;
+    s.specular *= sun;
+    s.ambient *= trees_lit(stand, per_m2, 0.6);  // the sky's light comes from 53 degrees off the vertical in the mean
+
+    // The cover stands for the trees that are not drawn.
+    float left = 1.0 - instances_share(s.distance_m, instances_range_m(trees_highest_m, trees_spacing_m));
+    vec2 filled = trees_filled(stand, left * per_m2, dot(-s.position_m, s.up) / s.distance_m);
+    float both = filled.x + filled.y, cover = 1.0 - crown_gap(both);
+    vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(both, 1e-6));
+    s.diffuse = mix(s.diffuse, colour, cover);
+    s.ambient = mix(s.ambient, colour, cover);
+    s.specular *= 1.0 - cover;
+}

@@ -1,0 +1,32 @@
+//! provides  instances_share: how many instances of a plugin are drawn as meshes at a distance; instances_random
+//! source    M. Jarzynski, M. Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020: pcg4d
+
+const float kInstance_px = 4.0;        // lowest instances that are drawn; render/instance_blocks.h: kLowest_px
+const float kInstanceCells = 350.0;    // most cells from the eye; render/instance_blocks.h: kMostCells
+const float kInstanceFade = 0.6;       // share of the range from which on they become fewer
+
+/// Distance up to which instances are drawn [m]. @param height_m, spacing_m  of plugin.json
+float instances_range_m(in float height_m, in float spacing_m) {
+    float pixel = length(frame.pixel_ray_dx.xyz);
+    return min(height_m / (kInstance_px * pixel), kInstanceCells * spacing_m);
+}
+
+/// Share of the instances that are drawn at a distance, 0..1. The plugin's cover of the ground shows the others.
+float instances_share(in float distance_m, in float range_m) {
+    return clamp((1.0 - distance_m / range_m) / (1.0 - kInstanceFade), 0.0, 1.0);
+}
+
+/// Four numbers of a cell of the grid of sites, 0..1. @param stream  other numbers of the same cell
+vec4 instances_random(in ivec2 cell, in uint stream) {
+    uvec4 v = uvec4(uvec2(cell), stream, 0x9e3779b9u) * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return vec4(v >> 8u) / 16777216.0;
+}
