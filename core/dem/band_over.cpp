@@ -177,10 +177,10 @@ BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
             }
     });
     if (!covers)
-        refuse(path, fmt::format("the overlay does not cover this DEM; it is at {}, the DEM at {}",
+        refuse(path, fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
                                  extent_text(raster), extent_text(grid)));
     if (std::ranges::all_of(over.values, [](float v) { return std::isnan(v); }))
-        refuse(path, "the overlay has no value anywhere on this DEM");
+        refuse(path, "the raster has no value anywhere on this DEM");
     return over;
 }
 

@@ -45,7 +45,7 @@ Georeference placed(const std::string& path, const std::string& opened, GDALData
     std::array<double, 6> transform{};
     if (GDALGetGeoTransform(dataset, transform.data()) != CE_None && GDALGetGCPCount(dataset) == 0)
         refuse(path,
-               "the overlay has no georeference, its place on the ground is unknown; add one with "
+               "the raster has no georeference, its place on the ground is unknown; add one with "
                "gdal_translate -a_srs EPSG:n -a_ullr W N E S");
     Description unused;
     if (GDALGetSpatialRef(dataset)) return georeference(opened, dataset, {}, unused);
@@ -54,7 +54,7 @@ Georeference placed(const std::string& path, const std::string& opened, GDALData
     } catch (const Error&) {
         if (GDALGetGCPCount(dataset) > 0) throw;
         refuse(path,
-               "the overlay names no coordinate system and is not in degrees; add one with "
+               "the raster names no coordinate system and is not in degrees; add one with "
                "gdal_translate -a_srs EPSG:n");
     }
 }
@@ -141,7 +141,7 @@ void Photo::Impl::find_extent(const std::string& path) {
         each_sample(low, high,
                     [&](const glm::dvec2& post) { covers = covers || is_in(raster, pixel(post)); });
     if (!covers)
-        refuse(path, fmt::format("the overlay does not cover this DEM; it is at {}, the DEM at {}",
+        refuse(path, fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
                                  extent_text(raster), extent_text(dem)));
     first_post = glm::max(low, glm::dvec2(0));
     last_post = glm::min(high, glm::dvec2(dem.columns() - 1, dem.rows() - 1));
@@ -219,7 +219,7 @@ std::shared_ptr<const Photo> Photo::open(const std::string& path, const Grid& de
     Dataset dataset = open_dataset(opened);
     const PhotoKind kind = kind_of(dataset.get());
     if (kind != PhotoKind::Colours && kind != PhotoKind::Palette)
-        refuse(path, "the overlay is no image of 8 bits");
+        refuse(path, "the raster is no image of 8 bits");
     const Georeference where = placed(path, opened, dataset.get());
     const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
                       where.affine, where.crs);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "base/log.h"
 #include "render/pages.h"
@@ -40,7 +41,8 @@ OverlayPages::OverlayPages(std::shared_ptr<const OverlayRaster> raster, const de
       overlay_(std::move(raster)),
       pyramid_(pyramid),
       texels_(overlay_texels(*overlay_, pyramid)) {
-    if (overlay_->photo && texels_.per_post != overlay_->photo->pixels_per_post())
+    if (overlay_->photo &&
+        glm::any(glm::lessThan(texels_.per_post, overlay_->photo->pixels_per_post())))
         log::info(fmt::format(
             "{}: it has more than 262144 pixels along a side, the limit; it is drawn coarser",
             name_));

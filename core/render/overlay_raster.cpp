@@ -13,6 +13,8 @@ namespace {
 
 /// Along an axis: a page table of 1024 entries.
 constexpr double kMaxTexels = 1024 * kNormalNodes;
+/// Over a texel the edge of an image fades, so that few texels would not show it.
+constexpr double kLeastTexels = 64;
 
 /// Texels along an axis that are nearest to a node, [first, end).
 struct Span {
@@ -116,7 +118,8 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
     if (raster.photo) {
         texels.first_post = raster.photo->first_post();
         const glm::dvec2 side = raster.photo->last_post() - texels.first_post;
-        texels.per_post = glm::min(raster.photo->pixels_per_post(), kMaxTexels / side);
+        texels.per_post =
+            glm::clamp(raster.photo->pixels_per_post(), kLeastTexels / side, kMaxTexels / side);
         texels.count = glm::ivec2(glm::ceil(side * texels.per_post)) + 1;
     }
     const int side = std::max(texels.count.x, texels.count.y) - 1;

@@ -25,7 +25,7 @@ struct OverlayRaster {
 };
 
 /// Where the texels of a raster's finest level lie on the DEM. A photo of more than 262144 pixels
-/// along an axis has fewer texels than pixels, each a mean.
+/// along an axis has fewer texels than pixels, each a mean; one of fewer than 64 has more.
 struct OverlayTexels {
     glm::dvec2 first_post{0};  ///< of texel (0, 0), which is a point
     glm::dvec2 per_post{1};    ///< texels per post

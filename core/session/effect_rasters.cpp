@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "dem/band_over.h"
 
@@ -24,7 +25,11 @@ EffectRasters::EffectRasters(const ActiveEffects& effects, const dem::Grid& grid
                 continue;
             }
             if (source.file.empty()) log::info(effect::no_file_text(spec.file));
-            entries_.emplace(spec.resource, read(source, grid));
+            try {
+                entries_.emplace(spec.resource, read(source, grid));
+            } catch (const Error& error) {
+                throw Error(error.code(), fmt::format("{}: {}", spec.file, error.what()));
+            }
         }
 }
 

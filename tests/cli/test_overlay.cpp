@@ -223,7 +223,7 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
     EXPECT_EQ(
         said({"--overlay", elsewhere}),
         "relevo: error: " + elsewhere +
-            ": the overlay does not cover this DEM; it is at latitude 48.005 to 49.995, longitude "
+            ": the raster does not cover this DEM; it is at latitude 48.005 to 49.995, longitude "
             "-126.000 to -122.000, the DEM at latitude 36.160 to 36.446, longitude -84.414 "
             "to -84.078\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--preset", "paper"}),

@@ -181,7 +181,7 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
     EXPECT_EQ(
         error_of([&] { read_band_over(grid(), far, 1); }),
         "exit 3: " + far +
-            ": the overlay does not cover this DEM; it is at latitude 46.945 to 46.946, longitude "
+            ": the raster does not cover this DEM; it is at latitude 46.945 to 46.946, longitude "
             "10.314 to 10.316, the DEM at latitude 46.945 to 46.954, longitude 9.000 to 9.016");
     const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
                       geo::Crs::parse("EPSG:3413", "test"));
@@ -191,7 +191,7 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
         folder() / "empty.tif",
         {.columns = 41, .rows = 31, .nodata = 7, .value = [](int, int, int) { return 7.0; }});
     EXPECT_EQ(error_of([&] { read_band_over(grid(), empty, 1); }),
-              "exit 3: " + empty + ": the overlay has no value anywhere on this DEM");
+              "exit 3: " + empty + ": the raster has no value anywhere on this DEM");
     EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 2); }),
               "exit 3: " + far + ": band 2: expected 1 to 1");
 }

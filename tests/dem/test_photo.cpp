@@ -178,21 +178,21 @@ TEST(Photo, WhatCannotBeLaidOnTheGroundIsRefused) {
     const std::string a = write_raster(folder() / "nowhere.tif", nowhere);
     EXPECT_EQ(error_of([&] { Photo::open(a, grid()); }),
               "exit 3: " + a +
-                  ": the overlay has no georeference, its place on the ground is unknown; add one "
+                  ": the raster has no georeference, its place on the ground is unknown; add one "
                   "with gdal_translate -a_srs EPSG:n -a_ullr W N E S");
     Raster unnamed = image();
     unnamed.crs = "";
     const std::string b = write_raster(folder() / "unnamed.tif", unnamed);
     EXPECT_EQ(error_of([&] { Photo::open(b, grid()); }),
               "exit 3: " + b +
-                  ": the overlay names no coordinate system and is not in degrees; add one with "
+                  ": the raster names no coordinate system and is not in degrees; add one with "
                   "gdal_translate -a_srs EPSG:n");
     Raster elsewhere = image();
     elsewhere.geotransform = {{520000, 10, 0, 5200000, 0, -10}};
     const std::string c = write_raster(folder() / "elsewhere.tif", elsewhere);
     EXPECT_EQ(error_of([&] { Photo::open(c, grid()); }),
               "exit 3: " + c +
-                  ": the overlay does not cover this DEM; it is at latitude 46.945 to 46.953, "
+                  ": the raster does not cover this DEM; it is at latitude 46.945 to 46.953, "
                   "longitude 9.263 to 9.279, the DEM at latitude 46.945 to 46.954, longitude 9.000 "
                   "to 9.016");
     const std::string d = write_raster(folder() / "short.tif", image());

@@ -1,4 +1,5 @@
 // Rasters that users choose for effects: by file, over the ground, changed and mistaken.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -85,10 +86,43 @@ TEST_F(EffectRasters, AreDrawnAndChangedAndSwitchedOffAndOn) {
 
 TEST_F(EffectRasters, AMistakeLeavesThePictureAsItWas) {
     Session& session = open(draped(write_photo("dark.tif", 50)));
-    EXPECT_THAT(
-        test::error_of([&] { session.set_effects(draped("/nowhere/photo.tif").effects); }),
-        testing::AllOf(testing::StartsWith("exit 3"), testing::HasSubstr("/nowhere/photo.tif")));
+    EXPECT_THAT(test::error_of([&] { session.set_effects(draped("/nowhere/photo.tif").effects); }),
+                testing::StartsWith("exit 3: drape.file: /nowhere/photo.tif: "));
     EXPECT_NEAR(middle(), 50, 1);
+}
+
+TEST_F(EffectRasters, FilesThatLieAreErrorsWithTheirName) {
+    const auto written = [](const std::string& name, const std::string& text) {
+        std::ofstream(test::folder() / name) << text;
+        return (test::folder() / name).string();
+    };
+    const std::string far = test::write_raster(test::folder() / "far.tif", {});
+    const std::string empty = write_over(
+        "empty.tif", {.nodata = -9999.0, .value = [](int, int, int) { return -9999.0; }});
+    const std::string nan =
+        write_over("nan.tif", {.value = [](int, int, int) { return std::nan(""); }});
+    for (const std::string& file : {written("text.tif", "hello"), written("none.tif", ""),
+                                    test::folder().string(), far, empty, nan})
+        EXPECT_THAT(test::error_of([&] { open(draped(file)); }),
+                    testing::StartsWith("exit 3: drape.file: " + file + ": "))
+            << file;
+}
+
+TEST_F(EffectRasters, ARasterOfOneCellCoversItsGround) {
+    const dem::Grid dem = dem::Source::open(jacksboro()).grid();
+    const dem::Affine& a = dem.affine();
+    const std::string one = test::write_raster(
+        test::folder() / "one.tif",
+        {.type = "Byte",
+         .columns = 1,
+         .rows = 1,
+         .bands = 3,
+         .geotransform = {{a.x0, a.x_column * dem.columns(), 0, a.y0, 0, a.y_row * dem.rows()}},
+         .crs = dem.crs().text(),
+         .value = [](int, int, int) { return 90.0; },
+         .pictures = true});
+    open(draped(one));
+    EXPECT_NEAR(middle(), 90, 1);
 }
 
 TEST_F(EffectRasters, AChangedFileIsReadAgain) {
