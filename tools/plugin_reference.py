@@ -16,6 +16,9 @@ FIRST_RELEASE = "0.1"
 CORE_ONLY = {"exposed.glsl", "finite.glsl", "frame.glsl", "moved.glsl", "octahedral.glsl", "overlay.glsl", "pages.glsl", "raster.glsl", "shown.glsl",
              "tile.glsl", "types.glsl"}
 
+# Of files with many functions, those that are for plugins.
+LISTED = {"lines.glsl": {"lines_near"}}
+
 HEAD = """# What plugins can read
 
 Members and functions for the GLSL of plugins, written by `tools/plugin_reference.py` from `shaders/lib`. How they are used is in
@@ -59,8 +62,9 @@ def table(rows):
 
 def structs(text):
     """Name, comment and body of each struct."""
-    pattern = r"///\s*(.*?)\nstruct (\w+) \{\n(.*?)\n\};"
-    return [(m.group(2), m.group(1), m.group(3)) for m in re.finditer(pattern, text, re.S)]
+    pattern = r"((?:^///[^\n]*\n)+)struct (\w+) \{\n(.*?)\n\};"
+    return [(m.group(2), " ".join(line[3:].strip() for line in m.group(1).splitlines()), m.group(3))
+            for m in re.finditer(pattern, text, re.S | re.M)]
 
 
 def functions(text):
@@ -68,8 +72,9 @@ def functions(text):
     pattern = r"((?:^///.*\n)+)^([\w]+ \w+\([^{;]*\)) \{"
     for match in re.finditer(pattern, text, re.M):
         comment = " ".join(line[3:].strip() for line in match.group(1).splitlines())
-        comment = re.sub(r"@param (\w+)\s+", r"*\1*: ", comment).replace("@returns ", "Returns ")
-        yield re.sub(r"\s+", " ", match.group(2)), comment
+        comment = re.sub(r"@param ([\w, ]+?)\s\s+|@param (\w+)\s+", lambda m: f"*{m.group(1) or m.group(2)}*: ", comment).replace("@returns ", "Returns ")
+        signature = re.sub(r"\s+", " ", match.group(2))
+        yield signature, comment
 
 
 def reference():
@@ -85,9 +90,17 @@ def reference():
     for file in sorted(LIB.glob("*.glsl")):
         if file.name in CORE_ONLY:
             continue
-        rows = [cells(f"`{signature}`", *since(comment)) for signature, comment in functions(file.read_text())]
-        if rows:
-            parts.append(f"### lib/{file.name}\n\n| function | meaning | since |\n|---|---|---|\n" + "\n".join(rows) + "\n")
+        text = file.read_text()
+        found = [(signature, comment) for signature, comment in functions(text)
+                 if file.name not in LISTED or signature.split("(")[0].split()[-1] in LISTED[file.name]]
+        rows = [cells(f"`{signature}`", *since(comment)) for signature, comment in found]
+        if not rows:
+            continue
+        parts.append(f"### lib/{file.name}\n\n| function | meaning | since |\n|---|---|---|\n" + "\n".join(rows) + "\n")
+        for name, comment, body in structs(text):
+            if not any(name in signature for signature, _ in found):
+                continue
+            parts.append(f"`{name}`: {comment}\n\n{table(members(body))}\n")
     return "\n".join(parts)
 
 

@@ -103,6 +103,10 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
         return;
     }
     if (!manifest.module.empty()) return;
+    if (std::ranges::find(manifest.rasters, name, &RasterSpec::name) != manifest.rasters.end())
+        fail(sampler.file, sampler.line,
+             fmt::format("{0}: a raster has no sampler; remove this line and read it by {0}(s)",
+                         sampler.name));
     const std::optional<std::string> near = nearest(name, names);
     fail(sampler.file, sampler.line,
          fmt::format("{}: {} has no texture {}{}", sampler.name, manifest.file.string(), name,

@@ -38,14 +38,15 @@ constexpr const char* kManifest = R"({
 constexpr const char* kGlsl = R"(//! provides  @ID@: a film of dust on flat ground
 //! hook      material
 //! reads     normal, vertical
-//! writes    diffuse, specular
+//! writes    diffuse, ambient, specular
 
 uniform float @ID@_amount = 0.5;                  //@ range(0, 1) label("Amount") description("Share of level ground that dust hides")
 uniform vec3 @ID@_tint = vec3(0.55, 0.45, 0.33);  //@ colour label("Colour")
 
 void @ID@_on_material(inout Surface s) {
     float cover = @ID@_amount * max(dot(s.normal, s.up), 0.0);
-    s.diffuse = mix(s.diffuse, @ID@_tint, cover);
+    s.diffuse = mix(s.diffuse, @ID@_tint, cover);  // for the sun ...
+    s.ambient = mix(s.ambient, @ID@_tint, cover);  // ... and for the light of the sky
     s.specular *= 1.0 - cover;
 }
 )";
@@ -54,7 +55,7 @@ constexpr const char* kNativeGlsl =
     R"(//! provides  @ID@: a film of dust on flat ground, thinner while the sun is high
 //! hook      material
 //! reads     normal, vertical, @ID@.now of @ID@.cpp
-//! writes    diffuse, specular
+//! writes    diffuse, ambient, specular
 
 uniform float @ID@_amount = 0.5;                  //@ range(0, 1) label("Amount") description("Share of level ground that dust hides at sunrise")
 uniform vec3 @ID@_tint = vec3(0.55, 0.45, 0.33);  //@ colour label("Colour")
@@ -62,7 +63,8 @@ uniform float @ID@_now = 0.0;                     //@ host
 
 void @ID@_on_material(inout Surface s) {
     float cover = @ID@_now * max(dot(s.normal, s.up), 0.0);
-    s.diffuse = mix(s.diffuse, @ID@_tint, cover);
+    s.diffuse = mix(s.diffuse, @ID@_tint, cover);  // for the sun ...
+    s.ambient = mix(s.ambient, @ID@_tint, cover);  // ... and for the light of the sky
     s.specular *= 1.0 - cover;
 }
 )";

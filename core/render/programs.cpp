@@ -126,8 +126,28 @@ class Stitcher {
         shader::Stitched stitched = shader::stitch(core_, recipe.recipe, input);
         for (shader::TextureUnit& unit : stitched.textures)
             for (const shader::CoreTexture& texture : shader::kCoreTextures)
-                if (unit.resource == texture.name) unit.resource = texture.resource;
+                if (unit.resource == texture.name) {
+                    check_ready(recipe.name, unit);
+                    unit.resource = texture.resource;
+                }
         return stitched;
+    }
+
+    /// Hooks of ground and sky come before the picture that they make.
+    void check_ready(std::string_view program, const shader::TextureUnit& unit) const {
+        if (unit.resource == "core.ground_depth") return;
+        const auto is = [&](std::string_view name) { return program.starts_with(name); };
+        if (!is("terrain") && !is("side") && !is("background") && !is("backdrop")) return;
+        for (const shader::Snippet* snippet : input_.snippets)
+            for (const shader::Sampler& sampler : snippet->source.samplers)
+                if (sampler.name == unit.name)
+                    throw shader::AuthorError(
+                        snippet->id,
+                        fmt::format(
+                            "shader: {}:{}: {}: hooks of the ground and the sky cannot read "
+                            "{}, which they make; read it in image, finish, overlay or a "
+                            "pass",
+                            sampler.file, sampler.line, sampler.name, unit.resource));
     }
 
     static const ProgramRecipe& geometry_of(const CoreFrame& frame) {

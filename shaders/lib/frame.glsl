@@ -15,8 +15,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 polar_axis;          // xyz: unit vector along the Earth's axis, northwards
     vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, geometric; w: its elevation [rad]
     vec4 sun_apparent;        // xyz: the same with refraction; w: apparent elevation [rad]
-    vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM, a
-                              // refraction; the others are 0
+    vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM,
+                              // with refraction; the others are 0
     vec4 sun_light_domain;    // of sun_light_table; x: where it begins, y: entries of it a unit, on the scale of
                               // sun_light_scale()
     vec4 sky_irradiance;      // rgb: on level ground from the whole sky

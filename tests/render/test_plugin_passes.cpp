@@ -130,6 +130,20 @@ TEST(PluginPass, NormalAndVisibleSunOfTheGroundAreThereAfterShading) {
     }
 }
 
+TEST(PluginPass, HooksOfTheGroundCannotReadWhatTheyMake) {
+    const effect::Effect effect = written("probe", "{}",
+                                          "uniform sampler2D probe_scene; //@ from(core.radiance)\n"
+                                          "void probe_on_lit(in Surface s, inout vec3 radiance) {\n"
+                                          "    radiance += texture(probe_scene, vec2(0.5)).rgb;\n"
+                                          "}\n");
+    EXPECT_THAT(test::error_of([&] { test::Drawn(bundled(), {}, 64, 48, 0, {effect}); }),
+                testing::AllOf(
+                    HasSubstr("probe.glsl:1: probe_scene: hooks of the ground and the sky cannot "
+                              "read core.radiance, which they make; read it in image, finish, "
+                              "overlay or a pass"),
+                    HasSubstr("--disable probe goes on without it")));
+}
+
 TEST(PluginPass, RunsWhenWhatItDependsOnHasChanged) {
     const auto stored = [](const std::string& id, const std::string& when) {
         return written(id,
