@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -176,10 +177,9 @@ class LineReader {
             return;
         }
         if (OGR_G_HasCurveGeometry(geometry, 1)) {
-            const OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, nullptr);
-            collect(linear);
-            OGR_G_DestroyGeometry(linear);
-            return;
+            const std::unique_ptr<void, decltype(&OGR_G_DestroyGeometry)> linear(
+                OGR_G_GetLinearGeometry(geometry, 0, nullptr), &OGR_G_DestroyGeometry);
+            return collect(linear.get());
         }
         const int inner = OGR_G_GetGeometryCount(geometry);
         for (int i = 0; i < inner; ++i)
@@ -209,10 +209,11 @@ class LineReader {
         for (const std::vector<glm::dvec2>& part : parts_)
             for (PlacedLine& line : over.placed(part)) {
                 added_ += line.posts.size();
-                if (added_ > 2 * kMostLineVertices) {
-                    vertices_ = added_;
-                    check_count();
-                }
+                if (added_ > kMostPlacedVertices)
+                    fail(
+                        fmt::format("on this DEM its lines need more than {} vertices; cut it "
+                                    "with ogr2ogr -spat",
+                                    kMostPlacedVertices));
                 line.value = value_;
                 line.number = number_;
                 lines_.push_back(std::move(line));

@@ -13,6 +13,8 @@ namespace relevo::dem {
 
 /// More vertices than these are refused.
 inline constexpr std::size_t kMostLineVertices = 2'000'000;
+/// With those that lines need where they bend on the grid.
+inline constexpr std::size_t kMostPlacedVertices = 2 * kMostLineVertices;
 
 /// A line of a vector file over a DEM.
 struct PlacedLine {

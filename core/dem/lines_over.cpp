@@ -72,6 +72,7 @@ void LinesOver::add_between(PlacedLine& line, const Vertex& a, const Vertex& b, 
                             double to_m, int depth) const {
     const double length = distance(a.post, b.post);
     if (depth == kMostHalvings || length < kStraightPosts || !may_cross(a.post, b.post)) return;
+    if (line.posts.size() > kMostPlacedVertices) return;  // too many: who reads the file refuses it
     const glm::dvec2 middle = 0.5 * (a.at + b.at);
     const Vertex between = vertex(middle, crs_.to_geodetic(middle.x, middle.y), a.post);
     if (!is_finite(between.post)) return;

@@ -307,7 +307,7 @@ void check_hooks(const Effect& effect) {
     if (!any && effect.manifest.module.empty() && effect.manifest.marks.empty() &&
         effect.manifest.instances.empty())
         bad_input(
-            fmt::format("{}: {}: no hook, module or marks, so it does nothing; define a "
+            fmt::format("{}: {}: no hook, module, marks or instances, so it does nothing; define a "
                         "function such as {}_on_albedo",
                         kWho, effect.manifest.file.string(), effect.id()));
 }

@@ -6,9 +6,9 @@ namespace relevo::effect {
 namespace {
 
 constexpr std::size_t kMaxLevels = 8, kMaxKinds = 8;
-constexpr double kMinSpacing_m = 0.05, kMaxSpacing_m = 1e5;
+constexpr double kMinSpacing_m = 0.5, kMaxSpacing_m = 1e5;
 constexpr double kMinHeight_m = 0.01, kMaxHeight_m = 1e4;
-constexpr double kMax_px = 1e4;
+constexpr double kMax_px = 1e4, kMaxSprite_px = 200;  // devices draw points of 255 pixels
 
 /// @param before   levels before this one
 /// @param most_px  limit of below_px
@@ -31,6 +31,10 @@ shader::InstanceSet::Level level_of(json::ObjectReader object, const shader::Ins
                     fmt::format("expected a mesh of each kind, 1 to {} at every level, or none at "
                                 "the last level, for sprites",
                                 kMaxKinds));
+    if (level.is_sprite() && level.below_px > kMaxSprite_px)
+        object.fail(object.line_of("below_px"), "below_px",
+                    fmt::format("expected at most {} for sprites but got {}", kMaxSprite_px,
+                                level.below_px));
     object.finish();
     return level;
 }

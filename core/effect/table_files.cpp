@@ -1,10 +1,12 @@
 #include "effect/table_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,7 +24,10 @@ constexpr int kMaxCubeSide = 128;
 class Lines {
   public:
     explicit Lines(const std::filesystem::path& file)
-        : file_(file.string()), text_(read_text(file, "plugin")) {}
+        : file_(file.string()), text_(read_text(file, "plugin")) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (text_.starts_with(kByteOrderMark)) text_.erase(0, kByteOrderMark.size());
+    }
 
     /// Moves to the next line that has words and is no comment. @returns false at the end
     bool next() {
@@ -33,8 +38,10 @@ class Lines {
             ++number_;
             words_.clear();
             std::size_t first = 0;
-            while ((first = line.find_first_not_of(kParts, first)) != line.npos) {
-                const std::size_t last = std::min(line.find_first_of(kParts, first), line.size());
+            // Between semicolons a comma is part of a number, which then is none.
+            const std::string_view parts = line.find(';') == line.npos ? ", \t\r" : "; \t\r";
+            while ((first = line.find_first_not_of(parts, first)) != line.npos) {
+                const std::size_t last = std::min(line.find_first_of(parts, first), line.size());
                 words_.push_back(line.substr(first, last - first));
                 first = last;
             }
@@ -57,7 +64,6 @@ class Lines {
     }
 
   private:
-    static constexpr std::string_view kParts = ",; \t\r";
     std::string file_, text_;
     std::size_t at_ = 0;
     int number_ = 0;
@@ -81,10 +87,15 @@ bool take_head(const Lines& lines, int& side) {
     if (words[0] == "TITLE") return true;
     if (words[0] == "LUT_3D_SIZE") {
         const float given = words.size() == 2 ? lines.number(words[1]) : 0;
-        side = static_cast<int>(given);
-        if (!(given >= 2 && given <= kMaxCubeSide) || static_cast<float>(side) != given)
+        if (!(given >= 2 && given <= kMaxCubeSide) || std::floor(given) != given)
             lines.fail(
                 fmt::format("expected LUT_3D_SIZE and a whole number from 2 to {}", kMaxCubeSide));
+        side = static_cast<int>(given);
+        return true;
+    }
+    if (words[0] == "LUT_3D_INPUT_RANGE") {  // of some programs, for the domain
+        if (words.size() != 3 || lines.number(words[1]) != 0.0F || lines.number(words[2]) != 1.0F)
+            lines.fail("expected a domain from 0 to 1");
         return true;
     }
     const bool least = words[0] == "DOMAIN_MIN";
@@ -105,11 +116,14 @@ image::TextureData read_table(const std::filesystem::path& file) {
     std::vector<float> values;
     std::size_t columns = 0;
     int rows = 0;
+    bool has_heading = false;  // or the first line has been numbers
     while (lines.next()) {
-        if (columns == 0 && rows == 0 && !parse_number(lines.words()[0])) {
-            columns = lines.words().size();  // the heading
+        const auto is_number = [](std::string_view word) {
+            return std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos;
+        };
+        if (columns == 0 && !std::exchange(has_heading, true) &&
+            std::ranges::none_of(lines.words(), is_number))
             continue;
-        }
         if (columns == 0) columns = lines.words().size();
         if (lines.words().size() != columns)
             lines.fail(fmt::format("expected {} numbers as before but got {}", columns,
@@ -141,7 +155,8 @@ image::TextureData read_cube(const std::filesystem::path& file) {
             lines.fail(fmt::format("expected {} colours but there are more", wanted() / 4));
         add_colour(values, lines.number(words[0]), lines.number(words[1]), lines.number(words[2]));
     }
-    if (side == 0 || values.size() != wanted())
+    if (side == 0) lines.fail("expected LUT_3D_SIZE and colours");
+    if (values.size() != wanted())
         lines.fail(fmt::format("expected {} colours but got {}", wanted() / 4, values.size() / 4));
     return texture_of(PixelFormat::RGBA32F, {side, side, side}, values);
 }

@@ -183,10 +183,11 @@ class GltfReader {
             vertex.colour = colours ? base * colours->vector(i) : base;
             mesh_.vertices.push_back(vertex);
         }
-        add_indices(primitive, first, count);
+        add_indices(primitive, first, count, glm::determinant(glm::mat3(matrix)) < 0);
     }
 
-    void add_indices(const Value& primitive, std::size_t first, std::size_t count) {
+    /// @param mirrored  the node turns triangles over
+    void add_indices(const Value& primitive, std::size_t first, std::size_t count, bool mirrored) {
         std::optional<Accessor> indices;
         if (find(primitive, "indices")) {
             indices = accessor(whole(primitive, "indices", 0), "indices");
@@ -198,7 +199,8 @@ class GltfReader {
             fail(file_, fmt::format("indices: expected three for each of at most {} triangles but "
                                     "got {}",
                                     kMaxTriangles, corners));
-        for (std::size_t i = 0; i < corners; ++i) {
+        for (std::size_t corner = 0; corner < corners; ++corner) {
+            const std::size_t i = mirrored ? corner / 3 * 3 + 2 - corner % 3 : corner;
             const auto index = indices ? static_cast<std::size_t>(indices->at(i, 0)) : i;
             if (index >= count)
                 fail(file_,

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/paths.h"
 #include "base/text.h"
 #include "mesh/builder.h"
 
@@ -66,16 +65,14 @@ std::string from_base64(const std::filesystem::path& file, std::string_view text
 }
 
 std::string load(const std::filesystem::path& file, const std::string& uri) {
-    if (uri.starts_with("data:")) {
-        const std::size_t comma = uri.find(";base64,");
-        if (comma == uri.npos) fail(file, "buffers: expected base64 in its data URI");
-        return from_base64(file, std::string_view(uri).substr(comma + 8));
-    }
-    const std::filesystem::path path(uri);
-    if (path.is_absolute() || !file_inside(file.parent_path(), path))
-        fail(file, fmt::format("buffers: expected a file of its own folder but got \"{}\"",
-                               printable(uri)));
-    return read_text(file.parent_path() / path, "mesh");
+    if (!uri.starts_with("data:"))
+        fail(file,
+             fmt::format("buffers: expected them in the file itself but got \"{}\"; save it as "
+                         ".glb, or embed them",
+                         printable(uri)));
+    const std::size_t comma = uri.find(";base64,");
+    if (comma == uri.npos) fail(file, "buffers: expected base64 in its data URI");
+    return from_base64(file, std::string_view(uri).substr(comma + 8));
 }
 
 }  // namespace

@@ -66,10 +66,13 @@ Mesh finished(const std::filesystem::path& file, Mesh mesh, bool has_normals) {
     if (!(longest_m > 0 && longest_m <= kMaxSide_m))
         fail(file,
              fmt::format("expected a size of up to {} m but got {:g} m", kMaxSide_m, longest_m));
+    if (mesh.low_m().z < 0 && mesh.high_m().z <= 0)
+        fail(file, "expected vertices above y = 0, where the mesh stands on the ground");
     if (!has_normals) compute_normals(mesh);
     for (Vertex& vertex : mesh.vertices) {
         const float length = glm::length(vertex.normal);
-        vertex.normal = length > 0 ? vertex.normal / length : glm::vec3(0, 0, 1);
+        vertex.normal =
+            length > 0 && std::isfinite(length) ? vertex.normal / length : glm::vec3(0, 0, 1);
     }
     return mesh;
 }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/log.h"
 #include "render/tile_grid.h"
 
 namespace relevo::render {
@@ -17,6 +20,8 @@ namespace {
 /// has outside of the view is drawn for nothing, and each block costs a draw.
 constexpr double kFewCells = 25;
 constexpr double kSmall = 0.25;  // diagonal, as a share of the distance
+/// Sites of a frame, of which some 400000 are within the range on any other DEM.
+constexpr double kMostCellsInAll = 4e6;
 
 class Finder {
   public:
@@ -62,6 +67,8 @@ class Finder {
     }
 
     void emit(const glm::dvec2& low, const glm::dvec2& high, double nearest_m, double farthest_m) {
+        const glm::dvec2 all = (high - low) * view_.cells_per_post;
+        if ((cells_ += all.x * all.y) > kMostCellsInAll) return report_crowded();
         // As in the program, whose numbers are floats.
         const glm::dvec2 first = floor(low * view_.cells_per_post);
         const glm::ivec2 count(floor(high * view_.cells_per_post) - first + 1.0);
@@ -77,6 +84,16 @@ class Finder {
         blocks_.push_back(block);
     }
 
+    /// Once: at a pole of a DEM in degrees, where cells are narrow.
+    void report_crowded() const {
+        static std::once_flag once;
+        std::call_once(once, [&] {
+            log::warning(fmt::format("{}: more than {:.0f} sites near the eye; some are omitted",
+                                     set_.resource, kMostCellsInAll));
+        });
+    }
+
+    double cells_ = 0;
     const shader::InstanceSet& set_;
     Terrain& terrain_;
     const InstanceView& view_;

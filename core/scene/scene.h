@@ -29,10 +29,10 @@ struct Effects {
     std::vector<std::string> plugin_path;  ///< folders of further plugins
 };
 
-/// A raster that lies on the ground: figures in colours of a ramp, or an image in its own.
 /// A week: a 32-bit float still has steps of 1/16 s there.
 inline constexpr double kMaxSeconds = 604800;
 
+/// A raster that lies on the ground: figures in colours of a ramp, or an image in its own.
 struct Overlay {
     std::string file;     ///< a name that GDAL opens
     int band = 1;         ///< from 1; of an image: 1 draws the image, others their band

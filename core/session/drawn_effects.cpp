@@ -131,6 +131,14 @@ bool DrawnEffects::has_modules() const {
         halves(), [](const Half& half) { return !half.effects.loaded.modules.empty(); });
 }
 
+bool DrawnEffects::has_lines() const {
+    return std::ranges::any_of(halves(), [](const Half& half) {
+        return std::ranges::any_of(
+            half.effects.loaded.selection.effects,
+            [](const effect::Effect* effect) { return !effect->manifest.lines.empty(); });
+    });
+}
+
 bool DrawnEffects::is_watched() const {
     return renderer_->is_watched() || (without_ && without_->is_watched());
 }

@@ -63,6 +63,7 @@ class DrawnEffects {
                 const render::FrameInputs& inputs, render::PassTimes* times = nullptr);
     /// Whether native modules draw. They may fail at their first frame.
     bool has_modules() const;
+    bool has_lines() const;  ///< whether an effect reads a file of lines
     /// As render::Renderer, for both halves.
     bool is_watched() const;
     void release_targets();

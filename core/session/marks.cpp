@@ -15,7 +15,7 @@
 namespace relevo::session {
 namespace {
 
-constexpr std::size_t kMostKept = 4;
+constexpr std::size_t kMostKept = 16;
 
 /// Ranks of places, those without one last.
 std::vector<double> ranks_of(const std::vector<dem::NamedPlace>& places, const std::string& who,
@@ -129,10 +129,12 @@ std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> pla
 std::shared_ptr<const StandingMarks> MarksOnGround::of(
     const std::shared_ptr<const MarkPlaces>& places, const std::shared_ptr<const LoadedDem>& dem,
     const geo::LocalFrame& frame, double exaggeration) {
-    for (const Entry& known : known_)
-        if (known.standing->places == places && known.dem == dem &&
-            known.exaggeration == exaggeration)
-            return known.standing;
+    for (auto known = known_.begin(); known != known_.end(); ++known)
+        if (known->standing->places == places && known->dem == dem &&
+            known->exaggeration == exaggeration) {
+            std::rotate(known, known + 1, known_.end());  // the last is the most recent
+            return known_.back().standing;
+        }
     if (known_.size() >= kMostKept) known_.erase(known_.begin());
     known_.push_back({dem, exaggeration, stand(places, *dem, frame, exaggeration)});
     return known_.back().standing;

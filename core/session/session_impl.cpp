@@ -151,8 +151,9 @@ void Session::Impl::switch_effects(const EffectsRequest& wanted) {
     fresh.fit(context->info());
     lay_rasters(fresh);
     compile(fresh);
-    // Drivers may reject a program at its first draw, and modules fail at their first frame.
-    if (fresh.is_watched() || fresh.has_modules())
+    // Drivers may reject a program at its first draw. Modules, and files of lines, which are read
+    // for the grid, fail at their first frame.
+    if (fresh.is_watched() || fresh.has_modules() || fresh.has_lines())
         fresh.render(*terrain, state.ground(), state.inputs);
     recent.keep(std::exchange(*drawn, std::move(fresh)));
     shared.targets.trim();  // sets of targets differ between effects
@@ -198,6 +199,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
 
 void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
     const auto began = Clock::now();
+    if (state.dem() != dem) rasters = {};
     terrain.reset();  // refers to the previous DEM
     state.take_dem(dem);
     terrain.emplace(dem->to_draw(), state.ground().frame,
@@ -216,7 +218,6 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
         overlay_raster = overlay->raster;
     }
     terrain->set_overlay(overlay_raster);
-    rasters = {};  // of the previous DEM
     lay_rasters(*drawn);
     stages.emplace_back("upload", milliseconds_since(began));
     state.take_shape(/*other=*/true);

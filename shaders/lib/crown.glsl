@@ -21,5 +21,5 @@ float crown_area_m2(in Crown crown, in float cosine) {
 /// Share of the ground that no crown hides from a direction, 0..1.
 /// @param filled  area that crowns hide, crown_area_m2() of each, over the ground's area
 float crown_gap(in float filled) {
-    return pow(1.0 - min(filled, kCrownOrder) / kCrownOrder, kCrownOrder);
+    return pow(max(1.0 - filled / kCrownOrder, 0.0), kCrownOrder);
 }

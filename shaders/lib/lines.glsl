@@ -222,7 +222,8 @@ LineHit lines_search(in sampler2D lines, in LinesPlace place, in LinesPixel pixe
     float longest_m = sqrt(dot(pixel.step_m[0], pixel.step_m[0]) + dot(pixel.step_m[1], pixel.step_m[1]));
     int level = lines_level_of(longest_m, pixel.horizon, reach_px, reach_m, lines_texel(lines, 0).z);
     int node = lines_node(lines, place, level);
-    if (node == 0) return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
+    if (node == 0 || lines_texel(lines, node).x < 1.0)
+        return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
     return lines_in_node(lines, node, place, pixel);
 }
 

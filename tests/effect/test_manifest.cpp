@@ -476,9 +476,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"Glsl", "", "\nvoid haze_on_albedo(Surface s) {}",
                  "shader: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
                  "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
-        Mismatch{"DoesNothing", "", "float haze_f() { return 1.0; }",
-                 "plugin: plugins/haze/plugin.json: no hook, module or marks, so it does "
-                 "nothing; define a function such as haze_on_albedo"},
+        Mismatch{
+            "DoesNothing", "", "float haze_f() { return 1.0; }",
+            "plugin: plugins/haze/plugin.json: no hook, module, marks or instances, so it does "
+            "nothing; define a function such as haze_on_albedo"},
         Mismatch{"NotWanted", R"("wants": ["shadow"])",
                  "void haze_on_albedo(inout Surface s) {\n#if HAS_sky\n#endif\n}",
                  "plugin: plugins/haze/haze.glsl:2: HAS_sky: plugins/haze/plugin.json does "
@@ -542,7 +543,7 @@ INSTANTIATE_TEST_SUITE_P(
             "InstancesTooClose",
             R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})", kHook,
             "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
-            "[0.05, 100000] but got 1e-09"},
+            "[0.5, 100000] but got 1e-09"},
         Mismatch{"InstancesOfAMeshOutside",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["../oak.obj"]}]}})",

@@ -50,6 +50,19 @@ TEST_F(TableFiles, NumbersAreTexelsLineByLine) {
     }
 }
 
+TEST_F(TableFiles, TheFirstLineIsAHeadingOnlyWithoutNumbers) {
+    EXPECT_EQ(read_table(write("t.csv",
+                               "\xEF\xBB\xBF"
+                               "0,1\n2,3\n"))
+                  .height(),
+              2);
+    EXPECT_EQ(read_table(write("t.csv", "slope deg,factor\n0,1\n2,3\n")).width(), 2);
+    EXPECT_EQ(error_of_table("nan,1\n2,3\n"),
+              "exit 3: plugin: t.csv:1: expected a number but got \"nan\"");
+    EXPECT_EQ(error_of_table("1,5;2,5\n"),
+              "exit 3: plugin: t.csv:1: expected a number but got \"1,5\"");
+}
+
 TEST_F(TableFiles, WithoutAFileThereIsOneTexel) {
     EXPECT_THAT(values(read_table("")), ElementsAre(0));
     EXPECT_EQ(read_cube("").width(), 1);
@@ -109,7 +122,8 @@ TEST_F(TableFiles, MistakesInACubeNameTheirLine) {
               "exit 3: plugin: t.cube:2: expected 8 colours but got 1");
     EXPECT_EQ(error_of_cube(exchanged() + "0 0 0\n"),
               "exit 3: plugin: t.cube:15: expected 8 colours but there are more");
-    EXPECT_THAT(error_of_cube(""), HasSubstr("expected 0 colours but got 0"));
+    EXPECT_THAT(error_of_cube(""), HasSubstr("expected LUT_3D_SIZE and colours"));
+    EXPECT_THAT(error_of_cube("LUT_3D_SIZE 1e30\n"), HasSubstr("a whole number from 2 to 128"));
 }
 
 TEST_F(TableFiles, APluginHasThemByFileOrByText) {

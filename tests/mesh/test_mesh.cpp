@@ -91,18 +91,26 @@ TEST(Gltf, BinaryFilesNodesAndMaterialsAreRead) {
     EXPECT_NEAR(glm::length(mesh.vertices[0].normal), 1, 1e-6);
 }
 
-TEST(Gltf, BuffersOfFilesAndOfDataUrisAreRead) {
-    const std::filesystem::path folder = test::scratch_dir("gltf");
-    std::ofstream(folder / "a.bin", std::ios::binary) << triangle_buffer();
-    std::ofstream(folder / "a.gltf") << gltf_json(R"({"byteLength": 40, "uri": "a.bin"})");
-    const Mesh from_file = read(folder / "a.gltf");
+TEST(Gltf, BuffersOfDataUrisAreRead) {
     const Mesh from_uri = parse_gltf(
         "b.gltf", gltf_json(R"({"byteLength": 40, "uri": "data:application/octet-stream;base64,)"
                             "AAAAAAAAAAAAAAAAAAAAAAAAAEAAAAAAAACAPwAAAAAAAAAAAAECAA==\"}"));
-    ASSERT_EQ(from_file.vertices.size(), 3U);
+    const Mesh from_chunk =
+        parse_gltf("a.glb", glb(gltf_json(R"({"byteLength": 40})"), triangle_buffer()));
     ASSERT_EQ(from_uri.vertices.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i)
-        expect_near(from_uri.vertices[i].position_m, from_file.vertices[i].position_m);
+        expect_near(from_uri.vertices[i].position_m, from_chunk.vertices[i].position_m);
+}
+
+TEST(Gltf, AMirroredNodeKeepsItsOutside) {
+    const auto with = [](const char* scale) {
+        return parse_gltf("a.glb",
+                          glb(gltf_json(R"({"byteLength": 40})", scale), triangle_buffer()));
+    };
+    const Mesh plain = with(R"({"mesh": 0})"),
+               mirrored = with(R"({"mesh": 0, "scale": [-1, 1, 1]})");
+    EXPECT_EQ(plain.indices, (std::vector<std::uint16_t>{0, 1, 2}));
+    EXPECT_EQ(mirrored.indices, (std::vector<std::uint16_t>{2, 1, 0}));
 }
 
 struct Fault {
@@ -187,7 +195,9 @@ INSTANTIATE_TEST_SUITE_P(
               "mesh: a.glb: expected no required extension but got "
               "\"KHR_draco_mesh_compression\""},
         Fault{"outside", "a.gltf", gltf_json(R"({"byteLength": 40, "uri": "../a.bin"})"),
-              "mesh: a.gltf: buffers: expected a file of its own folder but got \"../a.bin\""},
+              "mesh: a.gltf: buffers: expected them in the file itself but got \"../a.bin\"; save "
+              "it as .glb, or "
+              "embed them"},
         Fault{"net", "a.gltf", gltf_json(R"({"byteLength": 40, "uri": "data:text/plain,abc"})"),
               "mesh: a.gltf: buffers: expected base64 in its data URI"}),
     [](const auto& fault) { return fault.param.name; });

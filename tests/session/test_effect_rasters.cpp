@@ -91,6 +91,20 @@ TEST_F(EffectRasters, AMistakeLeavesThePictureAsItWas) {
     EXPECT_NEAR(middle(), 50, 1);
 }
 
+TEST_F(EffectRasters, AMistakeInAFileOfLinesLeavesThePictureAsItWas) {
+    scene::Scene scene = from_above("tracks");
+    const std::string lines = (test::source_dir() / "tests/data/lines/jacksboro.geojson").string();
+    scene.effects.settings = {{"tracks.file", lines}};
+    Session& session = open(scene);
+    const image::Image8 before = session.picture();
+    scene::Effects other = scene.effects;
+    other.settings = {{"tracks.file", "/nowhere/walk.gpx"}};
+    EXPECT_THAT(test::error_of([&] { session.set_effects(other); }),
+                testing::HasSubstr("/nowhere/walk.gpx"));
+    session.draw();
+    EXPECT_EQ(session.picture().values, before.values);
+}
+
 TEST_F(EffectRasters, FilesThatLieAreErrorsWithTheirName) {
     const auto written = [](const std::string& name, const std::string& text) {
         std::ofstream(test::folder() / name) << text;
