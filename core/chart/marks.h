@@ -20,7 +20,7 @@ struct MarkStyle {
     Color color{0x202020};
     Color halo{0xffffff, 0.85};
     Symbol symbol = Symbol::Dot;
-    double leader = 0;       ///< least length of a line from the point up to its name; 0: beside it
+    double leader = 0;       ///< least length of the line up to the name; 0: none
     double distance = 4;     ///< least distance of a name or symbol from those of other marks
     std::size_t most = 200;  ///< marks of the list that are placed at most
 

@@ -66,6 +66,24 @@ void check_core_sampler(const shader::Sampler& sampler) {
                          sampler.resource, sampler.type));
 }
 
+/// What a sampler of the plugin's own reads.
+struct Readable {
+    std::string name;
+    std::string_view what, type;  ///< "texture", "sampler2D"
+    int line;                     ///< in plugin.json
+};
+
+std::vector<Readable> readables(const Manifest& manifest) {
+    std::vector<Readable> all;
+    for (const TextureSpec& texture : manifest.textures)
+        all.push_back({texture.name, "texture", sampler_of(texture.kind), texture.line});
+    for (const LinesSpec& lines : manifest.lines)
+        all.push_back({lines.name, "lines", "sampler2D", lines.line});
+    for (const shader::PluginPass& pass : manifest.passes)
+        all.push_back({pass.name, "pass", "sampler2D", pass.line});
+    return all;
+}
+
 void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
     const Manifest& manifest = effect.manifest;
     if (sampler.file == manifest.file) return;  // core's, of a raster
@@ -74,32 +92,14 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
     if (sampler.resource.substr(0, prefix.size()) != prefix) return;  // another plugin's
     const std::string name = sampler.resource.substr(prefix.size());
     std::vector<std::string> names;
-    for (const TextureSpec& texture : manifest.textures) {
-        names.push_back(texture.name);
-        if (texture.name != name) continue;
-        if (sampler.type != sampler_of(texture.kind))
+    for (const Readable& readable : readables(manifest)) {
+        names.push_back(readable.name);
+        if (readable.name != name) continue;
+        if (sampler.type != readable.type)
             fail(sampler.file, sampler.line,
-                 fmt::format("{}: expected a {} for the texture {} of {}:{} but got a {}",
-                             sampler.name, sampler_of(texture.kind), name, manifest.file.string(),
-                             texture.line, sampler.type));
-        return;
-    }
-    for (const LinesSpec& lines : manifest.lines) {
-        names.push_back(lines.name);
-        if (lines.name != name) continue;
-        if (sampler.type != "sampler2D")
-            fail(sampler.file, sampler.line,
-                 fmt::format("{}: expected a sampler2D for the lines {} of {}:{} but got a {}",
-                             sampler.name, name, manifest.file.string(), lines.line, sampler.type));
-        return;
-    }
-    for (const shader::PluginPass& pass : manifest.passes) {
-        names.push_back(pass.name);
-        if (pass.name != name) continue;
-        if (sampler.type != "sampler2D")
-            fail(sampler.file, sampler.line,
-                 fmt::format("{}: expected a sampler2D for the pass {} of {}:{} but got a {}",
-                             sampler.name, name, manifest.file.string(), pass.line, sampler.type));
+                 fmt::format("{}: expected a {} for the {} {} of {}:{} but got a {}", sampler.name,
+                             readable.type, readable.what, name, manifest.file.string(),
+                             readable.line, sampler.type));
         return;
     }
     if (!manifest.module.empty()) return;

@@ -41,7 +41,8 @@ struct Mesh {
 ///     its format, that has numbers that are not finite, or more than kMaxVertices or kMaxTriangles
 Mesh read(const std::filesystem::path& file);
 
-/// The formats, for tests. @param file  its name for messages; a glTF's buffers are beside it
+/// Read a format from memory, as read() does.
+/// @param file  its name for messages
 Mesh parse_obj(const std::filesystem::path& file, std::string_view text);
 Mesh parse_gltf(const std::filesystem::path& file, std::string_view bytes);
 

@@ -39,6 +39,22 @@ shader::ParamStore InstalledEffects::defaults() const {
     return store;
 }
 
+std::vector<InstalledEffects::ChosenFile> InstalledEffects::chosen_files(
+    const shader::ParamStore& set) const {
+    std::vector<ChosenFile> files;
+    for (const shader::TextParam* text : set.texts())
+        if (const std::string file = set.text(text->address); text->is_file && !file.empty())
+            files.push_back({text->address, file});
+    for (const effect::Effect& effect : registry.effects())
+        for (const effect::RasterSpec& raster : effect.manifest.rasters) {
+            if (raster.colours.empty()) continue;
+            if (const std::string colours = set.text(raster.colours);
+                scene::is_colour_file(colours))
+                files.push_back({raster.colours, colours});
+        }
+    return files;
+}
+
 void ActiveEffects::fit(const gl::DeviceInfo& device, bool report) {
     const std::size_t unusable = loaded.unusable.size();
     loaded = effect::select_and_load(
@@ -134,9 +150,8 @@ void ActiveEffects::visit_files(
         for (const std::filesystem::path& mesh : effect::mesh_files(manifest))
             visit(mesh, what);
     }
-    for (const shader::TextParam* text : values.texts())
-        if (const std::string file = values.text(text->address); text->is_file && !file.empty())
-            visit(file, fmt::format("the file {},", text->address));
+    for (const ChosenFile& chosen : chosen_files(values))
+        visit(chosen.file, fmt::format("the file {},", chosen.address));
     for (const effect::NativeModule& module : loaded.modules)
         visit(module.library(), fmt::format("the module of the plugin {},", module.id()));
 }

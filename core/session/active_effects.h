@@ -28,6 +28,14 @@ struct InstalledEffects {
 
     /// All parameters with their default values.
     shader::ParamStore defaults() const;
+
+    /// A file that a text names.
+    struct ChosenFile {
+        std::string address;  ///< "drape.file"
+        std::filesystem::path file;
+    };
+    /// Files that the texts of `set` name: those of kind `file`, and colour files of rasters.
+    std::vector<ChosenFile> chosen_files(const shader::ParamStore& set) const;
 };
 
 /// Installed effects, those of them that are switched on, their loaded files, and a scene's

@@ -122,9 +122,8 @@ const SceneInputs::OfEffects& SceneInputs::of(const scene::Effects& effects) {
         fresh->plugins.emplace_back(effect->id(), files_of(*effect));
     for (const effect::Preset& preset : plugins->presets)
         fresh->presets.emplace_back(preset.file);
-    for (const shader::TextParam* text : values.texts())
-        if (const std::string file = values.text(text->address); text->is_file && !file.empty())
-            fresh->values.emplace_back(file);
+    for (const InstalledEffects::ChosenFile& chosen : plugins->chosen_files(values))
+        fresh->values.push_back(chosen.file);
     known = std::move(fresh);
     return *known;
 }

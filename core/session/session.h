@@ -148,7 +148,7 @@ class Session {
     /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
     /// sun is dragged. Lighting by core is always current.
     void freeze_native(bool freeze);
-    /// True if what is drawn changes with set_seconds().
+    /// True if an active effect reads frame.seconds.
     bool is_animated() const;
     /// Sets the moment of effects that move, for subsequent frames.
     void set_seconds(double seconds);

@@ -96,7 +96,7 @@ float snowfall_flake(in int layer, in vec3 direction, in float pixel_rad) {
     float away_px = length(beside - at * path);
     float radius_px = (0.4 + 0.6 * random.w / max(0.7 * snowfall_flakes, 1e-3)) * 1e-3 * snowfall_radius_mm / (along_m * pixel_rad);
     float drawn_px = max(radius_px, 0.7);
-    // The light of a flake that is smaller than a pixel or moves is spread over what is drawn.
+    // Small or moving flakes are drawn larger than they are, and fainter: their light stays the same.
     float area = radius_px * radius_px / (drawn_px * drawn_px) * 2.0 * drawn_px / (2.0 * drawn_px + path_px);
     // Flakes come and go where the next layer begins.
     float far = abs(along_m / distance_m - 1.0) * snowfall_cells;

@@ -38,7 +38,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 footprint_area;      // of the texture floor_ground; xy: its south-west corner, zw: 1/its sides, in the local frame
     vec4 climate_place;       // lib/climate.glsl: factor and constant from longitudes off the DEM's centre, and from
                               // latitudes [rad], to the table's coordinates
-    vec4 climate_height;      // xy: likewise from heights [m], of the ground's half; zw: its first and last coordinate
+    vec4 climate_height;      // xy: factor and constant from heights [m] to the table, of the ground's half;
+                              // zw: its first and last coordinate
     vec4 posts;               // xy: columns and rows of the DEM, zw: their inverses
     vec4 light_grid;          // of render/ground_light.h: texels per post, x: of light_clearance, y: of light_sky; z: 0
                               // w: limit of clearances [m]

@@ -207,6 +207,15 @@ TEST_F(EffectRasters, AreInputsThatNoOutputReplaces) {
     open(draped(file));
     EXPECT_THAT(test::error_of([&] { files_.check_planned({file}, "--output"); }),
                 testing::HasSubstr("photo.tif"));
+    const std::string colours = (test::folder() / "colours.txt").string();
+    std::ofstream(colours) << "0 10 20 30\n40 200 100 50\n";
+    const std::string band =
+        write_over("band.tif", {.value = [](int column, int, int) { return double(column); }});
+    scene::Scene scene = draped(band);
+    scene.effects.settings.push_back({"drape.colours", colours});
+    open(scene);
+    EXPECT_THAT(test::error_of([&] { files_.check_planned({colours}, "--output"); }),
+                testing::HasSubstr("colours.txt"));
 }
 
 }  // namespace
