@@ -9,6 +9,7 @@ struct KeyPress;
 /// What keys and menus have the window do.
 enum class Command {
     Open,
+    HowToRead,  ///< CRS, unit and so on of the DEM
     NextFile,
     PreviousFile,
     ReadAgain,

@@ -146,6 +146,7 @@ void MainWindow::draw_panels() {
     }
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
+    import_sheet_.draw(size());
     status_line(state_, work_in_progress());
     message_box(state_, size(), unit());
     if (shows_keys_) key_sheet();

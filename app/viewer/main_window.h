@@ -4,12 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "session/trust.h"
 #include "viewer/charts_panel.h"
 #include "viewer/comparison.h"
 #include "viewer/discard.h"
+#include "viewer/file_kind.h"
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
 #include "viewer/history.h"
+#include "viewer/import_sheet.h"
 #include "viewer/mark_overlay.h"
 #include "viewer/messages.h"
 #include "viewer/open_dialog.h"
@@ -61,7 +64,6 @@ class MainWindow {
 
     // ---- the open scene and its images: main_window_scene.cpp
 
-    void open_requested_files();
     void reload_effects();
     void reload_dem();
     /// What the thread of a scene begins with.
@@ -93,6 +95,23 @@ class MainWindow {
     bool is_image_complete() const;
     /// The pose of a view that leaves room for the panels.
     Pose pose_in(const scene::View& view) const;
+
+    // ---- files: main_window_files.cpp; they throw Error (BadInput) for files that are wrong
+
+    void open_requested_files();
+    void open_files(const std::vector<std::string>& files);
+    void open_dem(const RecentDem& dem);
+    void open_scene(scene::Scene scene);
+    void open_file(FileKind kind, const std::string& path);
+    /// Opens a scene that a file names, without plugin folders and names on the net in it.
+    void open_named_scene(scene::Scene scene, const std::string& path, session::NamedBy by);
+    /// Switches on an effect that shows the places or lines of a file.
+    void show_features(FileKind kind, const std::string& path);
+    void lay_over(const std::string& path);
+    /// Stands where a photograph was taken, at its time, with its lens.
+    void stand_where_taken(const std::string& path);
+    /// After a DEM could not be opened: shows the sheet if options could help.
+    void ask_how_to_read();
 
     // ---- keys and commands: main_window_commands.cpp
 
@@ -133,6 +152,7 @@ class MainWindow {
     FramePacing pacing_;
     History history_;
     OpenDialog open_dialog_;
+    ImportSheet import_sheet_;
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;

@@ -50,6 +50,12 @@ bool MainWindow::run_program_command(Command command) {
         case Command::Open:
             open_dialog_.open(opening_->requested_file());
             return true;
+        case Command::HowToRead:
+            if (is_open()) {
+                const scene::Scene& scene = state_.document.scene;
+                import_sheet_.open({scene.dems, scene.dem, scene.holes}, "");
+            }
+            return true;
         case Command::NextFile:
             open_neighbour(1);
             return true;
@@ -124,6 +130,7 @@ void MainWindow::close_dialogs() {
     if (opening_->can_cancel()) return opening_->cancel();
     shows_keys_ = state_.measurement.follows_cursor = false;
     open_dialog_.close();
+    import_sheet_.close();
     closes_menus_ = true;
     state_.message.clear();
 }

@@ -26,30 +26,6 @@ bool same(const Wanted& a, const Wanted& b) {
 
 }  // namespace
 
-void MainWindow::open_requested_files() {
-    std::vector<std::string> files = window_->take_dropped_files();
-    if (std::vector<std::string> chosen = open_dialog_.take(); !chosen.empty())
-        files = std::move(chosen);
-    if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
-    const std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
-    if (recent) files = recent->files;
-    if (files.empty() || !is_open()) return;
-    // Options of the last DEM do not apply, except for the window's limit of memory.
-    scene::Scene scene = state_.document.scene;
-    const std::int64_t max_posts = scene.dem.max_posts;
-    scene.dems = std::move(files);
-    scene.view = {};
-    scene.overlay.reset();
-    scene.time.at.clear();
-    scene.time.date.clear();
-    scene.dem = recent ? recent->options : dem::LoadOptions();
-    scene.dem.max_posts = max_posts;
-    if (recent) scene.holes = recent->holes;
-    state_.message.clear();
-    opening_->open(std::move(scene), first_wanted());
-    pacing_.need_frames(3);
-}
-
 void MainWindow::reload_effects() {
     state_.set_effects(state_.document.scene.effects);
     state_.take_effects(/*is_step=*/false);
@@ -137,7 +113,7 @@ void MainWindow::poll_opening() {
             return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
             pacing_.need_frames(3);
-            return;
+            return ask_how_to_read();
     }
 }
 

@@ -72,6 +72,7 @@ void file_menu(State& state) {
     if (!ImGui::BeginMenu("File")) return;
     item(state, "Open...", "Ctrl+O", Command::Open);
     recent_files(state);
+    item(state, "How this DEM is read...", nullptr, Command::HowToRead);
     item(state, "Next DEM in the folder", "Ctrl+Page down", Command::NextFile);
     item(state, "Previous DEM in the folder", "Ctrl+Page up", Command::PreviousFile);
     item(state, "Reload effects", "F5", Command::ReadAgain);
