@@ -147,6 +147,7 @@ void MainWindow::draw_panels() {
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
     import_sheet_.draw(size());
+    find_sheet_.draw(size(), state_.effects.get());
     status_line(state_, work_in_progress());
     message_box(state_, size(), unit());
     if (shows_keys_) key_sheet();
@@ -187,6 +188,11 @@ void MainWindow::hand_over_scene() {
     if (state_.new_effects) thread.want_effects(*state_.new_effects);
     for (const auto& [address, value] : state_.new_values)
         thread.want_value(address, value);
+    if (const double now = state_.document.scene.exaggeration; now != wanted_exaggeration_) {
+        wanted_exaggeration_ = now;
+        thread.want_exaggeration(now);
+        stop_comparison();
+    }
     if (state_.step) {
         history_.add(state_.document);
         pacing_.need_frames(2);

@@ -211,7 +211,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 31> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 33> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -221,11 +221,13 @@ void key_sheet() {
         {"Arrows", "turn about the centre"},
         {"Page up, Page down", "zoom in, zoom out"},
         {"W A S D, Q E", "fly, down and up; faster with Shift"},
-        {"G", "walk at eye height, and fly again"},
+        {"G", "walk at the clicked point or in the middle, and fly again"},
+        {"Ctrl + F", "go to coordinates or a name"},
         {"Home, N, T", "whole DEM, north up, top view"},
         {"[ ]", "half an hour earlier, later; with Shift a day"},
         {"Space", "play and pause the time"},
         {"Click", "direct sun of the day at a point, its horizon and year"},
+        {"Right click", "stand there, look there, measure from there, copy its coordinates"},
         {"P", "horizon and year on and off"},
         {"M", "measure from the point to the cursor, until M or a click"},
         {"C", "compare: the left side stays, the right side follows; drag the line"},
@@ -235,7 +237,7 @@ void key_sheet() {
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "export the sun overlay as GeoTIFF"},
         {"Ctrl + J", "save the day's hours as a job"},
-        {"Ctrl + O", "open a DEM; files can be dropped too"},
+        {"Ctrl + O", "open a DEM, scene, photograph, track ...; files can be dropped too"},
         {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
         {"B, then 1 to 9", "save the view; go to a saved view"},
         {"F5", "reload effects (automatic if their files change)"},

@@ -141,6 +141,14 @@ bool Session::is_animated() const {
     return impl_->drawn->renderer().is_animated() || (without && without->is_animated());
 }
 
+void Session::set_exposure(double exposure_ev) {
+    impl_->state.scene.exposure_ev = exposure_ev;
+    impl_->state.inputs.exposure_ev = exposure_ev;
+}
+void Session::set_exaggeration(double exaggeration) {
+    impl_->state.scene.exaggeration = exaggeration;
+    impl_->state.take_shape(/*other=*/true);
+}
 void Session::set_seconds(double seconds) {
     impl_->state.scene.seconds = seconds;
     impl_->state.inputs.seconds = seconds;
