@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/units.h"
 #include "session/marks.h"
 #include "session/seen_ground.h"
 
@@ -50,12 +52,23 @@ class Finder {
         std::vector<chart::MarkPoint> points;
         for (const Candidate& candidate : candidates_)
             if (const std::optional<glm::dvec2> at = find(candidate))
-                points.push_back(
-                    {*at, marks_.standing->places->places[candidate.mark->index].name});
+                points.push_back(point(*candidate.mark, *at));
         return points;
     }
 
   private:
+    chart::MarkPoint point(const StandingMarks::Mark& mark, const glm::dvec2& at) const {
+        const MarkPlaces& places = *marks_.standing->places;
+        chart::MarkPoint result{at, places.places[mark.index].name};
+        if (!places.looks.empty()) result.symbol = places.looks[mark.index].symbol;
+        if (mark.along == glm::vec3(0)) return result;
+        const glm::dvec2 along = projection_.moved(mark.at_m, glm::dvec3(mark.along));
+        // Never upside down.
+        const double turn = std::atan2(along.y, along.x);
+        result.turn_deg = degrees(std::remainder(turn, std::numbers::pi));
+        return result;
+    }
+
     bool is_inside(const glm::dvec2& at) const {
         return at.x >= 0 && at.y >= 0 && at.x < view_.width_px && at.y < view_.height_px;
     }
@@ -170,8 +183,10 @@ std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& 
 }
 
 void draw_marks(std::span<const Marks> lists, const MarkView& view, const chart::Rect& within,
-                chart::Drawing& drawing) {
+                std::span<const chart::Rect> taken, chart::Drawing& drawing) {
     chart::FreeRoom room(within);
+    for (const chart::Rect& rect : taken)
+        room.take(rect);
     for (const Marks& marks : lists) {
         const std::vector<chart::MarkPoint> points = visible_marks(marks, view);
         chart::draw_marks(chart::place_marks(points, marks.style, room), marks.style, drawing);
