@@ -350,11 +350,19 @@ class Marks {
     void set(const char* list, std::span<const Mark> marks) const {
         std::vector<relevo_mark> given;
         given.reserve(marks.size());
-        for (const Mark& mark : marks)
-            given.push_back({sizeof(relevo_mark), mark.height_of, mark.lat_deg, mark.lon_deg,
-                             mark.height_m, mark.rank, mark.symbol,
-                             mark.azimuth_deg ? RELEVO_ALONG_AZIMUTH : RELEVO_UPRIGHT,
-                             mark.azimuth_deg.value_or(0), mark.text.c_str()});
+        for (const Mark& mark : marks) {
+            relevo_mark& to = given.emplace_back();
+            to.size = sizeof to;
+            to.height_of = mark.height_of;
+            to.lat_deg = mark.lat_deg;
+            to.lon_deg = mark.lon_deg;
+            to.height_m = mark.height_m;
+            to.rank = mark.rank;
+            to.symbol = mark.symbol;
+            to.direction = mark.azimuth_deg ? RELEVO_ALONG_AZIMUTH : RELEVO_UPRIGHT;
+            to.azimuth_deg = mark.azimuth_deg.value_or(0);
+            to.text = mark.text.c_str();
+        }
         check(table_.set(table_.self, list, given.data(), given.size()));
     }
 

@@ -11,7 +11,9 @@ namespace {
 /// Nodes along a side of a cell, as an exponent of 2; the least side of a cell in posts, the same.
 constexpr int kNodes = 5, kLeast = 1;
 /// Cells are divided while they look larger.
-constexpr double kCell_px = 160;
+constexpr double kCell_px = 90;
+/// Parts along each side of a cell, in each of which a place is tried.
+constexpr int kParts = 4;
 /// The largest cells are always divided: the Earth's curvature makes their spheres wrong.
 constexpr int kAlways = 2;
 /// Nodes of a place's level are up to so many pixels apart.
@@ -75,7 +77,7 @@ void Cells::update(std::uint64_t ground, double exaggeration, double step_m) {
     step_m_ = step_m;
 }
 
-/// Adds the crossing nearest to the cell's middle for each index line.
+/// Adds each index line, with places in several parts of the cell.
 void Cells::add_lines(const Ground& ground, Key key, Cell& cell, double& lowest_m,
                       double& highest_m) const {
     const auto [size, column, row] = key;
@@ -84,7 +86,8 @@ void Cells::add_lines(const Ground& ground, Key key, Cell& cell, double& lowest_
     const glm::ivec2 first = nodes * glm::ivec2(column, row);
     const Block block(ground.heights(), cell.detail, first,
                       glm::min(glm::ivec2(nodes + 1), ground.nodes(cell.detail) - first));
-    std::map<double, std::pair<double, glm::dvec2>> nearest;  // by index of the line
+    // By index of the line and part of the cell: the crossing nearest to the cell's middle.
+    std::map<std::pair<double, int>, std::pair<double, glm::dvec2>> nearest;
     each_edge(block, [&](double a, double b, int x, int y, glm::ivec2 way) {
         if (std::isnan(a)) return;
         lowest_m = std::min(lowest_m, a);
@@ -93,18 +96,23 @@ void Cells::add_lines(const Ground& ground, Key key, Cell& cell, double& lowest_
         const double index = std::floor(std::max(a, b) / step_m_);
         // Lines at or below 0 m are in the sea, or its shore.
         if (index < 1 || std::floor(std::min(a, b) / step_m_) != index - 1) return;
-        const glm::dvec2 at =
-            glm::dvec2(x, y) + (index * step_m_ - a) / (b - a) * glm::dvec2(way);
+        const glm::dvec2 at = glm::dvec2(x, y) + (index * step_m_ - a) / (b - a) * glm::dvec2(way);
+        const int part = kParts * (y * kParts / (nodes + 1)) + x * kParts / (nodes + 1);
         const double away = distance(at, glm::dvec2(0.5 * nodes));
-        const auto known = nearest.find(index);
-        if (known == nearest.end() || away < known->second.first)
-            nearest[index] = {away, at + glm::dvec2(first)};
+        const auto [known, is_new] = nearest.try_emplace({index, part}, away, at);
+        if (!is_new && away < known->second.first) known->second = {away, at};
     });
-    const double posts_a_node = 1 << cell.detail;
-    for (const auto& [index, line] : nearest)
-        cell.lines.push_back(
-            {glm::min(posts_a_node * line.second, glm::dvec2(ground.posts() - 1)),
-             index * step_m_, {}});
+    std::map<double, std::vector<std::pair<double, glm::dvec2>>> lines;
+    for (const auto& [line, crossing] : nearest)
+        lines[line.first].push_back(crossing);
+    for (auto& [index, crossings] : lines) {
+        std::ranges::sort(crossings, {}, [](const auto& crossing) { return crossing.first; });
+        Line line{{}, index * step_m_, {}};
+        for (const auto& [away, at] : crossings)
+            line.posts.push_back(glm::min((at + glm::dvec2(first)) * std::exp2(cell.detail),
+                                          glm::dvec2(ground.posts() - 1)));
+        cell.lines.push_back(std::move(line));
+    }
 }
 
 Cells::Cell Cells::make(const Ground& ground, Key key) const {
@@ -119,7 +127,8 @@ Cells::Cell Cells::make(const Ground& ground, Key key) const {
     const auto middle = ground.local(0.5 * (low + high), 0.5 * (lowest_m + highest_m));
     if (!middle) return cell;
     cell.center_m = *middle;
-    for (const glm::dvec2& corner : {low, high, glm::dvec2(low.x, high.y), glm::dvec2(high.x, low.y)})
+    for (const glm::dvec2& corner :
+         {low, high, glm::dvec2(low.x, high.y), glm::dvec2(high.x, low.y)})
         for (const double height_m : {lowest_m, highest_m})
             if (const auto at = ground.local(corner, height_m))
                 cell.radius_m = std::max(cell.radius_m, distance(*at, *middle));
@@ -133,6 +142,16 @@ Cells::Cell& Cells::cell(const Ground& ground, Key key) {
     const auto known = cells_.find(key);
     if (known != cells_.end()) return known->second;
     return cells_.emplace(key, make(ground, key)).first->second;
+}
+
+/// The first good place of a line, at a level of detail.
+const std::optional<Place>& Cells::place(const Ground& ground, Line& line, int from, int to) {
+    const auto known = line.places.find(to);
+    if (known != line.places.end()) return known->second;
+    std::optional<Place>& place = line.places[to];
+    for (std::size_t i = 0; i < line.posts.size() && !place; ++i)
+        place = ground.place(line.posts[i], line.level_m, from, to);
+    return place;
 }
 
 void Cells::visit(const Ground& ground, const View& view, Key key, std::vector<Candidate>& found) {
@@ -151,14 +170,8 @@ void Cells::visit(const Ground& ground, const View& view, Key key, std::vector<C
         const double posts_a_px = posts / (here.side_m * px_per_m);
         const int wanted = static_cast<int>(std::floor(std::log2(kNode_px * posts_a_px)));
         const int detail = std::clamp(wanted, 0, here.detail);
-        auto known = line.places.find(detail);
-        if (known == line.places.end())
-            known = line.places
-                        .emplace(detail, ground.place(line.post, line.level_m, here.detail, detail))
-                        .first;
-        if (known->second)
-            found.push_back({&*known->second,
-                             root_ - size + fraction_of(column, row, line.level_m)});
+        if (const std::optional<Place>& found_place = place(ground, line, here.detail, detail))
+            found.push_back({&*found_place, root_ - size + fraction_of(column, row, line.level_m)});
     }
     const double nearest_m =
         std::max(distance(here.center_m, view.eye_m) - here.radius_m, 1e-3 * here.side_m);

@@ -47,7 +47,7 @@ class Cells {
     using Key = std::tuple<int, int, int>;  // size as an exponent of 2 posts, column, row
     /// A line that passes a cell.
     struct Line {
-        glm::dvec2 post;
+        std::vector<glm::dvec2> posts;  // on it, the nearest to the cell's middle first
         double level_m;
         /// By level of detail, once they were asked for.
         std::map<int, std::optional<Place>> places;
@@ -58,8 +58,10 @@ class Cells {
         int detail = 0;  // its lines are of that level
         std::vector<Line> lines;
     };
+    static const std::optional<Place>& place(const Ground& ground, Line& line, int from, int to);
     Cell make(const Ground& ground, Key key) const;
-    void add_lines(const Ground& ground, Key key, Cell& cell, double& lowest_m, double& highest_m) const;
+    void add_lines(const Ground& ground, Key key, Cell& cell, double& lowest_m,
+                   double& highest_m) const;
     Cell& cell(const Ground& ground, Key key);
     void visit(const Ground& ground, const View& view, Key key, std::vector<Candidate>& found);
 

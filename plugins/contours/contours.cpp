@@ -17,9 +17,11 @@ using contours::Place;
 using contours::View;
 
 /// Index lines that are nearer than this have no labels, in heights of the letters.
-constexpr double kClosest = 1.6;
-/// Half of a label's width, the same: "1200 m".
-constexpr double kHalfWidth = 1.8;
+constexpr double kClosest = 1.3;
+/// A line is straight so far on either side of a label's middle, the same. "1200 m" is 3.6 wide.
+constexpr double kStraight = 1.0;
+/// Sine of the least angle between ground with labels and the way to the eye.
+constexpr double kGlancing = 0.1;
 /// Lines that look so much shorter than they are have none.
 constexpr double kForeshortened = 0.15;
 
@@ -67,6 +69,10 @@ class Contours : public Instance {
         const glm::dvec2 at = view.project(place.at_m);
         if (std::abs(at.x) > view.half_width_px || std::abs(at.y) > view.half_height_px)
             return false;
+        // Ground that is seen at a glancing angle, or from behind.
+        const glm::dvec3 normal = place.up - exaggeration * place.slope * place.uphill;
+        const glm::dvec3 to_eye = view.eye_m - place.at_m;
+        if (dot(normal, to_eye) < kGlancing * length(normal) * length(to_eye)) return false;
         // Pixels a metre, of a metre at the place's depth.
         const double px_per_m = view.px_per_m(place.at_m), small_m = 1 / px_per_m;
         const double along =
@@ -76,7 +82,7 @@ class Contours : public Instance {
         const double share = small_m / length(climb);
         const double apart_px = length(view.project(place.at_m + share * climb) - at) / share;
         return along > kForeshortened * px_per_m &&
-               place.straight_m * along >= kHalfWidth * size_px && apart_px >= kClosest * size_px;
+               place.straight_m * along >= kStraight * size_px && apart_px >= kClosest * size_px;
     }
 
     Params params_;

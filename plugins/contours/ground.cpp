@@ -21,7 +21,9 @@ constexpr int kSearch = 4;
 /// A line's direction is that of nodes so many levels coarser, up to so many of them away.
 constexpr int kCoarser = 2, kReach = 8;
 /// A line bends where it is off its direction by this fraction of the way.
-constexpr double kBend = 0.3;
+constexpr double kBend = 0.5;
+/// The DEM ends at least so many times as far away as a line counts as straight.
+constexpr double kRim = 1.6;
 /// Ground is flat where this fraction of the nodes around has the line's height ...
 constexpr double kFlatFraction = 0.25, kFlat_m = 0.002;
 /// ... or where it is less steep.
@@ -43,13 +45,20 @@ glm::dvec2 change_a_node(const Block& block, glm::ivec2 middle) {
 }
 
 /// How far a line is straight, in nodes. @param change  of the height a node
-double straight_nodes(const Block& block, glm::dvec2 node, double level_m, glm::dvec2 change) {
+/// @param last    node of the DEM
+double straight_nodes(const Block& block, glm::dvec2 node, double level_m, glm::dvec2 change,
+                      glm::dvec2 last) {
     const double steep = length(change);
     const glm::dvec2 along = glm::dvec2(-change.y, change.x) / steep;
     for (int away = 1; away < kReach; ++away)
         for (const double side : {-1.0, 1.0}) {
-            const double off_m = block.between(node + side * away * along) - level_m;
-            if (!(std::abs(off_m) <= steep * std::max(kBend * away, 0.6))) return away - 1;
+            const glm::dvec2 at = node + side * away * along;
+            const double off_m = block.between(at) - level_m;
+            const glm::dvec2 end = node + side * kRim * away * along;
+            const bool is_outside =
+                any(lessThan(end, glm::dvec2(0))) || any(greaterThan(end, last));
+            if (is_outside || !(std::abs(off_m) <= steep * std::max(kBend * away, 1.0)))
+                return away - 1;
         }
     return kReach - 1;
 }
@@ -66,8 +75,7 @@ double Block::between(glm::dvec2 node) const {
     const int column = static_cast<int>(low.x), row = static_cast<int>(low.y);
     if (column < 0 || row < 0 || column + 1 >= size_.x || row + 1 >= size_.y) return kNaN;
     return glm::mix(glm::mix(at(column, row), at(column + 1, row), share.x),
-                    glm::mix(at(column, row + 1), at(column + 1, row + 1), share.x),
-                    share.y);
+                    glm::mix(at(column, row + 1), at(column + 1, row + 1), share.x), share.y);
 }
 
 std::optional<glm::dvec3> Ground::local(glm::dvec2 post, double height_m) const {
@@ -85,8 +93,7 @@ std::optional<glm::dvec2> Ground::nearest_crossing(glm::dvec2 post, double level
     double least = kSearch * kSearch;
     each_edge(block, [&](double a, double b, int column, int row, glm::ivec2 way) {
         if (!((a < level_m) != (b < level_m)) || std::isnan(a) || std::isnan(b)) return;
-        const glm::dvec2 at =
-            glm::dvec2(column, row) + (level_m - a) / (b - a) * glm::dvec2(way);
+        const glm::dvec2 at = glm::dvec2(column, row) + (level_m - a) / (b - a) * glm::dvec2(way);
         const double away = dot(at - wanted, at - wanted);
         const glm::dvec2 node = at + glm::dvec2(block.first());
         // Nodes beyond the rim repeat it.
@@ -157,7 +164,8 @@ std::optional<Place> Ground::place(glm::dvec2 post, double level_m, int from, in
     // The line of the coarser nodes, which is beside that of the finer ones.
     const double here_m = block.between(node);
     Place place{.level_m = level_m};
-    place.straight_m = posts_a_node * straight_nodes(block, node, here_m, change);
+    place.straight_m =
+        posts_a_node * straight_nodes(block, node, here_m, change, nodes(coarse) - 1);
     if (place.straight_m <= 0 || !set_axes(place, *at, change / posts_a_node)) return std::nullopt;
     return place;
 }

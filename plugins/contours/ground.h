@@ -13,11 +13,11 @@ namespace contours {
 /// A place on a contour line where a label may stand.
 struct Place {
     double lat_deg = 0, lon_deg = 0, level_m = 0;
-    double azimuth_deg = 0;     ///< along the line
-    glm::dvec3 at_m{0};         ///< in the local frame, exaggerated
+    double azimuth_deg = 0;                 ///< along the line
+    glm::dvec3 at_m{0};                     ///< in the local frame, exaggerated
     glm::dvec3 up{0}, along{0}, uphill{0};  ///< unit vectors
-    double slope = 0;           ///< metres of height a metre uphill, not exaggerated
-    double straight_m = 0;      ///< how far the line is straight on either side
+    double slope = 0;                       ///< metres of height a metre uphill, not exaggerated
+    double straight_m = 0;                  ///< how far the line is straight on either side
 };
 
 /// Heights of a rectangle of nodes.
@@ -83,8 +83,10 @@ void each_edge(const Block& block, const Body& body) {
     for (int row = 0; row < size.y; ++row)
         for (int column = 0; column < size.x; ++column) {
             const double here = block.at(column, row);
-            if (column + 1 < size.x) body(here, block.at(column + 1, row), column, row, glm::ivec2(1, 0));
-            if (row + 1 < size.y) body(here, block.at(column, row + 1), column, row, glm::ivec2(0, 1));
+            if (column + 1 < size.x)
+                body(here, block.at(column + 1, row), column, row, glm::ivec2(1, 0));
+            if (row + 1 < size.y)
+                body(here, block.at(column, row + 1), column, row, glm::ivec2(0, 1));
         }
 }
 
