@@ -77,7 +77,8 @@ class Placer {
         const double size = style_.size, halo = kHalo * size;
         const double turn = mark.turn_deg * std::numbers::pi / 180;
         const double cosine = std::cos(turn), sine = std::abs(std::sin(turn));
-        const double width = text_width(mark.words, size) + 2 * halo, height = kHeight * size + 2 * halo;
+        const double width = text_width(mark.words, size) + 2 * halo,
+                     height = kHeight * size + 2 * halo;
         const glm::dvec2 half(0.5 * (width * cosine + height * sine),
                               0.5 * (width * sine + height * cosine));
         mark.box = {mark.at.x - half.x, mark.at.y - half.y, 2 * half.x, 2 * half.y};

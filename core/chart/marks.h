@@ -48,10 +48,10 @@ struct PlacedMark {
     glm::dvec2 baseline{0};  ///< left end of the words, or their middle if they are turned
     double turn_deg = 0;     ///< of the words, clockwise
     bool is_centred = false;
-    Rect box;     ///< of the words with their halo; empty without words
+    Rect box;  ///< of the words with their halo; empty without words
     Symbol kind = Symbol::None;
-    Rect symbol;  ///< with its halo; empty without a symbol
-    double leader_top = 0;   ///< y of the leader's upper end; `at.y` without one
+    Rect symbol;            ///< with its halo; empty without a symbol
+    double leader_top = 0;  ///< y of the leader's upper end; `at.y` without one
 };
 
 /// Finds room for marks. The first points have it first. The result depends on the arguments alone.

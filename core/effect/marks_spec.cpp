@@ -113,7 +113,8 @@ std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& p
                      const std::vector<shader::TextParam>& texts, bool has_module) {
     if (marks.from.empty() && !has_module)
         return fmt::format(
-            "marks.{}: expected a member \"from\", or a \"module\" of the plugin that sets the marks",
+            "marks.{}: expected a member \"from\", or a \"module\" of the plugin that sets the "
+            "marks",
             marks.name);
     const auto text = std::ranges::find(texts, marks.from, &shader::TextParam::address);
     if (!marks.from.empty() && (text == texts.end() || !text->is_file))

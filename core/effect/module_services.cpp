@@ -110,6 +110,7 @@ ModuleServices::ModuleServices() {
     fill_data_tables();
     fill_device_tables();
     fill_ground_tables();
+    fill_mark_table();
 }
 
 const void* ModuleServices::service(const relevo_host* host, const char* name,
@@ -280,13 +281,6 @@ void ModuleServices::fill_data_tables() {
                 }
             });
         }};
-    marks_ = {sizeof marks_, 0, this,
-              [](void* self, const char* list, const relevo_mark* marks, std::uint64_t count) {
-                  return serve<kNothing>(self, "relevo.marks: set", [&](auto& host) {
-                      host.set_marks(not_null(list, "list"),
-                                     read_marks(marks, count, kLeastSize<relevo_mark>));
-                  });
-              }};
     geo_ = {
         sizeof geo_,
         0,
@@ -386,6 +380,16 @@ void ModuleServices::fill_device_tables() {
                      host.draw(draw);
                  });
              }};
+}
+
+void ModuleServices::fill_mark_table() {
+    marks_ = {sizeof marks_, 0, this,
+              [](void* self, const char* list, const relevo_mark* marks, std::uint64_t count) {
+                  return serve<kNothing>(self, "relevo.marks: set", [&](auto& host) {
+                      host.set_marks(not_null(list, "list"),
+                                     read_marks(marks, count, kLeastSize<relevo_mark>));
+                  });
+              }};
 }
 
 void ModuleServices::fill_ground_tables() {

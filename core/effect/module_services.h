@@ -97,6 +97,7 @@ class ModuleServices {
     void fill_data_tables();
     void fill_device_tables();
     void fill_ground_tables();
+    void fill_mark_table();
 
     const ModuleTexture& known(relevo_texture texture) const;
     void check_program(relevo_program program) const;

@@ -175,7 +175,8 @@ std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> pla
 
 std::shared_ptr<const MarkPlaces> MarksOnGround::places(
     const std::shared_ptr<const effect::ModuleMarks>& marks) {
-    const auto known = std::ranges::find(places_, marks, [](const auto& entry) { return entry.first; });
+    const auto known =
+        std::ranges::find(places_, marks, [](const auto& entry) { return entry.first; });
     if (known != places_.end()) return known->second;
     if (places_.size() >= kMostKept) places_.erase(places_.begin());
     places_.emplace_back(marks, places_of(*marks));

@@ -26,8 +26,8 @@ namespace relevo::session {
 
 /// What a module gives for a mark, and files do not.
 struct MarkLook {
-    std::optional<chart::Symbol> symbol;   ///< nullopt: that of the list
-    std::optional<double> azimuth_rad;     ///< of the text; nullopt: upright
+    std::optional<chart::Symbol> symbol;  ///< nullopt: that of the list
+    std::optional<double> azimuth_rad;    ///< of the text; nullopt: upright
     std::optional<float> known_ground_m;  ///< height of the ground; nullopt: to be looked up
 };
 

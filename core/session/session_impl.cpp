@@ -284,16 +284,15 @@ std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
         if (const auto set = renderer.module_marks(list.plugin, list.spec->name))
             places = marks_on_ground.places(set);
         if (!places || places->places.empty()) continue;
-        result.push_back(marks_of(list,
-                                  marks_on_ground.of(places, state.dem(), state.ground().frame,
-                                                     state.scene.exaggeration),
-                                  effects.values, renderer.displacement(), state.scene));
+        result.push_back(marks_of(
+            list,
+            marks_on_ground.of(places, state.dem(), state.ground().frame, state.scene.exaggeration),
+            effects.values, renderer.displacement(), state.scene));
     }
     return result;
 }
 
-void Session::Impl::draw_marks_on(image::Image8& picture,
-                                  std::span<const chart::Rect> taken) {
+void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken) {
     const double width = picture.width, height = picture.height;
     const auto draw = [&](const std::vector<Marks>& lists, const render::Renderer& renderer,
                           const chart::Rect& within) {
