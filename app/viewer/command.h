@@ -23,6 +23,8 @@ enum class Command {
     NorthUp,
     FromAbove,
     Walk,
+    StandHere,  ///< at the chosen point
+    LookThere,  ///< to the chosen point
     SaveView,
     Measure,
     Compare,

@@ -41,6 +41,8 @@ class MainWindow {
     bool is_open() const { return opening_->opened() != nullptr; }
     /// Whether the image is overdue, so that the status line reports it.
     bool is_drawing() const;
+    /// For the status line; empty: none.
+    std::string work_in_progress() const;
     void leave();
     /// Whether a frame would repeat the last one while an image of the moving scene is due.
     bool repeats_frame() const;
@@ -62,16 +64,24 @@ class MainWindow {
     void open_requested_files();
     void reload_effects();
     void reload_dem();
-    /// Clears what belongs to the last scene after opening_ began to open another one.
-    void begin_scene();
+    /// What the thread of a scene begins with.
+    Wanted first_wanted() const;
+    /// Clears what belongs to the scene before the one that is open now.
+    void clear_scene();
     void want_view();
     Wanted wanted_now() const;
     void poll_threads();
-    /// @returns false: the scene could not be opened
-    bool poll_opening();
+    void poll_opening();
     void poll_images();
     void stop_comparison();
-    void start_scene(bool is_first);
+    /// @param is_first  of the window
+    /// @param view      of a DEM that was read again; none: the scene's
+    void start_scene(bool is_first, const std::optional<scene::View>& view);
+    /// After the DEM was read again. Keeps view, time and steps of undo.
+    void restart_scene(const Opened& before);
+    /// The time at which a scene without one is shown: that of the clocks before, or, unless the
+    /// time is pinned, the next to it that has sun. Says so if it is another.
+    sun::Instant time_from(const sun::Zone& zone_before);
     /// @param before  the scene with a coarse DEM
     void complete_scene(const Opened& before);
     void use_dem();
@@ -98,6 +108,8 @@ class MainWindow {
     void toggle_overlay();
     void restore(const Document& document);
     void move(Command command);
+    /// Stands on the chosen point, or looks at it.
+    void move_to_point(Command command);
     /// The whole DEM, from its side and from above.
     Whole whole_views() const;
     void save_view();
@@ -137,6 +149,7 @@ class MainWindow {
     bool sun_moved_ = false;      // in the frame before
     bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
+    bool opens_point_menu_ = false;
 };
 
 }  // namespace relevo::viewer

@@ -57,13 +57,6 @@ void item(State& state, const char* label, const char* keys, Command command, bo
 }
 
 /// The file name of a DEM, and the number of its other files.
-std::string short_name(const std::vector<std::string>& dems) {
-    std::string name = printable(std::filesystem::path(dems.front()).filename().string());
-    if (name.empty()) name = printable(dems.front());
-    if (dems.size() > 1) name += fmt::format(" and {} more", dems.size() - 1);
-    return name;
-}
-
 void recent_files(State& state) {
     if (!ImGui::BeginMenu("Open recent", !state.recent.empty())) return;
     for (std::size_t i = 0; i < state.recent.size(); ++i) {
