@@ -160,7 +160,9 @@ std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> pla
             const geo::PlaceText& at = all[i].at;
             marks[i] = standing_at(at, ground_m(*places, i, dem), frame, exaggeration);
             marks[i].index = static_cast<std::uint32_t>(i);
-            if (!places->looks.empty() && places->looks[i].azimuth_rad)
+            if (places->looks.empty()) continue;
+            marks[i].on_crests = !places->looks[i].known_ground_m;
+            if (places->looks[i].azimuth_rad)
                 marks[i].along = along(at.place, *places->looks[i].azimuth_rad, frame);
         }
     });

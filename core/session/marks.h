@@ -65,6 +65,7 @@ struct StandingMarks {
         glm::vec3 up{0, 0, 1};    ///< the vertical there
         float height_m = 0;       ///< of the mark, in the DEM's heights
         bool on_ground = true;    ///< false if the list gives a height
+        bool on_crests = true;    ///< behind a crest by kHidden_px it is on the crest
         glm::vec3 along{0};       ///< unit vector along the text; 0: it is upright
         std::uint32_t index = 0;  ///< in MarkPlaces::places
     };
@@ -134,7 +135,8 @@ MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
 /// the ground stands where the frame shows ground at its place: displaced by effects, and coarser
 /// than the posts by up to `pixel_error`. So much, and at least kHidden_px, may hide of a mark
 /// whose place is just behind a crest: it stands on the crest then. Ground that is before a mark by
-/// less than kNear of its depth does not hide it.
+/// less than kNear of its depth does not hide it. A mark whose ground the module knows is on no
+/// crest.
 std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& view);
 inline constexpr double kHidden_px = 3;
 inline constexpr double kNear = 0.005;

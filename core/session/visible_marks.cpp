@@ -22,6 +22,9 @@ constexpr double kMostSamples = 48;
 /// Ground that is nearer than a mark by this fraction of its depth is not the crest that it is on.
 constexpr double kCrest = 0.05;
 
+/// The same of a mark that is on no crest. The ground's depth changes by less from pixel to pixel.
+constexpr double kCrossed = 0.01;
+
 /// A mark in the picture.
 struct Candidate {
     const StandingMarks::Mark* mark;
@@ -140,7 +143,7 @@ class Finder {
             before = behind;
             behind = behind_m(candidate, ++k);
         }
-        const double crest_m = kCrest * candidate.top_m;
+        const double crest_m = (candidate.mark->on_crests ? kCrest : kCrossed) * candidate.top_m;
         if (k == 0 && behind < -kNear * candidate.top_m) return std::nullopt;
         // Level ground far away comes nearer by as much from pixel to pixel, but not across a
         // crest.

@@ -295,11 +295,13 @@ typedef struct relevo_geo_1 {
 
 /* "relevo.marks", 1, since 2.1: names and symbols at places, which the host draws over the picture.
  * The lists are those of plugin.json's "marks" that have no "from"; their looks are there. */
-#define RELEVO_ON_GROUND 0       /* height_m is not read */
-#define RELEVO_ABOVE_GROUND 1    /* height_m is above the ground */
-#define RELEVO_ABOVE_ZERO 2      /* height_m is above the zero of the DEM's heights */
-#define RELEVO_ON_KNOWN_GROUND 3 /* on the ground, whose height the module knows: height_m */
-#define RELEVO_SYMBOL_OF_LIST 0  /* the "symbol" in plugin.json */
+#define RELEVO_ON_GROUND 0    /* height_m is not read */
+#define RELEVO_ABOVE_GROUND 1 /* height_m is above the ground */
+#define RELEVO_ABOVE_ZERO 2   /* height_m is above the zero of the DEM's heights */
+#define RELEVO_ON_KNOWN_GROUND                                                             \
+    3                           /* on the ground, whose height the module knows: height_m; \
+                                   hidden also just behind a crest */
+#define RELEVO_SYMBOL_OF_LIST 0 /* the "symbol" in plugin.json */
 #define RELEVO_SYMBOL_NONE 1
 #define RELEVO_SYMBOL_DOT 2
 #define RELEVO_SYMBOL_TRIANGLE 3

@@ -128,10 +128,10 @@ void check(const std::string& dem, double elevation_deg, double zoom, std::size_
         EXPECT_LE(std::abs(label.placed.turn_deg), 90 + 1e-9);
         const auto [off, pixel_m] = off_m(shown, seen, label);
         // The drawn ground is off the posts by so many pixels, where marks are not hidden yet.
-        EXPECT_LE(off, kHidden_px * pixel_m) << label.placed.words;
-        sum_px += off / pixel_m;
+        EXPECT_LE(exaggeration * off, kHidden_px * pixel_m) << label.placed.words;
+        sum_px += exaggeration * off / pixel_m;
         worst_m = std::max(worst_m, off);
-        worst_px = std::max(worst_px, off / pixel_m);
+        worst_px = std::max(worst_px, exaggeration * off / pixel_m);
         moved_px = std::max(moved_px, distance(label.projected, label.placed.at));
         for (std::size_t j = 0; j < i; ++j) {
             const chart::Rect &a = label.placed.box, &b = labels[j].placed.box;
