@@ -166,6 +166,23 @@ void draw_sides(float line_px, float top_px) {
     label("as it is now", false);
 }
 
+namespace {
+
+constexpr float kNorthRadius_px = 34;
+
+ImVec2 north_middle(glm::vec2 size_px, float top_px) {
+    return {size_px.x - 46, 46 + top_px};
+}
+
+}  // namespace
+
+chart::Rect north_place(glm::vec2 size_px, float top_px) {
+    const ImVec2 middle = north_middle(size_px, top_px);
+    return {static_cast<double>(middle.x - kNorthRadius_px),
+            static_cast<double>(middle.y - kNorthRadius_px), 2 * double{kNorthRadius_px},
+            2 * double{kNorthRadius_px}};
+}
+
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
@@ -175,12 +192,12 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
-    const ImVec2 middle{size_px.x - 46, 46 + top_px};
+    const ImVec2 middle = north_middle(size_px, top_px);
     const auto tip = [&](glm::dvec2 way, double length) {
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
     };
-    list.AddCircleFilled(middle, 34, kShade);
+    list.AddCircleFilled(middle, kNorthRadius_px, kShade);
     list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
     list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
     const ImVec2 letter = tip(north, 26);

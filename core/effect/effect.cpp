@@ -214,7 +214,8 @@ void check_texts(const Effect& effect) {
 
 void check_marks(const Effect& effect) {
     for (const MarksSpec& marks : effect.manifest.marks)
-        if (const std::string fault = fault_of(marks, effect.params(), effect.manifest.texts);
+        if (const std::string fault = fault_of(marks, effect.params(), effect.manifest.texts,
+                                               !effect.manifest.module.empty());
             !fault.empty())
             fail(effect.manifest.file.string(), marks.line, fault);
 }

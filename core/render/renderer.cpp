@@ -429,6 +429,12 @@ void Renderer::resize(int width_px, int height_px) {
         native.resize(width_px, height_px);
 }
 
+std::shared_ptr<const effect::ModuleMarks> Renderer::module_marks(const std::string& id,
+                                                                  const std::string& list) const {
+    const auto native = std::ranges::find(impl_->natives, id, &NativeHost::id);
+    return native == impl_->natives.end() ? nullptr : native->marks(list);
+}
+
 const gl::Texture& Renderer::output() const {
     return impl_->runner.texture("output");
 }

@@ -177,8 +177,9 @@ image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
-    impl_->draw_marks_on(picture);
-    impl_->stamp_notes = add_stamps(*this, legends(), picture);
+    std::vector<chart::Rect> taken;
+    impl_->stamp_notes = add_stamps(*this, legends(), picture, taken);
+    impl_->draw_marks_on(picture, taken);
     return picture;
 }
 
