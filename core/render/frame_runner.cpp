@@ -110,9 +110,10 @@ void FrameRunner::run_step(std::size_t step, PassContext& frame, bool night, Pas
     const Plan::Step& planned = plan_.steps[step];
     const Pass& pass = graph().passes[static_cast<std::size_t>(planned.pass)];
     const bool rare = pass.when != When::Frame;
+    // Later passes rely on it, too, whether this one runs or not.
+    if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     if (rare && !is_due(pass, frame)) return;
     if (timers) timers->begin(pass.name, pass.kind == PassKind::Host);
-    if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     if (poisons_) targets_.poison(graph(), planned);
     const DebugGroup group(pass.name);
     frame.pass = &pass;

@@ -118,9 +118,10 @@ Snippet cleaned(const Snippet& snippet, const shader::PassFunction& pass) {
     for (std::size_t i = source.tokens.size(); i-- > 0;)
         if (source.str(source.tokens[i]) == function)
             text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
+    // By bits: compilers may fold comparisons with NaN.
     text += fmt::format(
-        "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    return mix(v, vec4(0.0), "
-        "notEqual(v - v, vec4(0.0)));\n}}\n",
+        "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
+        "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
         function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner);
     return shader::parse_snippet(snippet.id, snippet.file, text);
 }

@@ -1,6 +1,6 @@
-//! provides  automatic exposure: the mean of the picture's logarithmic luminance becomes middle grey
+//! provides  automatic exposure: the mean of the ground's logarithmic luminance becomes middle grey
 //! hook      image
-//! reads     radiance of the whole picture, linear, exposed
+//! reads     radiance of the whole picture, linear, exposed; depth
 //! writes    radiance
 //! source    E. Reinhard et al., Photographic Tone Reproduction for Digital Images, SIGGRAPH 2002, section 2:
 //!           the log-average luminance as the key of a scene; without the darkest and brightest pixels, as
@@ -13,6 +13,7 @@ uniform float autoexposure_low = 0.1; //@ range(0, 1) label("Low") description("
 uniform float autoexposure_high = 0.95; //@ range(0, 1) label("High") description("Share of the pixels below the brightest ones, which do not count")
 
 uniform sampler2D autoexposure_scene; //@ from(core.radiance)
+uniform sampler2D autoexposure_depth; //@ from(core.depth)
 uniform sampler2D autoexposure_luminance;         // [stops]
 uniform usamplerBuffer autoexposure_histogram;    // pixels of `luminance` for each bin
 uniform sampler2D autoexposure_stops;             // what is added, one texel [stops]
@@ -21,9 +22,13 @@ const int autoexposure_bins = 256;
 const float autoexposure_per_stop = 8.0;  // bins
 const float autoexposure_lowest = -16.0;  // of the first bin [stops]
 const float autoexposure_grey = 0.18;     // reflectance of middle grey
+const float autoexposure_sky = -100.0;    // of pixels that do not count [stops]
 
-/// Luminance of 4 x 4 pixels. Each read is the mean of four.
+/// Luminance of 4 x 4 pixels. Each read is the mean of four. Sky and backdrop do not count: they are large,
+/// and their brightness says nothing of the light on the ground.
 vec4 autoexposure_pass_luminance(in Texel t) {
+    ivec2 middle = min(ivec2(4.0 * t.at_px), textureSize(autoexposure_depth, 0) - 1);
+    if (texelFetch(autoexposure_depth, middle, 0).r == 0.0) return vec4(autoexposure_sky);
     vec2 pixel = 1.0 / vec2(textureSize(autoexposure_scene, 0));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; ++i)
@@ -39,8 +44,9 @@ void autoexposure_pass_histogram(in Invocation i) {
     uint own = gl_LocalInvocationIndex;  // as many as bins
     autoexposure_counts[own] = 0u;
     barrier();
-    if (all(lessThan(i.at.xy, i.size.xy))) {
-        float stops = texelFetch(autoexposure_luminance, i.at.xy, 0).r;
+    float stops = autoexposure_sky;
+    if (all(lessThan(i.at.xy, i.size.xy))) stops = texelFetch(autoexposure_luminance, i.at.xy, 0).r;
+    if (stops > autoexposure_sky) {
         float bin = (stops - autoexposure_lowest) * autoexposure_per_stop;
         atomicAdd(autoexposure_counts[int(clamp(bin, 0.0, 255.0))], 1u);
     }

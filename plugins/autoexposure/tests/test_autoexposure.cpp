@@ -30,21 +30,27 @@ constexpr const char* kTiles =
     "14.0)), 37.0))";
 
 /// Stops by which the effect brightens a screen, as the picture shows them.
-double stops(const std::string& screen, Screen light, const Settings& settings) {
+/// @param pitch_deg  of the camera: -80 shows ground alone
+double stops(const std::string& screen, Screen light, const Settings& settings,
+             double pitch_deg = -80) {
     std::vector<effect::Effect> shipped;
     shipped.push_back(effect::load_effect(test::source_dir() / "plugins/autoexposure",
                                           test::source_dir() / "data"));
-    // The sky as a screen, in radiance that is stored. The picture has it, scaled to be in range.
+    // The ground as a screen, in radiance that is stored; the sky is bright. The picture has them
+    // scaled to be in range.
     test::Drawn drawn(dem::load((test::source_dir() / "data/dem/jacksboro.tif").string()),
                       {{"screen1",
                         "vec3 screen1_on_background_radiance(in vec3 direction, in bool disc) {\n"
-                        "    return vec3(" +
+                        "    return vec3(50.0) / frame.exposure;\n"
+                        "}\n"
+                        "void screen1_on_lit(in Surface s, inout vec3 radiance) {\n"
+                        "    radiance = vec3(" +
                             screen +
                             ") / frame.exposure;\n"
                             "}\n"
                             "void screen1_on_tonemap(inout vec3 colour) { colour *= 0.25; }\n"}},
                       kWidth_px, kHeight_px, 0, shipped, settings);
-    drawn.stand(0.5, 0.5, 3000, 0, 80);
+    drawn.stand(0.5, 0.5, 3000, 0, pitch_deg);
     drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame());
     const image::Image8 picture = drawn.renderer().read_output();
     double before = 0, after = 0;
@@ -97,6 +103,11 @@ TEST(Autoexposure, EvenLightBecomesMiddleGrey) {
     // Half a bin, an eighth of a stop, and 8 bits.
     EXPECT_NEAR(stops("0.02", dim, {}), std::log2(kGrey / 0.02), 0.07);
     EXPECT_NEAR(stops("1.3", bright, {}), std::log2(kGrey / 1.3), 0.07);
+}
+
+TEST(Autoexposure, TheSkyDoesNotCount) {
+    const auto dim = [](double, double) { return 0.02; };
+    EXPECT_NEAR(stops("0.02", dim, {}, -5), std::log2(kGrey / 0.02), 0.07);
 }
 
 TEST(Autoexposure, KeepsItsLimitAmountAndCompensation) {
