@@ -306,7 +306,8 @@ TEST(ReferenceCompiler, TakesAComputeProgram) {
             EXPECT_FALSE(program.compiled().compute.empty()) << program.name;
             ++computes;
         }
-    if (shipped.registry.find("autoexposure")) EXPECT_GE(computes, 1);
+    if (!shipped.registry.find("autoexposure")) GTEST_SKIP() << "no plugin with a compute pass";
+    EXPECT_GE(computes, 1);
 }
 
 /// A discard costs a GPU the early depth test.
