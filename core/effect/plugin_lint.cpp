@@ -28,6 +28,7 @@ class Linter {
         check_words();
         check_loops();
         check_parameters();
+        check_passes();
         check_derivatives();
         return std::move(findings_);
     }
@@ -144,6 +145,26 @@ class Linter {
                 add(false, param.file, param.line,
                     fmt::format("{}: no hook reads this parameter; use it or remove it",
                                 param.name));
+    }
+
+    /// What nothing reads is never computed. Other plugins may read it.
+    void check_passes() {
+        const std::vector<shader::Sampler> samplers = [&] {
+            std::vector<shader::Sampler> all;
+            for (const effect::Effect& effect : registry_.effects())
+                for (const shader::Snippet& snippet : effect.snippets)
+                    all.insert(all.end(), snippet.source.samplers.begin(),
+                               snippet.source.samplers.end());
+            return all;
+        }();
+        for (const shader::PluginPass& pass : effect_.manifest.passes)
+            if (std::ranges::find(samplers, pass.resource, &shader::Sampler::resource) ==
+                samplers.end())
+                add(false, effect_.manifest.file.string(), pass.line,
+                    fmt::format("passes.{}: nothing reads it, so it is never computed; add uniform "
+                                "{} {}_{}, or remove it",
+                                pass.name, shader::sampler_of(pass.output), effect_.id(),
+                                pass.name));
     }
 
     void check_derivatives() {

@@ -52,6 +52,28 @@ When when_of(shader::PluginPass::When when) {
     }
 }
 
+ResourceSize size_of(const shader::PassSize& size) {
+    return {.share = size.scale, .width = size.width, .height = size.height, .depth = size.depth};
+}
+
+/// What a pass of a plugin writes.
+Resource resource_of(const shader::PluginPass& pass, When when) {
+    using Output = shader::PluginPass::Output;
+    Resource resource{.name = pass.resource,
+                      .format = pass.format,
+                      .size = size_of(pass.size),
+                      // What is not computed in every frame has to last.
+                      .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
+                      .linear = pass.linear};
+    if (pass.output == Output::Texture3D) resource.kind = ResourceKind::Texture3D;
+    if (pass.is_buffer()) {
+        resource.kind = ResourceKind::Buffer;
+        resource.format = pass.output == Output::Floats ? PixelFormat::R32F : PixelFormat::R32UI;
+        resource.size.bytes = sizeof(float) * static_cast<std::size_t>(pass.size.width);
+    }
+    return resource;
+}
+
 class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
@@ -248,21 +270,23 @@ class Declaration {
         add(std::move(pass));
     }
 
-    void plugin_pass(const shader::PluginPass& pass) {
-        const When when = when_of(pass.when);
-        add(Resource{.name = pass.resource,
-                     .format = pass.format,
-                     .size = {.share = pass.scale, .width = pass.width, .height = pass.height},
-                     // A texture that is not computed in every frame has to last.
-                     .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
-                     .linear = pass.linear});
-        add(Pass{
-            .name = pass.resource,
-            .when = when,
-            .parameters = pass.parameters,
-            .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
-                                                       .fragment_main = PassTexts::name_of(pass)}),
-            .colours = {{pass.resource}}});
+    void plugin_pass(const shader::PluginPass& written) {
+        const When when = when_of(written.when);
+        add(resource_of(written, when));
+        Pass pass{.name = written.resource,
+                  .when = when,
+                  .parameters = written.parameters,
+                  .program = program(written.resource.c_str(), PassTexts::recipe_of(written))};
+        if (written.kind == shader::PluginPass::Kind::Full) {
+            pass.colours = {{written.resource}};
+        } else {
+            pass.kind = PassKind::Compute;
+            pass.writes = {written.resource};
+            pass.dispatch = Dispatch{.over = size_of(written.over),
+                                     .local_size = written.local_size,
+                                     .work_groups = written.work_groups};
+        }
+        add(std::move(pass));
     }
 
     /// Of programs that fill the G-buffer.

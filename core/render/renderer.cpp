@@ -456,8 +456,9 @@ std::vector<SunSeen> Renderer::read_sun_seen() const {
 bool Renderer::is_animated() const {
     static constexpr std::string_view kSeconds = "frame.seconds";
     return std::ranges::any_of(impl_->frames.programs, [](const ProgramText& text) {
-        return text.stitched.vertex.text.find(kSeconds) != std::string::npos ||
-               text.stitched.fragment.text.find(kSeconds) != std::string::npos;
+        return std::ranges::any_of(text.stitched.stages(), [](const shader::StageText* stage) {
+            return stage->text.find(kSeconds) != std::string::npos;
+        });
     });
 }
 

@@ -56,6 +56,18 @@ TEST(PluginLint, NamesLoopsThatMayNeverEnd) {
                             "0; i < N; ++i) with a constant N of at most 10000"));
 }
 
+TEST(PluginLint, NamesPassesThatNothingReads) {
+    const std::string passes = R"("passes": {
+        "sum": {"kind": "compute", "writes": "uints", "count": 4, "local_size": [4]}})";
+    const std::string function = "void dust_pass_sum(in Invocation i) { dust_sum_out[0] = 1u; }\n";
+    EXPECT_THAT(findings(kHook + function, passes),
+                ElementsAre("warning plugins/dust/plugin.json:2: passes.sum: nothing reads it, so "
+                            "it is never computed; add uniform usamplerBuffer dust_sum, or remove "
+                            "it"));
+    EXPECT_THAT(findings("uniform usamplerBuffer dust_sum;\n" + kHook + function, passes),
+                IsEmpty());
+}
+
 TEST(PluginLint, NamesParametersThatNoHookReads) {
     EXPECT_THAT(findings("uniform float dust_amount = 0.5; //@ range(0, 1)\n"
                          "uniform float dust_level_m = 0.5; //@ range(0, 1)\n"
