@@ -19,6 +19,7 @@ struct SunSeen {
     double pixel_posts = 0;  ///< side of the pixel on the ground in posts
     bool faces = false;      ///< the ground faces the sun
     bool moved = false;      ///< an effect has displaced the ground
+    bool shaded_by_instance = false;  ///< the shadow of a plugin's instance lies here
 };
 
 /// Number of RGBA8 pixels that were NaN or infinite before clamping. Shaders mark them with an

@@ -16,6 +16,30 @@ float instances_share(in float distance_m, in float range_m) {
     return clamp((1.0 - distance_m / range_m) / (1.0 - kInstanceFade), 0.0, 1.0);
 }
 
+const int kInstanceMaps = 3;               // render/instance_shadows.h: kMaps
+const float kInstanceMapEdge = 0.88;       // share of a map's half side up to which it is read
+
+/// A place in a shadow map of instances: -1..1 over its sides, and towards the sun from its centre [m].
+vec3 instances_shadow_place(in vec3 position_m, in int map) {
+    vec4 centre = frame.instance_shadow_maps[map];
+    vec3 at = vec3(dot(frame.instance_shadow_axes[0].xyz, position_m), dot(frame.instance_shadow_axes[1].xyz, position_m),
+                   dot(frame.instance_shadow_axes[2].xyz, position_m)) + centre.xyz;
+    return vec3(at.xy * centre.w, at.z);
+}
+
+/// Weight of the drawn shadows towards the edge of the last map, 0..1.
+float instances_shadow_weight(in vec3 position_m) {
+    vec2 at = abs(instances_shadow_place(position_m, kInstanceMaps - 1).xy);
+    return frame.instance_shadow_eye.w * (1.0 - smoothstep(0.7, kInstanceMapEdge, max(at.x, at.y)));
+}
+
+/// Share of the instances whose shadows are drawn, 0..1. The plugin darkens ground and cover by the others in the mean.
+/// @param position_m  relative to the eye
+float instances_shadow_share(in vec3 position_m, in float range_m) {
+    float distance_m = length(position_m - frame.instance_shadow_eye.xyz);
+    return instances_shadow_weight(position_m) * instances_share(distance_m, range_m);
+}
+
 /// Four numbers of a cell of the grid of sites, 0..1. @param stream  other numbers of the same cell
 vec4 instances_random(in ivec2 cell, in uint stream) {
     uvec4 v = uvec4(uvec2(cell), stream, 0x9e3779b9u) * 1664525u + 1013904223u;
