@@ -64,18 +64,18 @@ vec3 instance_mesh_colour() {
 #ifdef SHADOW_MAP
 /// A point over the whole of a crown as the sun sees it, in the map of this draw.
 vec4 instance_shadow(in InstanceSite site, in Instance it) {
-    int map = int(instance_detail.x);
-    vec3 at = instances_shadow_place(site.ground.position_m, map);
-    float side = frame.instance_shadow_px, map_m = 1.0 / frame.instance_shadow_maps[map].w;
+    vec4 map = frame.instance_shadow_maps[int(instance_detail.x)];
+    vec3 along = instances_shadow_along(site.ground.position_m);
+    float side = frame.instance_shadow_px, map_m = 1.0 / map.w;
     float cosine = clamp(dot(site.ground.up, frame.instance_shadow_axes[2].xyz), 0.0, 1.0);
     vec2 ends = crown_ends(0.5 * it.width_m, it.height_m, it.taper, cosine);
     float middle = 0.5 * (ends.x + ends.y);
     float half_side = max(max(0.5 * it.width_m, 0.5 * (ends.y - ends.x)), map_m / side);  // a texel at least
     instance_crown = vec4(0.5 * it.width_m, it.height_m, it.taper, cosine);
-    instance_place = vec4(middle, half_side, at.z, float(map));
+    instance_place = vec4(middle, half_side, along.z, instance_detail.x);
     gl_PointSize = half_side * side / map_m;
-    vec2 in_map = 0.5 + 0.5 * (at.xy + vec2(0.0, middle / map_m));
-    return vec4(2.0 * in_map.x - 1.0, 2.0 * (in_map.y + float(map)) / float(kInstanceMaps) - 1.0, 0.5, 1.0);
+    vec2 at = instances_shadow_place(along + vec3(0.0, middle, 0.0), map).xy;
+    return vec4(at.x, (at.y + 1.0 + 2.0 * instance_detail.x) / float(kInstanceMaps) - 1.0, 0.5, 1.0);
 }
 #elif defined(SPRITES)
 /// A point over the whole of a crown.
@@ -109,7 +109,11 @@ vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness, out 
     vec3 turned = instance_packed.xyz / max(size, vec3(1e-3));
     instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
                                     flatness));
+#ifdef SPRITES_FOLLOW
+    instance_reflectance = vec4(it.colour * instance_mesh_colour(), 1.0);  // all near instances have a shadow
+#else
     instance_reflectance = vec4(it.colour * instance_mesh_colour(), it.sun);
+#endif
     position_m = foot.position_m + local.x * right + local.y * ahead + local.z * foot.up;
     return clipped(position_m);
 }

@@ -228,7 +228,10 @@ class Declaration {
             .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
         stored_defines(recipe);
-        if (sprites) recipe.defines.push_back({"SPRITES", ""});
+        if (sprites)
+            recipe.defines.push_back({"SPRITES", ""});
+        else if (set.has_sprites() && set.casts_shadow)
+            recipe.defines.push_back({"SPRITES_FOLLOW", ""});
         const bool first = covering_ == "geometry";
         Pass pass{.name = name,
                   .kind = PassKind::Geometry,
@@ -261,16 +264,18 @@ class Declaration {
     void instance_shadows() {
         using Shadows = InstanceShadows;
         constexpr const char* kMaps = "instance_shadows";
-        add(Resource{
+        add(Resource{.name = kMaps,
+                     .format = PixelFormat::Depth32F,
+                     .size = {.share = 0,
+                              .width = Shadows::kSide_px,
+                              .height = Shadows::kMaps * Shadows::kSide_px},
+                     .lifetime = Lifetime::Kept});
+        add(Pass{
             .name = kMaps,
-            .format = PixelFormat::Depth32F,
-            .size = {.share = 0, .width = Shadows::kSide_px, .height = Shadows::kMaps * Shadows::kSide_px},
-            .lifetime = Lifetime::Kept});
-        add(Pass{.name = kMaps,
-                 .kind = PassKind::Host,
-                 .reads = {"tiles"},
-                 .writes = {kMaps},
-                 .body = [](PassContext& frame) { frame.services.instances().place_shadows(frame); }});
+            .kind = PassKind::Host,
+            .reads = {"tiles"},
+            .writes = {kMaps},
+            .body = [](PassContext& frame) { frame.services.instances().place_shadows(frame); }});
         std::string before = kMaps;
         for (const shader::InstanceSet& set : facts_.instances) {
             if (!set.casts_shadow) continue;

@@ -20,18 +20,18 @@ constexpr double kMostTexels = 200;
 constexpr double kSlack = 0.1;
 /// Lowest sun that casts shadows of instances: sine of its elevation.
 constexpr double kLowestSine = 0.01;
-/// Depths of a map, over the range [m].
-constexpr double kDepths = 2.4;
 /// The sun has not moved: its refraction depends a little on the place of the eye [rad].
 constexpr double kSameSun = 2e-4;
 
 }  // namespace
 
-InstanceShadows::InstanceShadows(const std::vector<shader::InstanceSet>& sets) : sets_([&] {
-      std::vector<shader::InstanceSet> casting;
-      std::ranges::copy_if(sets, std::back_inserter(casting), &shader::InstanceSet::casts_shadow);
-      return casting;
-  }()) {}
+InstanceShadows::InstanceShadows(const std::vector<shader::InstanceSet>& sets)
+    : sets_([&] {
+          std::vector<shader::InstanceSet> casting;
+          std::ranges::copy_if(sets, std::back_inserter(casting),
+                               &shader::InstanceSet::casts_shadow);
+          return casting;
+      }()) {}
 
 bool InstanceShadows::is_any_due() const {
     return std::ranges::any_of(due_, [](bool due) { return due; });
@@ -88,16 +88,15 @@ void InstanceShadows::prepare(const Terrain& terrain, const FrameInputs& inputs,
 
 void InstanceShadows::write(const glm::dvec3& eye_m, FrameBlock& block) const {
     block.instance_shadow_px = kSide_px;
-    block.instance_shadow_per_m = static_cast<float>(1 / (kDepths * range_m_));
+    block.instance_shadow_weight = 1;
     for (std::size_t i = 0; i < 3; ++i)
         block.instance_shadow_axes[i] = glm::vec4(axes_[i], 0);
     for (std::size_t i = 0; i < kMaps; ++i) {
         const Map& map = maps_[i];
-        block.instance_shadow_maps[i] =
-            glm::vec4(across(eye_m) - map.centre_m, dot(axes_[2], eye_m - map.eye_m),
-                      1 / map.half_side_m);
+        block.instance_shadow_maps[i] = glm::vec4(
+            across(eye_m) - map.centre_m, dot(axes_[2], eye_m - map.eye_m), 1 / map.half_side_m);
     }
-    block.instance_shadow_eye = glm::vec4(maps_.back().eye_m - eye_m, 1);
+    block.instance_shadow_eye = glm::vec4(maps_.back().eye_m - eye_m, 0);
 }
 
 void InstanceShadows::clear_due() const {

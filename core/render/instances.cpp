@@ -130,15 +130,14 @@ void Instances::place_shadows(PassContext& frame) {
 
 void Instances::draw_shadows(std::string_view resource, PassContext& frame) {
     if (!shadows_.is_any_due()) return;
-    const auto first = std::ranges::find_if(
-        sets_, [](const auto& each) { return each->set.casts_shadow; });
+    const auto first =
+        std::ranges::find_if(sets_, [](const auto& each) { return each->set.casts_shadow; });
     Set& set = find(resource);
     if (first->get() == &set) shadows_.clear_due();
     const LodView around = view_around(frame, shadows_.range_m());
     const TileSelection tiles = frame.terrain.select(around, &frame.tiles);
     const InstanceView view(set.set, frame.terrain, around, pixel_of(frame));
-    const std::vector<InstanceBlock> blocks =
-        instance_blocks(set.set, frame.terrain, tiles, view);
+    const std::vector<InstanceBlock> blocks = instance_blocks(set.set, frame.terrain, tiles, view);
     Batch batch;
     for (int map = 0; map < InstanceShadows::kMaps; ++map) {
         if (!shadows_.is_due(map)) continue;

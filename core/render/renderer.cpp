@@ -123,8 +123,8 @@ struct Renderer::Impl : FrameServices {
     std::vector<effect::DisplaceSpec> displaces;
     shader::ParamStore values;  // as given; native modules also write host parameters
     Instances plugin_instances;
-    double exposure = 1;        // of the last frame
-    TileSelection tiles;        // of the last frame
+    double exposure = 1;  // of the last frame
+    TileSelection tiles;  // of the last frame
     GroundProbe probe;
     gl::Texture footprint;  // of the last ground that was seen from outside
     std::vector<NativeHost> natives;

@@ -52,8 +52,9 @@ CrownSeen crown_seen(in float half_width_m, in float height_m, in float taper, i
     CrownSeen round = crown_ellipsoid_seen(half_width_m, 0.5 * height_m, cosine, sine, at);
     CrownSeen cone = crown_cone_seen(half_width_m, height_m, cosine, sine, at);
     CrownSeen seen = CrownSeen(mix(round.half_width_m, cone.half_width_m, taper), mix(round.towards_m, cone.towards_m, taper));
-    // Level ground below the crown is in its shadow.
-    seen.towards_m = max(seen.towards_m, -at * sine / max(cosine, 0.02) + 0.02 * height_m);
+    // Level ground behind the foot is in the crown's shadow.
+    float ground_m = -at * sine / max(cosine, 0.02);
+    seen.towards_m = max(seen.towards_m, at > 0.0 ? ground_m + 0.02 * height_m : -1e6);
     return seen;
 }
 
@@ -85,5 +86,5 @@ float crown_gap(in float filled, in float cells) {
 /// @param slant  area that crowns hide from the sun less what they hide from above, over the ground's area
 /// @param taper  0: ellipsoids, 1: cones
 float crown_sunlight(in float slant, in float taper) {
-    return 1.0 / (1.0 + mix(0.15, 0.4, taper) * max(slant, 0.0));  // fitted likewise, for suns above 12 degrees
+    return 1.0 / (1.0 + mix(0.12, 0.35, taper) * max(slant, 0.0));  // fitted likewise, for suns above 12 degrees
 }

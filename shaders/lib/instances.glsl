@@ -19,18 +19,24 @@ float instances_share(in float distance_m, in float range_m) {
 const int kInstanceMaps = 3;               // render/instance_shadows.h: kMaps
 const float kInstanceMapEdge = 0.88;       // share of a map's half side up to which it is read
 
-/// A place in a shadow map of instances: -1..1 over its sides, and towards the sun from its centre [m].
-vec3 instances_shadow_place(in vec3 position_m, in int map) {
-    vec4 centre = frame.instance_shadow_maps[map];
-    vec3 at = vec3(dot(frame.instance_shadow_axes[0].xyz, position_m), dot(frame.instance_shadow_axes[1].xyz, position_m),
-                   dot(frame.instance_shadow_axes[2].xyz, position_m)) + centre.xyz;
-    return vec3(at.xy * centre.w, at.z);
+/// A point along the axes of the shadow maps, from the eye [m].
+vec3 instances_shadow_along(in vec3 position_m) {
+    return vec3(dot(frame.instance_shadow_axes[0].xyz, position_m), dot(frame.instance_shadow_axes[1].xyz, position_m),
+                dot(frame.instance_shadow_axes[2].xyz, position_m));
+}
+
+/// A place in a shadow map: -1..1 over its sides, and 0..1 its depth. Receivers have all of that; what casts shadows may
+/// lie beyond.
+/// @param along  of instances_shadow_along(); @param map  of frame.instance_shadow_maps
+vec3 instances_shadow_place(in vec3 along, in vec4 map) {
+    vec3 at = (along + map.xyz) * map.w;
+    return vec3(at.xy, 0.5 + 0.3 * at.z);
 }
 
 /// Weight of the drawn shadows towards the edge of the last map, 0..1.
 float instances_shadow_weight(in vec3 position_m) {
-    vec2 at = abs(instances_shadow_place(position_m, kInstanceMaps - 1).xy);
-    return frame.instance_shadow_eye.w * (1.0 - smoothstep(0.7, kInstanceMapEdge, max(at.x, at.y)));
+    vec2 at = abs(instances_shadow_place(instances_shadow_along(position_m), frame.instance_shadow_maps[kInstanceMaps - 1]).xy);
+    return frame.instance_shadow_weight * (1.0 - smoothstep(0.7, kInstanceMapEdge, max(at.x, at.y)));
 }
 
 /// Share of the instances whose shadows are drawn, 0..1. The plugin darkens ground and cover by the others in the mean.
