@@ -15,9 +15,9 @@ constexpr double kDay_s = 86400;
 constexpr double kFiner = 4;  // sides of neighbouring maps
 /// Highest points that devices draw are 255 px; the highest crown may have fewer texels.
 constexpr double kMostTexels = 200;
-/// Distance of the eye from a map's middle at which it is drawn again, as a share of half its side.
+/// A map is drawn again where the eye has moved by more than this share of half its side.
 /// With kInstanceMapEdge of shaders/lib/instances.glsl less than 1.
-constexpr double kSlack = 0.1;
+constexpr double kSlack = 0.05;
 /// Lowest sun that casts shadows of instances: sine of its elevation.
 constexpr double kLowestSine = 0.01;
 /// The sun has not moved: its refraction depends a little on the place of the eye [rad].
@@ -76,8 +76,9 @@ void InstanceShadows::prepare(const Terrain& terrain, const FrameInputs& inputs,
                                   highest_m * kSide_px / (2 * kMostTexels));
         const glm::dvec2 middle_m = across(ground_m);
         const glm::dvec2 off = abs(middle_m - of.centre_m);
-        const bool far = std::max(off.x, off.y) > kSlack * of.half_side_m;
-        if (!all && !far && !(inputs.deterministic && of.eye_m != inputs.camera.eye_m)) continue;
+        const double moved_m = std::max({off.x, off.y, length(inputs.camera.eye_m - of.eye_m)});
+        const bool far = moved_m > kSlack * of.half_side_m;
+        if (!all && !far && !(inputs.deterministic && moved_m > 0)) continue;
         const double texel_m = 2 * of.half_side_m / kSide_px;
         of.centre_m = texel_m * round(middle_m / texel_m);
         of.eye_m = inputs.camera.eye_m;

@@ -98,8 +98,17 @@ float trees_gap(in vec2 filled, in float per_m2) {
 }
 
 /// Share of a direction's light that reaches the ground, through gaps and through crowns.
-float trees_lit(in trees_Stand stand, in float per_m2, in float cosine) {
-    return mix(trees_light, 1.0, trees_gap(trees_filled(stand, per_m2, cosine), per_m2));
+/// @param apart  0..1: 1 where the eye looks through other gaps
+float trees_lit(in trees_Stand stand, in float per_m2, in float cosine, in float apart) {
+    return mix(trees_light, 1.0, pow(trees_gap(trees_filled(stand, per_m2, cosine), per_m2), apart));
+}
+
+/// How far the ground that crowns hide from the sun is other ground than what they hide from the eye, 0..1: middles of
+/// both over a crown's width. Ground that is seen between crowns is lit where both are the same.
+float trees_apart(in trees_Stand stand, in vec3 to_eye, in vec3 up) {
+    vec3 to_sun = frame.sun_direction.xyz;
+    float apart = length(to_sun / max(dot(to_sun, up), 0.05) - to_eye / max(dot(to_eye, up), 0.05));
+    return min(apart / mix(trees_broadleaf_width, trees_conifer_width, stand.conifers), 1.0);
 }
 
 /// Share of the sun's light that reaches the sunny side of crowns past others.
@@ -126,19 +135,21 @@ void trees_on_material(inout Surface s) {
     trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x);
     float per_m2 = trees_per_m2(stand), range_m = trees_range_m();
     float shaded = per_m2 * instances_shadow_share(s.position_m, range_m);  // by shadows that are drawn
-    float to_sun = dot(frame.sun_direction.xyz, s.up);
+    float to_sun = dot(frame.sun_direction.xyz, s.up), apart = trees_apart(stand, -s.position_m / s.distance_m, s.up);
 
     // The ground between the trees. Shadows that are drawn darken it later.
-    float drawn = trees_lit(stand, shaded, to_sun);
-    float sun = trees_lit(stand, per_m2, to_sun) / drawn;
+    float share = instances_share(s.distance_m, range_m);  // of the trees that are drawn, and hide ground
+    float drawn = trees_lit(stand, shaded, to_sun, mix(1.0, apart, share));
+    float sun = trees_lit(stand, per_m2, to_sun, apart) / drawn;
     s.diffuse *= sun;
     s.specular *= sun;
-    s.ambient *= trees_lit(stand, per_m2, 0.6);  // the sky's light comes from 53 degrees off the vertical in the mean
+    s.ambient *= trees_lit(stand, per_m2, 0.6, 1.0);  // the sky's light comes from 53 degrees off the vertical in the mean
 
     // The cover stands for the trees that are not drawn.
-    float left = per_m2 * (1.0 - instances_share(s.distance_m, range_m));
+    float left = per_m2 * (1.0 - share);
     vec2 filled = trees_filled(stand, left, dot(-s.position_m, s.up) / s.distance_m);
-    float cover = 1.0 - trees_gap(filled, left);
+    // Sprites are at least a pixel wide: they hide more than crowns, as if these stood more evenly.
+    float cover = 1.0 - crown_gap(filled.x + filled.y, 0.15);
     vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(filled.x + filled.y, 1e-6));
     s.diffuse = mix(s.diffuse, colour * trees_crown_sunlight(stand, per_m2) / drawn, cover);
     s.ambient = mix(s.ambient, colour, cover);

@@ -27,7 +27,8 @@ vec3 instances_shadow_along(in vec3 position_m) {
 
 /// A place in a shadow map: -1..1 over its sides, and 0..1 its depth. Receivers have all of that; what casts shadows may
 /// lie beyond.
-/// @param along  of instances_shadow_along(); @param map  of frame.instance_shadow_maps
+/// @param along  of instances_shadow_along()
+/// @param map    of frame.instance_shadow_maps
 vec3 instances_shadow_place(in vec3 along, in vec4 map) {
     vec3 at = (along + map.xyz) * map.w;
     return vec3(at.xy, 0.5 + 0.3 * at.z);
