@@ -86,5 +86,5 @@ float crown_gap(in float filled, in float cells) {
 /// @param slant  area that crowns hide from the sun less what they hide from above, over the ground's area
 /// @param taper  0: ellipsoids, 1: cones
 float crown_sunlight(in float slant, in float taper) {
-    return 1.0 / (1.0 + mix(0.12, 0.35, taper) * max(slant, 0.0));  // fitted likewise, for suns above 12 degrees
+    return 1.0 / (1.0 + mix(0.15, 0.45, taper) * max(slant, 0.0));  // fitted likewise, for suns above 12 degrees
 }
