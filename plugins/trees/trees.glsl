@@ -91,16 +91,12 @@ vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
                          (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
 }
 
-/// Share of the ground that no crown hides. @param filled  of trees_filled()
-float trees_gap(in vec2 filled, in float per_m2) {
-    float both = filled.x + filled.y;
-    return crown_gap(both, both / max(per_m2 * trees_spacing_m * trees_spacing_m, 1e-6));
-}
-
 /// Share of a direction's light that reaches the ground, through gaps and through crowns.
 /// @param apart  0..1: 1 where the eye looks through other gaps
 float trees_lit(in trees_Stand stand, in float per_m2, in float cosine, in float apart) {
-    return mix(trees_light, 1.0, pow(trees_gap(trees_filled(stand, per_m2, cosine), per_m2), apart));
+    vec2 filled = trees_filled(stand, per_m2, cosine);
+    float both = filled.x + filled.y, cells = both / max(per_m2 * trees_spacing_m * trees_spacing_m, 1e-6);
+    return mix(trees_light, 1.0, crown_gap(both, cells, apart));
 }
 
 /// How far the ground that crowns hide from the sun is other ground than what they hide from the eye, 0..1: middles of

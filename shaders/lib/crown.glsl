@@ -77,9 +77,13 @@ float crown_cone_area_m2(in Crown crown, in float cosine) {
 /// in each at most: the farther a crown's shadow reaches over others' cells, the less even they are.
 /// @param filled  area that crowns hide, crown_area_m2() of each, over the ground's area
 /// @param cells   area that a crown hides over the area of a cell
-float crown_gap(in float filled, in float cells) {
+/// @param apart   0..1, the exponent of the share: 1 of all ground, less of ground that is known to be seen from elsewhere
+float crown_gap(in float filled, in float cells, in float apart) {
     float order = max(1.0 + 1.35 * cells, filled);  // fitted to ellipsoids and cones of 8 to 20 m in cells of 10 m
-    return pow(max(1.0 - filled / order, 0.0), order);
+    return pow(max(1.0 - filled / order, 1e-6), order * apart);
+}
+float crown_gap(in float filled, in float cells) {
+    return crown_gap(filled, cells, 1.0);
 }
 
 /// Share of the sun's light on the sunny side of crowns that other crowns do not keep off, in the mean, 0..1.
