@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,6 +31,7 @@ class Linter {
         check_parameters();
         check_passes();
         check_derivatives();
+        check_ambient();
         return std::move(findings_);
     }
 
@@ -190,6 +192,45 @@ class Linter {
                                 ? "use textureGrad with s.ground_dx_m and s.ground_dy_m"
                                 : "use s.height_dx_m, s.height_dy_m, s.ground_dx_m or "
                                   "s.ground_dy_m"));
+        }
+    }
+
+    /// Where functions assign a member of Surface: "s.diffuse =" or "s.diffuse.r =".
+    /// @param within  names of the functions
+    /// @returns files and lines
+    std::vector<std::pair<std::string, int>> assignments(
+        std::string_view member, const std::set<std::string>& within) const {
+        std::vector<std::pair<std::string, int>> found;
+        for (const shader::Snippet& snippet : effect_.snippets) {
+            const shader::Source& source = snippet.source;
+            const auto word = [&](std::size_t i) {
+                return i < source.tokens.size() ? source.str(source.tokens[i]) : "";
+            };
+            for (const shader::Item& item : source.items) {
+                if (item.kind != shader::Item::Kind::Function || !within.contains(item.names[0]))
+                    continue;
+                for (std::size_t i = item.first; i + 2 < item.last; ++i) {
+                    if (word(i) != "." || word(i + 1) != member) continue;
+                    const std::size_t after = word(i + 2) == "." ? i + 4 : i + 2;
+                    if (word(after) == "=") found.emplace_back(snippet.file, source.tokens[i].line);
+                }
+            }
+        }
+        return found;
+    }
+
+    /// Ground that is painted in direct light alone keeps its earlier colour in shade.
+    void check_ambient() {
+        for (const std::string& hook : hook_functions([](const shader::HookFunction& function) {
+                 return function.hook->signature.find("inout Surface") != std::string_view::npos;
+             })) {
+            const std::set<std::string> reached = reached_from({hook});
+            const auto painted = assignments("diffuse", reached);
+            if (painted.empty() || !assignments("ambient", reached).empty()) continue;
+            add(false, painted[0].first, painted[0].second,
+                fmt::format("{} sets diffuse without ambient, so the ground keeps its earlier "
+                            "colour in the sky's light and in shade; set s.ambient, too",
+                            hook));
         }
     }
 

@@ -72,7 +72,8 @@ struct Instance {
     float turn;      // about the vertical, counter-clockwise as seen from above [rad]
     vec3 colour;     // mean reflectance, linear; meshes vary it
     int kind;        // which of the meshes, from 0
-    float taper;     // of its sprite: 0 an ellipse, 1 a cone
+    float taper;     // of its sprite and its shadow: 0 an ellipse, 1 a cone
+    float sun;       // share of the sun's light that passes the instances whose shadows are not drawn, 0..1; at first 1
 };
 
 /// A texel of a plugin's pass.

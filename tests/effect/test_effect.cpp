@@ -186,6 +186,24 @@ INSTANTIATE_TEST_SUITE_P(
             R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})", kHook,
             "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
             "[0.5, 100000] but got 1e-09"},
+        Mismatch{"InstancesThatLetTooMuchLightThrough",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "light_through": 1.5,
+                    "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.light_through: expected a "
+                 "number in [0, 1] but got 1.5"},
+        Mismatch{"InstancesWithoutAShadowThatLetLightThrough",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "casts_shadow": false,
+                    "light_through": 0.5, "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: instances.oak.light_through: expected none "
+                 "where casts_shadow is false"},
+        Mismatch{"InstancesWhoseShadowIsANumber",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "casts_shadow": 1,
+                    "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.casts_shadow: expected true or "
+                 "false but got 1"},
         Mismatch{"InstancesOfAMeshOutside",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["../oak.obj"]}]}})",

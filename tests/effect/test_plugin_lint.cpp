@@ -95,7 +95,7 @@ TEST(PluginLint, NamesDerivativesThatAreNotThere) {
     EXPECT_THAT(
         findings("uniform sampler2D dust_map;\n"
                  "void dust_on_material(inout Surface s) {\n"
-                 "    s.diffuse = texture(dust_map, s.ground_m.xy).rgb;\n"
+                 "    s.diffuse = s.ambient = texture(dust_map, s.ground_m.xy).rgb;\n"
                  "    s.diffuse *= dFdx(s.height_m);\n"
                  "}\n",
                  texture),
@@ -110,6 +110,27 @@ TEST(PluginLint, NamesDerivativesThatAreNotThere) {
                          "    return texture(dust_map, at).rgb;\n"
                          "}\n",
                          texture),
+                IsEmpty());
+}
+
+TEST(PluginLint, NamesHooksThatPaintTheGroundInDirectLightAlone) {
+    const std::string expected =
+        "warning plugins/dust/dust.glsl:2: dust_on_material sets diffuse without ambient, so the "
+        "ground keeps its earlier colour in the sky's light and in shade; set s.ambient, too";
+    EXPECT_THAT(findings("void dust_on_material(inout Surface s) {\n"
+                         "    s.diffuse = mix(s.ambient, vec3(0.4), 0.5);\n"
+                         "}\n"),
+                ElementsAre(expected));
+    EXPECT_THAT(findings("void dust_paint(inout Surface s) {\n"
+                         "    s.diffuse.rg = vec2(0.4);\n"
+                         "}\n"
+                         "void dust_on_material(inout Surface s) { dust_paint(s); }\n"),
+                ElementsAre(expected));
+    EXPECT_THAT(findings("void dust_paint(inout Surface s) { s.ambient = s.diffuse; }\n"
+                         "void dust_on_material(inout Surface s) {\n"
+                         "    s.diffuse = vec3(0.4);\n"
+                         "    dust_paint(s);\n"
+                         "}\n"),
                 IsEmpty());
 }
 
