@@ -37,7 +37,9 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
             graph.resources[static_cast<std::size_t>(plan.memory[m].resources.front())];
         if (first.kind == ResourceKind::Buffer) {
             buffers_[m] = gl::Buffer(std::vector<std::byte>(first.size.bytes), label);
-            views_[m] = gl::BufferTexture(buffers_[m], first.format, label);
+            // Shaders read buffers of numbers; others belong to bodies of passes alone.
+            if (first.format == gl::Format::R32F || first.format == gl::Format::R32UI)
+                views_[m] = gl::BufferTexture(buffers_[m], first.format, label);
             continue;
         }
         textures_[m] = pool.take(kind_of(first.kind), first.format,

@@ -1,4 +1,5 @@
 // How often passes are executed, and what their bodies may use.
+#include <stdexcept>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ Resource kept(const std::string& name, double share) {
 struct NoServices : FrameServices {
     void upload_blocks(const FrameBlock&) override {}
     void make_footprint(const Footprint&) override {}
-    void draw_instances(const std::string&, bool, PassContext&) override {}
+    Instances& instances() override { throw std::logic_error("there are no instances"); }
     void prepare_native(const std::string&, PassContext&) override {}
 };
 
