@@ -15,7 +15,7 @@ namespace relevo::render {
 
 // shaders/lib/instances.glsl has these too.
 inline constexpr double kLowest_px = 4;    ///< lowest instances that are drawn as meshes
-inline constexpr double kMostCells = 350;  ///< from the eye; bounds how many are drawn
+inline constexpr double kMostCells = 240;  ///< from the eye; bounds how many are drawn
 
 /// A rectangle of sites of instances, within one quadrant of a tile of the ground.
 struct InstanceBlock {
