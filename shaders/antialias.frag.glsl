@@ -1,20 +1,23 @@
 //! provides  smooth silhouettes, drawn where edges.frag.glsl has marked them
-//! reads     colour: sRGB; depth, reversed
+//! reads     colour: sRGB; edge_depth, reversed
 //! writes    colour: sRGB
 //! source    after T. Lottes, FXAA (NVIDIA white paper, 2009): find the edge, walk to its two ends, and
 //!           move the sample across it by how near the closer end is
 //!
-//! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp.
+//! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp. The
+//! filter is a tent as wide as two pixels, so that an edge between two pixels blends both a little, too: of
+//! a box, long edges that are nearly level would keep their steps.
+
+//@ include lib/edge_depth.glsl
 
 uniform sampler2D colour;
-uniform sampler2D depth;
 
 layout(location = 0) out vec4 colour_out;
 
 const int kSteps = 12;  // how far an edge is followed each way [px]
 
 float depth_at(in ivec2 pixel) {
-    return texelFetch(depth, clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r;
+    return edge_depth(clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1));
 }
 
 /// Steps from `pixel` along an edge until the mean of its two sides is no longer `middle`.
@@ -52,9 +55,13 @@ void main() {
     int back_steps = steps_to_end(pixel, -along, across, middle, tolerance, miss_back);
     int on_steps = steps_to_end(pixel, along, across, middle, tolerance, miss_on);
     float miss = back_steps < on_steps ? miss_back : miss_on;
-    // Only the pixels on the side that the edge moves to at its nearer end are blended.
-    bool moves_here = abs(miss) > tolerance && (miss > 0.0) == (beyond > here);
-    float amount = 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps);
-    vec2 at = gl_FragCoord.xy + (moves_here ? amount : 0.0) * vec2(across);
+    // At its nearer end the edge moves by half a pixel to one side, in its middle by nothing.
+    float moves = abs(miss) > tolerance
+                      ? 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps)
+                      : 0.0;
+    bool moves_here = (miss > 0.0) == (beyond > here);
+    float away = 0.5 + (moves_here ? -moves : moves);  // from the pixel's centre to the edge [px]
+    float amount = 0.5 * (1.0 - away) * (1.0 - away);
+    vec2 at = gl_FragCoord.xy + amount * vec2(across);
     colour_out = textureLod(colour, at * frame.viewport.zw, 0.0);
 }

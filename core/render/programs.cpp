@@ -77,7 +77,9 @@ class Stitcher {
             answers(input, "image") || answers(input, "finish") || answers(input, "overlay");
         facts_.overlays = options.overlay_raster || answers(input, "display");
         facts_.overlay_raster = options.overlay_raster;
-        facts_.surface = reads(input, "core.normal") || reads(input, "core.shadow");
+        facts_.surface = options.data || reads(input, "core.normal") || reads(input, "core.shadow");
+        facts_.data = options.data;
+        facts_.deep = options.deep;
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;
         facts_.displaced = answers(input, "displace");

@@ -28,6 +28,8 @@ struct ProgramOptions {
     /// "post".
     bool shown = false;
     bool antialias = true;
+    bool deep = false;  ///< display-referred colours have 16 bits
+    bool data = false;  ///< keeps the data of PixelData of readback.h
     /// Terrain programs also write what audits read: SunSeen of readback.h.
     bool audited = false;
     /// For software renderers: slivers clipped at the near plane have heights of NaN, and filters

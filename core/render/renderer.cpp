@@ -84,6 +84,8 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                           .overlay_raster = options.overlay_raster,
                           .shown = !options.radiance,
                           .antialias = options.antialias,
+                          .deep = options.deep,
+                          .data = options.data,
                           .audited = options.audited,
                           .software = info.device.software};
     for (const effect::NativeModule* const module : effects.modules)
@@ -220,8 +222,9 @@ struct Renderer::Impl : FrameServices {
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
 
     void draw_instances(const std::string& resource, bool sprites, PassContext& frame) override {
-        const LodView view = LodView::of_camera(frame.inputs.camera, frame.width_px,
-                                                frame.height_px, 1, frame.inputs.exaggeration);
+        const glm::ivec2 picture = frame.picture_px();
+        const LodView view = LodView::of_camera(frame.inputs.camera, picture.x, picture.y, 1,
+                                                frame.inputs.exaggeration);
         instances.draw(resource, sprites, frame.terrain, frame.tiles, view,
                        length(glm::vec3(frame.block.pixel_ray_dx)));
     }
@@ -323,9 +326,9 @@ struct Renderer::Impl : FrameServices {
                                          const FrameInputs& inputs, FrameBlock block) {
         describe(terrain, inputs, block);
         probe.aim(inputs, ground, block);
-        const TileSelection below =
-            terrain.select_below(inputs.camera, options.width_px, options.height_px,
-                                 inputs.exaggeration, inputs.deterministic);
+        const glm::ivec2 picture = picture_px(inputs, options.width_px, options.height_px);
+        const TileSelection below = terrain.select_below(inputs.camera, picture.x, picture.y,
+                                                         inputs.exaggeration, inputs.deterministic);
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
@@ -481,6 +484,16 @@ int Renderer::triangles() const {
 
 image::Image8 Renderer::read_output(int* non_finite) const {
     return render::read_output(output(), non_finite);
+}
+
+image::Image16 Renderer::read_output16(int* non_finite) const {
+    assert(impl_->options.deep);
+    return render::read_output16(output(), non_finite);
+}
+
+PixelData Renderer::read_data() const {
+    assert(impl_->options.data);
+    return render::read_data(impl_->runner.texture(kSurfaceTexture), depth());
 }
 
 NonFinite Renderer::non_finite() const {

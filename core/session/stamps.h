@@ -26,10 +26,12 @@ bool needs_depths(const scene::Stamps& wanted);
 
 /// Draws a scene's stamps on its picture.
 /// @param legends  of the colours in it
+/// @param depths_m  of the picture, if it is not the session's last frame
 /// @returns sentences on stamps that were omitted
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture);
+                                    image::Image8& picture,
+                                    const std::vector<float>* depths_m = nullptr);
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
                                     image::Image8& picture);
 

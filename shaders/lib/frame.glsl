@@ -54,4 +54,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 eye_axes;            // xy: columns and rows to a metre east, zw: north, there; 0 where that is unknown
     float seconds;            // of effects that move [s]: --seconds, or the time that the window has been open
     float time_of_year;       // 0 at the beginning of January, 1 at the end of December, UTC
+    float part_left;          // of a frame that is a tile of a large picture: its lower left corner from that of the
+    float part_below;         // picture [px]; 0 where the frame is the picture
+    vec4 picture;             // the whole picture; xy: width and height [px], zw: their inverses
 } frame;
