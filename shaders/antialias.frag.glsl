@@ -20,18 +20,30 @@ float depth_at(in ivec2 pixel) {
     return edge_depth(clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1));
 }
 
-/// Steps from `pixel` along an edge until the mean of its two sides is no longer `middle`.
-/// @param miss  by how much it differs there; within the tolerance where no end was found
-int steps_to_end(in ivec2 pixel, in ivec2 along, in ivec2 across, in float middle, in float tolerance,
-                 out float miss) {
-    int steps = 0;
-    miss = 0.0;
-    while (steps < kSteps && abs(miss) <= tolerance) {
-        ++steps;
-        ivec2 at = pixel + along * steps;
-        miss = 0.5 * (depth_at(at) + depth_at(at + across)) - middle;
+/// An end of an edge: how far it is [px], and which way the edge moves there.
+struct End {
+    int steps;
+    int moves;  // 1 to this side of it, -1 to the other one; 0 where no end was found
+};
+
+/// Follows an edge until its step is gone: both pixels then show the side that the edge moves away from.
+/// Depths may change along the edge as they like.
+End end_of_edge(in ivec2 pixel, in ivec2 along, in ivec2 across, in float here, in float beyond) {
+    float least = 0.5 * abs(beyond - here);
+    bool up = beyond > here;
+    End end = End(0, 0);
+    while (end.steps < kSteps && end.moves == 0) {
+        ++end.steps;
+        ivec2 at = pixel + along * end.steps;
+        float a = depth_at(at), b = depth_at(at + across);
+        if (abs(b - a) < least || (b > a) != up)
+            end.moves = abs(a - beyond) + abs(b - beyond) < abs(a - here) + abs(b - here) ? 1 : -1;
+        else {
+            here = a;
+            beyond = b;
+        }
     }
-    return steps;
+    return end;
 }
 
 void main() {
@@ -49,18 +61,12 @@ void main() {
         across = -across;
         beyond = behind;
     }
-    float middle = 0.5 * (here + beyond);
-    float tolerance = 0.25 * abs(beyond - here);
-    float miss_back, miss_on;
-    int back_steps = steps_to_end(pixel, -along, across, middle, tolerance, miss_back);
-    int on_steps = steps_to_end(pixel, along, across, middle, tolerance, miss_on);
-    float miss = back_steps < on_steps ? miss_back : miss_on;
-    // At its nearer end the edge moves by half a pixel to one side, in its middle by nothing.
-    float moves = abs(miss) > tolerance
-                      ? 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps)
-                      : 0.0;
-    bool moves_here = (miss > 0.0) == (beyond > here);
-    float away = 0.5 + (moves_here ? -moves : moves);  // from the pixel's centre to the edge [px]
+    End before = end_of_edge(pixel, -along, across, here, beyond);
+    End after = end_of_edge(pixel, along, across, here, beyond);
+    // At its nearer end the edge is half a pixel to one side, in its middle between the pixels.
+    int moves = before.steps < after.steps ? before.moves : after.moves;
+    float share = float(min(before.steps, after.steps)) / float(before.steps + after.steps);
+    float away = 0.5 - float(moves) * (0.5 - share);  // from the pixel's centre to the edge [px]
     float amount = 0.5 * (1.0 - away) * (1.0 - away);
     vec2 at = gl_FragCoord.xy + amount * vec2(across);
     colour_out = textureLod(colour, at * frame.viewport.zw, 0.0);

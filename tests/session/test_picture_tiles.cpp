@@ -69,8 +69,9 @@ TEST(SampleSum, OfOneFrameIsThatFrame) {
         all.values[i] = static_cast<std::uint16_t>(i);
     SampleSum sum(256, 256, false);
     sum.add(all, {});
+    const image::Image16 mean = sum.colours();
     for (std::size_t i = 0; i < all.values.size(); ++i)
-        ASSERT_NEAR(sum.colours().values[i], all.values[i], 1);
+        ASSERT_NEAR(mean.values[i], all.values[i], 1);
 }
 
 TEST(SampleSum, LeavesTransparentSamplesOutOfColourAndAlpha) {
