@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "render/graph/plan.h"
 #include "render/pass_texts.h"
+#include "render/renderer.h"
 #include "shader/driver_hints.h"
 
 namespace relevo::render {
@@ -308,6 +309,18 @@ gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text
         "render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
         shader::brief_text(log, {stage.text, text.stitched.names, text.stitched.values}),
         remedy(text.stitched, log.blamed())));
+}
+
+std::vector<shader::Param> core_params() {
+    shader::Param normal;
+    normal.name = "terrain_normal";
+    normal.address = kNormalAddress;
+    normal.type = shader::ParamType::Int;
+    normal.words = {"fragment", "vertex"};
+    normal.is_static = true;
+    normal.label = "Normals";
+    normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
+    return {normal};
 }
 
 }  // namespace relevo::render

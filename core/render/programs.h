@@ -21,6 +21,9 @@ struct ProgramText {
     static ProgramText of(std::string name, shader::Stitched stitched);
 };
 
+/// Address of core's parameter in core_params() of renderer.h.
+inline constexpr const char* kNormalAddress = "terrain.normal";
+
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool overlay_raster = false;  ///< with an overlay: Terrain::set_overlay

@@ -53,8 +53,6 @@ int day_of(double unix_s) {
     return climate::day_of_year(date.month, date.day);
 }
 
-constexpr const char* kNormalAddress = "terrain.normal";
-
 /// "render: terrain: 13 of 16 texture units; bump.rock also serves as layering.rock"
 std::string units_text(const ProgramText& program, int max_texture_units) {
     std::string text = fmt::format("render: {}: {} of {} texture units", program.name,
@@ -95,18 +93,6 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
     for (const ProgramText& text : frames.programs)
         log::debug(units_text(text, info.max_texture_units));
     return frames;
-}
-
-std::vector<shader::Param> core_params() {
-    shader::Param normal;
-    normal.name = "terrain_normal";
-    normal.address = kNormalAddress;
-    normal.type = shader::ParamType::Int;
-    normal.words = {"fragment", "vertex"};
-    normal.is_static = true;
-    normal.label = "Normals";
-    normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
-    return {normal};
 }
 
 struct Renderer::Impl : FrameServices {
