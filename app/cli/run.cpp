@@ -20,7 +20,6 @@
 #include "cli/format_arguments.h"
 #include "cli/scene_arguments.h"
 #include "cli/shard.h"
-#include "cli/trust.h"
 #include "scene/job.h"
 #include "session/batch.h"
 #include "session/made.h"
@@ -155,7 +154,8 @@ class Run {
             job.folder.clear();
         }
         files_.add_input(arguments_.job, "the job");
-        Trust trusted(arguments_.scene, "job: " + printable(arguments_.job), NamedBy::File);
+        session::Trust trusted(arguments_.scene.named(), "job: " + printable(arguments_.job),
+                               session::NamedBy::File);
         for (const scene::JobFile& file : job.files)
             files_.add_input(file.path, file.what);
         scene::Shots drawn_up = scene::shots_of(
