@@ -228,6 +228,10 @@ void capture(const Arguments& arguments) {
     const session::SceneIn scene_in = session::scene_in(output, hashed);
     const bool sidecar =
         arguments.sidecar || arguments.audit || scene_in == session::SceneIn::Sidecar;
+    if (arguments.format.is_standard_output(arguments.output) && (sidecar || arguments.watch))
+        bad_usage(
+            "-o -: --sidecar, --audit, --watch and scenes that are too long for the format "
+            "need a file; name one");
     OutputFile* const sidecar_file =
         open(sidecar ? session::sidecar_to_write(output).string() : "", "--sidecar");
 

@@ -6,12 +6,6 @@
 #include "cli/shared.h"
 
 namespace relevo::cli {
-namespace {
-
-constexpr const char* kStandardOutput = "-";
-
-}  // namespace
-
 void FormatArguments::add_to(CLI::App& verb, bool with_format) {
     if (with_format)
         verb.add_option("--format", format,
@@ -31,17 +25,17 @@ void FormatArguments::add_to(CLI::App& verb, bool with_format) {
 }
 
 image::Encoding FormatArguments::encoding(const std::string& output) const {
-    if (output == kStandardOutput && format.empty())
+    if (is_standard_output(output) && format.empty())
         bad_usage("-o -: the format is missing; add --format png");
-    if (output != kStandardOutput && !format.empty())
+    if (!is_standard_output(output) && !format.empty())
         bad_usage("--format: only of -o -; the ending of a file's name is its format");
-    if (output == kStandardOutput && isatty(STDOUT_FILENO))
+    if (is_standard_output(output) && isatty(STDOUT_FILENO))
         bad_usage("-o -: standard output is a terminal; redirect it to a file or a program");
     return {.format = format, .bits = bits.value_or(8), .quality = quality};
 }
 
 std::filesystem::path FormatArguments::named(const std::string& output) const {
-    return output == kStandardOutput ? "standard output." + format : output;
+    return is_standard_output(output) ? "standard output." + format : output;
 }
 
 session::PictureFormat FormatArguments::picture() const {
@@ -49,7 +43,7 @@ session::PictureFormat FormatArguments::picture() const {
 }
 
 std::string to_file(const std::string& output) {
-    return output == kStandardOutput ? "/dev/stdout" : output;
+    return FormatArguments::is_standard_output(output) ? "/dev/stdout" : output;
 }
 
 }  // namespace relevo::cli

@@ -24,6 +24,7 @@ struct FormatArguments {
     /// @param output  as -o names it. @throws Error (Usage) for --format of a file, and for a
     /// terminal
     image::Encoding encoding(const std::string& output = {}) const;
+    static bool is_standard_output(const std::string& output) { return output == "-"; }
     /// A name whose ending is the format.
     std::filesystem::path named(const std::string& output) const;
     /// @throws Error (BadInput) for unknown layers
