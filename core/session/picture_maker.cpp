@@ -110,6 +110,10 @@ PictureMaker::PictureMaker(Session::Impl& impl)
     }
     const int side_px = side_of(std::min(format_.frame_px, kTileFrame_px), max_side_px);
     tiles_ = tiles_of(picture_px_, side_px, kMargin_px);
+    if (!format_.layers.empty())
+        bad_input(
+            fmt::format("--layers: expected a picture of at most {:.0f} pixels but got {} x {}",
+                        format_.frame_px, picture_px_.x, picture_px_.y));
     if (impl.drawn->without())
         bad_input(fmt::format("--ab: expected a picture of at most {:.0f} pixels but got {} x {}",
                               format_.frame_px, picture_px_.x, picture_px_.y));
