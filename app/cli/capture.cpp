@@ -85,6 +85,15 @@ class Timings {
     render::PassTimes* passes() { return file_ ? &passes_ : nullptr; }
     void add(const std::string& stage, double took_ms) { stages_[stage] = took_ms; }
 
+    /// Of the whole picture: its first frame's passes, and what comes after them.
+    void add_picture(double took_ms) {
+        double passes_ms = 0;
+        for (const auto& [name, ms] : passes_)
+            passes_ms += ms;
+        add("passes", passes_ms);
+        add("readback", std::max(took_ms - passes_ms, 0.0));
+    }
+
     void write(session::Session& session, int repeat) {
         if (!file_) return;
         nlohmann::ordered_json json;
@@ -258,7 +267,7 @@ void capture(const Arguments& arguments) {
     const auto passes_began = Clock::now();
     std::optional<image::Picture> picture;
     if (!in_bands) picture = session.make_picture(timings.passes());
-    timings.add("passes", milliseconds_since(passes_began));
+    timings.add_picture(milliseconds_since(passes_began));
 
     recorded.wait();
     const image::Metadata metadata = session::metadata_of(session, inputs, scene_in);
