@@ -11,6 +11,8 @@ pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
 find_package(TIFF REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(heif REQUIRED IMPORTED_TARGET libheif)
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake files want its programs too
 find_package(GDAL CONFIG REQUIRED)
 find_package(date REQUIRED)

@@ -1,34 +1,49 @@
 //! provides  smooth silhouettes, drawn where edges.frag.glsl has marked them
-//! reads     colour: sRGB; depth, reversed
+//! reads     colour: sRGB; edge_depth, reversed
 //! writes    colour: sRGB
 //! source    after T. Lottes, FXAA (NVIDIA white paper, 2009): find the edge, walk to its two ends, and
 //!           move the sample across it by how near the closer end is
 //!
-//! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp.
+//! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp. The
+//! filter is a tent as wide as two pixels, so that an edge between two pixels blends both a little, too: of
+//! a box, long edges that are nearly level would keep their steps.
+
+//@ include lib/edge_depth.glsl
 
 uniform sampler2D colour;
-uniform sampler2D depth;
 
 layout(location = 0) out vec4 colour_out;
 
 const int kSteps = 12;  // how far an edge is followed each way [px]
 
 float depth_at(in ivec2 pixel) {
-    return texelFetch(depth, clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r;
+    return edge_depth(clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1));
 }
 
-/// Steps from `pixel` along an edge until the mean of its two sides is no longer `middle`.
-/// @param miss  by how much it differs there; within the tolerance where no end was found
-int steps_to_end(in ivec2 pixel, in ivec2 along, in ivec2 across, in float middle, in float tolerance,
-                 out float miss) {
-    int steps = 0;
-    miss = 0.0;
-    while (steps < kSteps && abs(miss) <= tolerance) {
-        ++steps;
-        ivec2 at = pixel + along * steps;
-        miss = 0.5 * (depth_at(at) + depth_at(at + across)) - middle;
+/// An end of an edge: how far it is [px], and which way the edge moves there.
+struct End {
+    int steps;
+    int moves;  // 1 to this side of it, -1 to the other one; 0 where no end was found
+};
+
+/// Follows an edge until its step is gone: both pixels then show the side that the edge moves away from.
+/// Depths may change along the edge as they like.
+End end_of_edge(in ivec2 pixel, in ivec2 along, in ivec2 across, in float here, in float beyond) {
+    float least = 0.5 * abs(beyond - here);
+    bool up = beyond > here;
+    End end = End(0, 0);
+    while (end.steps < kSteps && end.moves == 0) {
+        ++end.steps;
+        ivec2 at = pixel + along * end.steps;
+        float a = depth_at(at), b = depth_at(at + across);
+        if (abs(b - a) < least || (b > a) != up)
+            end.moves = abs(a - beyond) + abs(b - beyond) < abs(a - here) + abs(b - here) ? 1 : -1;
+        else {
+            here = a;
+            beyond = b;
+        }
     }
-    return steps;
+    return end;
 }
 
 void main() {
@@ -46,15 +61,13 @@ void main() {
         across = -across;
         beyond = behind;
     }
-    float middle = 0.5 * (here + beyond);
-    float tolerance = 0.25 * abs(beyond - here);
-    float miss_back, miss_on;
-    int back_steps = steps_to_end(pixel, -along, across, middle, tolerance, miss_back);
-    int on_steps = steps_to_end(pixel, along, across, middle, tolerance, miss_on);
-    float miss = back_steps < on_steps ? miss_back : miss_on;
-    // Only the pixels on the side that the edge moves to at its nearer end are blended.
-    bool moves_here = abs(miss) > tolerance && (miss > 0.0) == (beyond > here);
-    float amount = 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps);
-    vec2 at = gl_FragCoord.xy + (moves_here ? amount : 0.0) * vec2(across);
+    End before = end_of_edge(pixel, -along, across, here, beyond);
+    End after = end_of_edge(pixel, along, across, here, beyond);
+    // At its nearer end the edge is half a pixel to one side, in its middle between the pixels.
+    int moves = before.steps < after.steps ? before.moves : after.moves;
+    float share = float(min(before.steps, after.steps)) / float(before.steps + after.steps);
+    float away = 0.5 - float(moves) * (0.5 - share);  // from the pixel's centre to the edge [px]
+    float amount = 0.5 * (1.0 - away) * (1.0 - away);
+    vec2 at = gl_FragCoord.xy + amount * vec2(across);
     colour_out = textureLod(colour, at * frame.viewport.zw, 0.0);
 }

@@ -10,7 +10,7 @@
 layout(location = 0) out vec4 light_out;
 
 void main() {
-    vec3 radiance = hook_backdrop(normalize(pixel_ray_at(gl_FragCoord.xy)), gl_FragCoord.xy * frame.viewport.zw);
+    vec3 radiance = hook_backdrop(normalize(pixel_ray_at(gl_FragCoord.xy)), picture_px() * frame.picture.zw);
     float numbers = finite(vec4(radiance, 0.0));
     radiance = exposed(radiance);
 #ifdef SHOWN

@@ -21,6 +21,9 @@ layout(location = 1) out vec4 overlay_out;
 #ifdef SURFACE_OUTPUT
 layout(location = SURFACE_OUTPUT) out vec4 surface_out;
 #endif
+#ifdef WALLS_OUTPUT
+layout(location = WALLS_OUTPUT) out float walls_out;  // lib/edge_depth.glsl
+#endif
 
 void main() {
     Surface s;
@@ -66,5 +69,8 @@ void main() {
 #endif
 #ifdef SURFACE_OUTPUT
     surface_out = vec4(0.0);
+#endif
+#ifdef WALLS_OUTPUT
+    walls_out = clamp(0.5 + 0.25 * s.normal.x + 0.125 * s.normal.y, 0.1, 1.0);
 #endif
 }

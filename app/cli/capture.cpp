@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/format_arguments.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
 #include "effect/search_path.h"
@@ -31,6 +32,7 @@ namespace {
 
 struct Arguments {
     SceneArguments scene;
+    FormatArguments format;
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
@@ -83,6 +85,15 @@ class Timings {
     render::PassTimes* passes() { return file_ ? &passes_ : nullptr; }
     void add(const std::string& stage, double took_ms) { stages_[stage] = took_ms; }
 
+    /// Of the whole picture: its first frame's passes, and what comes after them.
+    void add_picture(double took_ms) {
+        double passes_ms = 0;
+        for (const auto& [name, ms] : passes_)
+            passes_ms += ms;
+        add("passes", passes_ms);
+        add("readback", std::max(took_ms - passes_ms, 0.0));
+    }
+
     void write(session::Session& session, int repeat) {
         if (!file_) return;
         nlohmann::ordered_json json;
@@ -129,16 +140,18 @@ class Timings {
     render::PassTimes passes_;
 };
 
-/// Reads the picture back and encodes it.
-template <typename Picture>
-void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& timings,
-                   const Picture& picture_of) {
-    const auto readback_began = Clock::now();
-    const auto picture = picture_of();
-    timings.add("readback", milliseconds_since(readback_began));
-    const auto write_began = Clock::now();
-    image::write(file, picture, metadata);
-    timings.add("write", milliseconds_since(write_began));
+/// Encodes the picture; one that is too large for memory is drawn here, band by band.
+void write_picture(session::Session& session, const std::optional<image::Picture>& picture,
+                   OutputFile& file, const image::Metadata& metadata,
+                   const image::Encoding& encoding) {
+    if (picture) return image::write(file, *picture, metadata, encoding);
+    const scene::Scene& scene = session.scene();
+    image::BandWriter writer(
+        file,
+        {.width_px = scene.width_px, .height_px = scene.height_px, .alpha = scene.transparent},
+        metadata, encoding);
+    session.make_bands([&](const image::Picture& band) { writer.write(band); });
+    writer.end();
 }
 
 /// "21 June 2026 16:34", local time of the scene's zone.
@@ -181,14 +194,30 @@ void report_scene(const session::Session& session) {
         log::info(note);
 }
 
+void check_shows_ground(const Arguments& arguments, const session::Session& session) {
+    if (!arguments.allow_blank && !session.shows_ground())
+        failed("capture: the picture shows only sky; turn the camera or add --allow-blank");
+}
+
 // In one piece: the stages of a picture in their order.
 void capture(const Arguments& arguments) {
     log::HeldNotices notices;
-    const std::filesystem::path output = arguments.output;
+    const std::filesystem::path output = arguments.format.named(arguments.output);
+    const image::Encoding encoding = arguments.format.encoding(arguments.output);
+    const session::PictureFormat format = arguments.format.picture();
     const auto [scene, compared] = wanted(arguments);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");
-    image::check_format(output, scene.width_px, scene.height_px);
+    image::check_encoding(output, encoding,
+                          {.width_px = scene.width_px,
+                           .height_px = scene.height_px,
+                           .alpha = scene.transparent,
+                           .layers = !format.layers.empty()});
+    const bool linear = image::holds_linear_light(output);
+    const bool in_bands = session::needs_bands(scene, format, linear);
+    if (in_bands) image::check_bands(output);
+    if (in_bands && (arguments.audit || !compared.empty()))
+        bad_usage("--audit and --ab need a picture of less than 1 GiB; use a smaller --size");
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
     if (!arguments.from.empty()) {
@@ -201,18 +230,23 @@ void capture(const Arguments& arguments) {
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
     };
-    OutputFile& picture_file = *open(arguments.output, "image");
+    OutputFile& picture_file = *open(to_file(arguments.output), "image");
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
     scene::Scene hashed = scene::with_absolute_paths(scene);
     const session::SceneIn scene_in = session::scene_in(output, hashed);
     const bool sidecar =
         arguments.sidecar || arguments.audit || scene_in == session::SceneIn::Sidecar;
+    if (arguments.format.is_standard_output(arguments.output) && (sidecar || arguments.watch))
+        bad_usage(
+            "-o -: --sidecar, --audit, --watch and scenes that are too long for the format "
+            "need a file; name one");
     OutputFile* const sidecar_file =
         open(sidecar ? session::sidecar_to_write(output).string() : "", "--sidecar");
 
     session::Options options{.device = arguments.device,
-                             .radiance = image::holds_linear_light(output),
+                             .radiance = linear,
+                             .format = format,
                              .audited = arguments.audit,
                              .compared = compared};
     if (!arguments.dump_shaders.empty())
@@ -231,20 +265,17 @@ void capture(const Arguments& arguments) {
 
     report_scene(session);
     const auto passes_began = Clock::now();
-    session.draw(timings.passes());
-    timings.add("passes", milliseconds_since(passes_began));
+    std::optional<image::Picture> picture;
+    if (!in_bands) picture = session.make_picture(timings.passes());
+    timings.add_picture(milliseconds_since(passes_began));
 
-    const auto shown = [&](auto picture) {
-        if (!arguments.allow_blank && !session.shows_ground())
-            failed("capture: the picture shows only sky; turn the camera or add --allow-blank");
-        return picture;
-    };
     recorded.wait();
     const image::Metadata metadata = session::metadata_of(session, inputs, scene_in);
-    if (options.radiance)
-        write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
-    else
-        write_picture(picture_file, metadata, timings, [&] { return shown(session.picture()); });
+    const auto write_began = Clock::now();
+    if (picture) check_shows_ground(arguments, session);
+    write_picture(session, picture, picture_file, metadata, encoding);
+    if (!picture) check_shows_ground(arguments, session);
+    timings.add("write", milliseconds_since(write_began));
     for (const std::string& note : session.stamp_notes())
         log::info(note);
     if (options.radiance && scene.stamps != scene::Stamps())
@@ -306,8 +337,10 @@ void add_capture(CLI::App& app) {
     CLI::App& verb = *app.add_subcommand("capture", "Makes one picture");
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
-                    "Picture to write: png, jpg, webp, tif, or exr (linear light)")
+                    "Picture to write: png, jpg, webp, avif, tif, or exr (linear light); - is "
+                    "standard output")
         ->required();
+    arguments->format.add_to(verb, /*with_format=*/true);
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_option("--save-scene", arguments->save_scene, "Write the scene as JSON");
     verb.add_option_function<std::string>(

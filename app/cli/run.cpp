@@ -17,6 +17,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/format_arguments.h"
 #include "cli/scene_arguments.h"
 #include "cli/shard.h"
 #include "scene/job.h"
@@ -36,6 +37,7 @@ constexpr std::size_t kMost = 1'000'000'000;
 
 struct Arguments {
     SceneArguments scene;
+    FormatArguments format;
     std::string job, output, device = "auto", shard;
     bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
     bool audit = false, allow_blank = false;
@@ -108,7 +110,7 @@ class Run {
         if (!arguments_.dry_run) times_.before_reading([this](const auto& scene) { hash(scene); });
         shots_ = shots();
         for (const scene::Shot& shot : shots_)
-            image::check_format(shot.output, shot.scene.width_px, shot.scene.height_px);
+            check_format(shot);
         session::settle(shots_, times_, inputs_);
         session::order_for_drawing(shots_);
         for (const scene::Shot& shot : shots_)
@@ -126,6 +128,14 @@ class Run {
     }
 
   private:
+    void check_format(const scene::Shot& shot) const {
+        image::check_encoding(shot.output, arguments_.format.encoding(),
+                              {.width_px = shot.scene.width_px,
+                               .height_px = shot.scene.height_px,
+                               .alpha = shot.scene.transparent,
+                               .layers = !arguments_.format.layers.empty()});
+    }
+
     /// Hashes the files of a scene, so that changes after they were read are noticed.
     void hash(const scene::Scene& scene) {
         try {
@@ -276,6 +286,8 @@ class Run {
         result.sidecar = wants_sidecar();
         result.audit = arguments_.audit;
         result.allow_blank = arguments_.allow_blank;
+        result.encoding = arguments_.format.encoding();
+        result.format = arguments_.format.picture();
         return result;
     }
 
@@ -403,6 +415,7 @@ void add_run(CLI::App& app) {
     const CLI::Option* const output =
         verb.add_option("-o,--output", arguments->output,
                         "Template of the file names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
+    arguments->format.add_to(verb, /*with_format=*/false);
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--resume", arguments->resume,
                   "Skip pictures that exist, complete, of the same scene and from the same files");

@@ -235,8 +235,9 @@ glm::ivec2 parse_size(const std::string& text) {
             *height <= scene::kMaxSide_px)
             return {static_cast<int>(*width), static_cast<int>(*height)};
     }
-    bad_usage(fmt::format(
-        "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got \"{}\"", text));
+    bad_usage(
+        fmt::format("--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to {}, but got \"{}\"",
+                    scene::kMaxSide_px, text));
 }
 
 }  // namespace relevo::cli

@@ -13,6 +13,7 @@ enum class PixelFormat {
     RGBA8,
     Srgb8A8,  ///< R, G, B in sRGB encoding, read as linear; A linear
     R16,
+    RGBA16,
     RG16Snorm,
     RG16UI,
     R16F,
@@ -52,6 +53,7 @@ inline constexpr std::array kPixelLayouts{
     PixelLayout{PixelFormat::RGBA8, 4, 1, ChannelKind::Unorm},
     PixelLayout{PixelFormat::Srgb8A8, 4, 1, ChannelKind::Unorm},
     PixelLayout{PixelFormat::R16, 1, 2, ChannelKind::Unorm},
+    PixelLayout{PixelFormat::RGBA16, 4, 2, ChannelKind::Unorm},
     PixelLayout{PixelFormat::RG16Snorm, 2, 2, ChannelKind::Snorm},
     PixelLayout{PixelFormat::RG16UI, 2, 2, ChannelKind::Whole},
     PixelLayout{PixelFormat::R16F, 1, 2, ChannelKind::Float},

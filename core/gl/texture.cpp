@@ -42,6 +42,8 @@ GLenum storage(Format format) {
             return GL_SRGB8_ALPHA8;
         case Format::R16:
             return GL_R16;
+        case Format::RGBA16:
+            return GL_RGBA16;
         case Format::RG16Snorm:
             return GL_RG16_SNORM;
         case Format::RG16UI:

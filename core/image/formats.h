@@ -31,13 +31,14 @@ inline std::string size_fault(std::uint64_t width_px, std::uint64_t height_px,
 struct FormatsModule {
     /// Each returns an empty text on success, else the reason for failing. Encoders fill memory: of
     /// a disk that is full some would say nothing.
-    std::string (*encode8)(std::vector<std::byte>& bytes, const std::string& format, const Image8&,
-                           const Metadata&);
-    std::string (*encode_float)(std::vector<std::byte>& bytes, const std::string& format,
-                                const ImageF&, const Metadata&);
+    std::string (*encode)(std::vector<std::byte>& bytes, const std::string& format, const Picture&,
+                          const Metadata&, int quality);
     std::string (*read8)(const std::filesystem::path&, Image8&);
     std::string (*read_float)(const std::filesystem::path&, ImageF&);
+    std::string (*read_layers)(const std::filesystem::path&, std::vector<Channel>&);
     std::string (*read_exr_texts)(const std::filesystem::path&, Metadata&);
+    /// Why a format cannot be written on this machine; empty where it can.
+    std::string (*missing)(const std::string& format);
 };
 
 /// The one function that the module exports.

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <new>
 
+#include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <sys/mman.h>
@@ -11,7 +12,9 @@
 #include <tiffio.h>
 #include <unistd.h>
 
+#include "image/avif.h"
 #include "image/formats.h"
+#include "image/webp.h"
 #include "image/xmp.h"
 
 namespace relevo::image {
@@ -61,18 +64,33 @@ class MemoryFile : public OIIO::Filesystem::IOProxy {
 };
 
 template <typename T>
+OIIO::TypeDesc stored_as() {
+    return std::is_same_v<T, float> ? OIIO::TypeDesc::HALF : OIIO::BaseTypeFromC<T>::value;
+}
+
+template <typename T>
 OIIO::ImageSpec spec_of(const Pixels<T>& image, const std::string& format, const Metadata& metadata,
-                        OIIO::TypeDesc stored) {
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, stored);
-    spec.attribute("oiio:ColorSpace", sizeof(T) == 1 ? "sRGB" : "Linear");
-    if (format == "jpeg" || format == "webp") spec.attribute("CompressionQuality", 95);
-    if (format == "tiff") spec.attribute("compression", "zip");
+                        int quality) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, stored_as<T>());
+    spec.attribute("oiio:ColorSpace", std::is_same_v<T, float> ? "Linear" : "sRGB");
+    // Alpha of whole numbers is straight, also where the library would multiply the colours.
+    if (!std::is_same_v<T, float> && image.channels == 4)
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (format == "jpeg" || format == "webp") spec.attribute("CompressionQuality", quality);
+    if (format == "tiff" || format == "openexr") spec.attribute("compression", "zip");
     // Of itself the library writes when it wrote, by which equal pictures would differ.
     spec.attribute("DateTime", "");
     for (const auto& [keyword, text] : metadata)
         if (format == "openexr" || !is_xmp_keyword(keyword))
             spec.attribute(keyword == "Description" ? "ImageDescription" : keyword, text);
     return spec;
+}
+
+/// How to read alpha: as files have it. The library would multiply colours by it.
+OIIO::ImageSpec straight_alpha() {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    return config;
 }
 
 /// Writes all of a picture. @returns the reason for failing, or nothing
@@ -126,7 +144,7 @@ std::string encode_tiff(std::vector<std::byte>& bytes, OIIO::ImageOutput& output
     Pixels<T> again(image.width, image.height, image.channels);
     const auto input = OIIO::ImageInput::create("tiff");
     OIIO::ImageSpec found;
-    if (!input || !input->open(name, found) || found.width != image.width ||
+    if (!input || !input->open(name, found, straight_alpha()) || found.width != image.width ||
         found.height != image.height || found.nchannels != image.channels ||
         !input->read_image(0, 0, 0, image.channels, OIIO::BaseTypeFromC<T>::value,
                            again.values.data()) ||
@@ -143,13 +161,20 @@ std::string encode_tiff(std::vector<std::byte>& bytes, OIIO::ImageOutput& output
 }
 
 template <typename T>
-std::string encode(std::vector<std::byte>& bytes, const std::string& format, const Pixels<T>& image,
-                   const Metadata& metadata, OIIO::TypeDesc stored) {
+std::string encode_pixels(std::vector<std::byte>& bytes, const std::string& format,
+                          const Pixels<T>& image, const Metadata& metadata, int quality) {
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) return OIIO::geterror();
-    const OIIO::ImageSpec spec = spec_of(image, format, metadata, stored);
+    const OIIO::ImageSpec spec = spec_of(image, format, metadata, quality);
     const std::string xmp = xmp_packet(metadata);
     if (format == "tiff") return encode_tiff(bytes, *output, spec, image, xmp);
+    if constexpr (std::is_same_v<T, std::uint8_t>)
+        if (format == "webp" && image.channels == 4) {
+            const std::string reason = encode_webp(bytes, image, quality);
+            return !reason.empty() || xmp.empty()
+                       ? reason
+                       : add_xmp_to_webp(bytes, xmp, image.width, image.height);
+        }
     MemoryFile file(bytes);
     if (!output->supports("ioproxy") || !output->set_ioproxy(&file))
         return "this build of OpenImageIO cannot write the format to memory";
@@ -161,22 +186,118 @@ std::string encode(std::vector<std::byte>& bytes, const std::string& format, con
     return {};
 }
 
+/// The colour of an EXR, and its layers as further channels of the same part. Programs tell layers
+/// by the part of a channel's name before its dot.
+std::string encode_layers(std::vector<std::byte>& bytes, const ImageF& colour,
+                          const std::vector<Channel>& layers, const Metadata& metadata) {
+    const auto output = OIIO::ImageOutput::create("openexr");
+    if (!output) return OIIO::geterror();
+    OIIO::ImageSpec spec = spec_of(colour, "openexr", metadata, 0);
+    spec.channelformats.assign(static_cast<std::size_t>(colour.channels), OIIO::TypeDesc::HALF);
+    for (const Channel& layer : layers) {
+        spec.channelnames.push_back(layer.name);
+        spec.channelformats.push_back(layer.is_whole ? OIIO::TypeDesc::UINT32
+                                                     : OIIO::TypeDesc::FLOAT);
+    }
+    spec.nchannels = static_cast<int>(spec.channelnames.size());
+    MemoryFile file(bytes);
+    if (!output->set_ioproxy(&file) || !output->open("picture.exr", spec))
+        return output->geterror();
+    // Each pixel as the file has it: halves, then four bytes a layer.
+    std::vector<std::byte> row(spec.scanline_bytes(true));
+    for (int y = 0; y < colour.height; ++y) {
+        std::byte* to = row.data();
+        const auto add = [&](auto value) {
+            std::memcpy(to, &value, sizeof value);
+            to += sizeof value;
+        };
+        for (int x = 0; x < colour.width; ++x) {
+            for (int c = 0; c < colour.channels; ++c)
+                add(half(colour.at(x, y, c)));
+            for (const Channel& layer : layers) {
+                const float value = layer.values[static_cast<std::size_t>(y) *
+                                                     static_cast<std::size_t>(colour.width) +
+                                                 static_cast<std::size_t>(x)];
+                if (layer.is_whole)
+                    add(static_cast<std::uint32_t>(value));
+                else
+                    add(value);
+            }
+        }
+        if (!output->write_scanline(y, 0, OIIO::TypeDesc::UNKNOWN, row.data()))
+            return output->geterror();
+    }
+    if (!output->close()) return output->geterror();
+    return file.out_of_memory() ? "not enough memory for the encoded picture" : "";
+}
+
+std::string encode(std::vector<std::byte>& bytes, const std::string& format, const Picture& picture,
+                   const Metadata& metadata, int quality) {
+    if (format == "avif")
+        return encode_avif(bytes, std::get<Image8>(picture.pixels), xmp_packet(metadata), quality);
+    if (!picture.layers.empty())
+        return encode_layers(bytes, std::get<ImageF>(picture.pixels), picture.layers, metadata);
+    return std::visit(
+        [&](const auto& image) { return encode_pixels(bytes, format, image, metadata, quality); },
+        picture.pixels);
+}
+
+/// Channels of an image that are its colour: all of them, or those of an EXR before its layers.
+int colour_channels(const OIIO::ImageSpec& spec) {
+    int count = 0;
+    while (count < spec.nchannels &&
+           spec.channelnames[static_cast<std::size_t>(count)].find('.') == std::string::npos)
+        ++count;
+    return count > 0 ? count : spec.nchannels;
+}
+
 template <typename T>
 std::string read(const std::filesystem::path& path, Pixels<T>& image) {
+    const OIIO::ImageSpec straight = straight_alpha();
+    const auto input = OIIO::ImageInput::open(path.string(), &straight);
+    if (!input) return OIIO::geterror();
+    const OIIO::ImageSpec& spec = input->spec();
+    const int channels = colour_channels(spec);
+    if (channels < 1 || channels > 4) return "expected one to four channels";
+    if (const std::string reason = size_fault(static_cast<std::uint64_t>(std::max(spec.width, 0)),
+                                              static_cast<std::uint64_t>(std::max(spec.height, 0)),
+                                              static_cast<std::uint64_t>(channels) * sizeof(T));
+        !reason.empty())
+        return reason;
+    image = Pixels<T>(spec.width, spec.height, channels);
+    if constexpr (std::is_same_v<T, std::uint8_t>)
+        if (channels == 4 && std::string_view(input->format_name()) == "webp")
+            return decode_webp(path, image);
+    if (!input->read_image(0, 0, 0, channels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
+        return input->geterror();
+    return {};
+}
+
+std::string read_layers(const std::filesystem::path& path, std::vector<Channel>& layers) {
     const auto input = OIIO::ImageInput::open(path.string());
     if (!input) return OIIO::geterror();
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.nchannels < 1 || spec.nchannels > 4) return "expected one to four channels";
     if (const std::string reason =
             size_fault(static_cast<std::uint64_t>(std::max(spec.width, 0)),
                        static_cast<std::uint64_t>(std::max(spec.height, 0)),
-                       static_cast<std::uint64_t>(spec.nchannels) * sizeof(T));
+                       static_cast<std::uint64_t>(spec.nchannels) * sizeof(float));
         !reason.empty())
         return reason;
-    image = Pixels<T>(spec.width, spec.height, spec.nchannels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value,
-                           image.values.data()))
-        return input->geterror();
+    for (int c = colour_channels(spec); c < spec.nchannels; ++c) {
+        Channel layer{.name = spec.channelnames[static_cast<std::size_t>(c)],
+                      .is_whole = spec.channelformat(c) == OIIO::TypeDesc::UINT32};
+        layer.values.resize(static_cast<std::size_t>(spec.width) *
+                            static_cast<std::size_t>(spec.height));
+        // Whole numbers are not scaled to 0..1.
+        std::vector<std::uint32_t> whole(layer.is_whole ? layer.values.size() : 0);
+        const bool done =
+            layer.is_whole
+                ? input->read_image(0, 0, c, c + 1, OIIO::TypeDesc::UINT32, whole.data())
+                : input->read_image(0, 0, c, c + 1, OIIO::TypeDesc::FLOAT, layer.values.data());
+        if (!done) return input->geterror();
+        std::ranges::copy(whole, layer.values.begin());
+        layers.push_back(std::move(layer));
+    }
     return {};
 }
 
@@ -195,17 +316,14 @@ std::string read_exr_texts(const std::filesystem::path& path, Metadata& metadata
 
 extern "C" const FormatsModule* relevo_image_formats() {
     static const FormatsModule module{
-        [](std::vector<std::byte>& bytes, const std::string& format, const Image8& image,
-           const Metadata& metadata) {
-            return encode(bytes, format, image, metadata, OIIO::TypeDesc::UINT8);
-        },
-        [](std::vector<std::byte>& bytes, const std::string& format, const ImageF& image,
-           const Metadata& metadata) {
-            return encode(bytes, format, image, metadata, OIIO::TypeDesc::HALF);
-        },
+        encode,
         [](const std::filesystem::path& path, Image8& image) { return read(path, image); },
         [](const std::filesystem::path& path, ImageF& image) { return read(path, image); },
-        read_exr_texts};
+        read_layers,
+        read_exr_texts,
+        [](const std::string& format) {
+            return format == "avif" ? avif_missing() : std::string();
+        }};
     return &module;
 }
 

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <mutex>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -29,17 +31,22 @@ namespace {
 
 struct Format {
     const char* ending;
-    const char* name;  ///< as OpenImageIO calls it
+    const char* name;  ///< as OpenImageIO calls it; "avif" is libheif's
     bool linear;
-    int largest_px;  ///< side
+    int largest_px;    ///< side
+    bool deep, alpha;  ///< channels of 16 bits; transparent pixels
+    bool quality;      ///< loses something, as much as asked for
 };
 
 constexpr int kAnySize = std::numeric_limits<int>::max();
-constexpr std::array kFormats{
-    Format{".png", "png", false, kAnySize},   Format{".jpg", "jpeg", false, 65500},
-    Format{".jpeg", "jpeg", false, 65500},    Format{".webp", "webp", false, 16383},
-    Format{".tif", "tiff", false, kAnySize},  Format{".tiff", "tiff", false, kAnySize},
-    Format{".exr", "openexr", true, kAnySize}};
+constexpr std::array kFormats{Format{".png", "png", false, kAnySize, true, true, false},
+                              Format{".jpg", "jpeg", false, 65500, false, false, true},
+                              Format{".jpeg", "jpeg", false, 65500, false, false, true},
+                              Format{".webp", "webp", false, 16383, false, true, true},
+                              Format{".avif", "avif", false, 16384, false, true, true},
+                              Format{".tif", "tiff", false, kAnySize, true, true, false},
+                              Format{".tiff", "tiff", false, kAnySize, true, true, false},
+                              Format{".exr", "openexr", true, kAnySize, false, true, false}};
 
 const Format* format_of(const std::filesystem::path& path) {
     const std::string ending = lower(path.extension().string());
@@ -74,10 +81,28 @@ bool is_png(const Format& format) {
     return std::string_view(format.name) == "png";
 }
 
-const Format& known_format(const std::filesystem::path& path) {
-    if (const Format* format = format_of(path)) return *format;
-    bad_input(fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
-                          printable(path.string())));
+/// A name with the format's ending.
+std::filesystem::path named(const std::filesystem::path& path, const Encoding& encoding) {
+    return encoding.format.empty() ? path : std::filesystem::path("picture." + encoding.format);
+}
+
+const Format& known_format(const std::filesystem::path& path, const Encoding& encoding = {}) {
+    const Format* const format = format_of(named(path, encoding));
+    if (format) return *format;
+    bad_input(fmt::format("image: {}: unknown picture format; use png, jpg, webp, avif, tif or exr",
+                          printable(encoding.format.empty() ? path.string() : encoding.format)));
+}
+
+/// @throws Error (BadInput) where a format has none of what is wanted
+/// @param has  whether a format has it
+void check_has(const std::filesystem::path& path, const Format& format, const std::string& what,
+               const std::function<bool(const Format&)>& has) {
+    if (has(format)) return;
+    std::vector<std::string> others;
+    for (const Format& other : kFormats)
+        if (has(other)) others.emplace_back(other.ending + 1);
+    bad_input(fmt::format("image: {}: {} has no {}; use {}", printable(path.string()), format.name,
+                          what, fmt::join(others, ", ")));
 }
 
 /// libjpeg ends the process where it finds no memory. What ends it while an encoder works is that.
@@ -114,25 +139,27 @@ class EncoderAtWork {
 
 thread_local const std::string* EncoderAtWork::at_work = nullptr;
 
-template <typename T, typename Write>
-void write_checked(OutputFile& file, const Pixels<T>& image, Write write_pixels) {
-    const Format& format = known_format(file.path());
+template <typename T>
+void check_holds(const OutputFile& file, const Format& format, const Pixels<T>& image) {
     if (format.linear != std::is_same_v<T, float>)
         failed(fmt::format("image: {}: {} holds {}", printable(file.path().string()), format.name,
                            format.linear ? "linear light" : "8-bit sRGB"));
-    check_format(file.path(), image.width, image.height);
-    write_pixels(format);
+    Encoding encoding{.format = format.ending + 1};
+    if constexpr (!std::is_same_v<T, float>) encoding.bits = 8 * sizeof(T);
+    check_encoding(file.path(), encoding,
+                   {image.width, image.height, image.channels == 2 || image.channels == 4, false});
 }
 
-/// @param encode  FormatsModule's
-template <typename T, typename Encode>
-void write_other(OutputFile& file, const Format& format, const Pixels<T>& image,
-                 const Metadata& metadata, Encode encode) {
+/// Writes formats of the module.
+void write_other(OutputFile& file, const Format& format, const Picture& picture,
+                 const Metadata& metadata, const Encoding& encoding) {
+    const FormatsModule& module = formats_module(file.path());
     std::vector<std::byte> bytes;
     std::string reason;
     {
         const EncoderAtWork at_work(file.path());
-        reason = encode(bytes, format.name, image, metadata);
+        reason = module.encode(bytes, format.name, picture, metadata,
+                               encoding.quality.value_or(kQuality));
     }
     if (!reason.empty())
         failed(fmt::format("image: {}: {}", printable(file.path().string()), reason));
@@ -168,12 +195,26 @@ bool holds_linear_light(const std::filesystem::path& path) {
 }
 
 void check_format(const std::filesystem::path& path, int width_px, int height_px) {
-    const Format& format = known_format(path);
-    if (std::max(width_px, height_px) > format.largest_px)
-        bad_input(fmt::format(
-            "image: {}: {} has sides of at most {} px, but this picture is {}x{}; "
-            "name another format",
-            printable(path.string()), format.name, format.largest_px, width_px, height_px));
+    check_encoding(path, {}, {width_px, height_px, false, false});
+}
+
+void check_encoding(const std::filesystem::path& path, const Encoding& encoding,
+                    const Needs& needs) {
+    const Format& format = known_format(path, encoding);
+    if (std::max(needs.width_px, needs.height_px) > format.largest_px)
+        bad_input(
+            fmt::format("image: {}: {} has sides of at most {} px, but this picture is {}x{}; "
+                        "name another format",
+                        printable(path.string()), format.name, format.largest_px, needs.width_px,
+                        needs.height_px));
+    if (encoding.bits > 8)
+        check_has(path, format, "16-bit channels", [](const Format& f) { return f.deep; });
+    if (encoding.quality)
+        check_has(path, format, "quality to choose", [](const Format& f) { return f.quality; });
+    if (needs.alpha)
+        check_has(path, format, "transparent pixels", [](const Format& f) { return f.alpha; });
+    if (needs.layers)
+        check_has(path, format, "layers of data", [](const Format& f) { return f.linear; });
 }
 
 bool metadata_fits(const std::filesystem::path& path, const Metadata& metadata, std::size_t rest) {
@@ -187,29 +228,36 @@ bool metadata_fits(const std::filesystem::path& path, const Metadata& metadata, 
 }
 
 void load_format(const std::filesystem::path& path) {
-    if (!is_png(known_format(path))) formats_module(path);
+    const Format& format = known_format(path);
+    if (is_png(format)) return;
+    const std::string reason = formats_module(path).missing(format.name);
+    if (!reason.empty())
+        failed(
+            fmt::format("image: {}: {}, or name another format", printable(path.string()), reason));
 }
 
-void write(OutputFile& file, const Image8& image, const Metadata& metadata) {
-    write_checked(file, image, [&](const Format& format) {
-        if (is_png(format))
-            write_png(file, image, metadata);
-        else
-            write_other(file, format, image, metadata, formats_module(file.path()).encode8);
-    });
+void write(OutputFile& file, const Picture& picture, const Metadata& metadata,
+           const Encoding& encoding) {
+    const Format& format = known_format(file.path(), encoding);
+    std::visit([&](const auto& image) { check_holds(file, format, image); }, picture.pixels);
+    const auto* const deep = std::get_if<Image16>(&picture.pixels);
+    if (!is_png(format))
+        write_other(file, format, picture, metadata, encoding);
+    else if (deep)
+        write_png(file, *deep, metadata);
+    else
+        write_png(file, std::get<Image8>(picture.pixels), metadata);
 }
 
-void write(OutputFile& file, const ImageF& image, const Metadata& metadata) {
-    write_checked(file, image, [&](const Format& format) {
-        write_other(file, format, image, metadata, formats_module(file.path()).encode_float);
-    });
+void write(OutputFile& file, Image8 image, const Metadata& metadata) {
+    write(file, Picture{std::move(image)}, metadata);
 }
 
 void write(const std::filesystem::path& path, const Image8& image, const Metadata& metadata,
            bool overwrite) {
     known_format(path);
     OutputFile file(path, overwrite, "image");
-    write(file, image, metadata);
+    write(file, Picture{image}, metadata);
     file.finish();
 }
 
@@ -217,8 +265,42 @@ void write(const std::filesystem::path& path, const ImageF& image, const Metadat
            bool overwrite) {
     known_format(path);
     OutputFile file(path, overwrite, "image");
-    write(file, image, metadata);
+    write(file, Picture{image}, metadata);
     file.finish();
+}
+
+void check_bands(const std::filesystem::path& path) {
+    const Format& format = known_format(path);
+    if (!is_png(format))
+        bad_input(
+            fmt::format("image: {}: {} cannot be written in bands, as pictures of more than 1 GiB "
+                        "are; use png, or a smaller --size",
+                        printable(path.string()), format.name));
+}
+
+struct BandWriter::Impl {
+    PngBands png;
+};
+
+BandWriter::BandWriter(OutputFile& file, const Needs& needs, const Metadata& metadata,
+                       const Encoding& encoding) {
+    check_encoding(file.path(), encoding, needs);
+    check_bands(named(file.path(), encoding));
+    impl_.reset(new Impl{PngBands(file, needs.width_px, needs.height_px, needs.alpha ? 4 : 3,
+                                  encoding.bits, metadata)});
+}
+
+BandWriter::~BandWriter() = default;
+
+void BandWriter::write(const Picture& band) {
+    if (const auto* const deep = std::get_if<Image16>(&band.pixels))
+        impl_->png.write(*deep);
+    else
+        impl_->png.write(std::get<Image8>(band.pixels));
+}
+
+void BandWriter::end() {
+    impl_->png.end();
 }
 
 Image8 read(const std::filesystem::path& path) {
@@ -237,6 +319,14 @@ ImageF read_float(const std::filesystem::path& path) {
     const std::string reason = formats_module(path).read_float(path, image);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return image;
+}
+
+std::vector<Channel> read_layers(const std::filesystem::path& path) {
+    const InputFile only_regular(path, "image");
+    std::vector<Channel> layers;
+    const std::string reason = formats_module(path).read_layers(path, layers);
+    if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
+    return layers;
 }
 
 Metadata read_metadata(const std::filesystem::path& path) {

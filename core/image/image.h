@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -44,8 +46,31 @@ struct Pixels {
 
 /// sRGB-encoded, 0..255, alpha not premultiplied.
 using Image8 = Pixels<std::uint8_t>;
-/// Linear light, as EXR keeps it.
+/// The same, 0..65535.
+using Image16 = Pixels<std::uint16_t>;
+/// Linear light, as EXR keeps it; alpha premultiplied.
 using ImageF = Pixels<float>;
+
+/// A channel of an EXR beside its colour, such as `depth.Z`: a value a pixel, rows from the top.
+struct Channel {
+    std::string name;
+    bool is_whole = false;  ///< whole numbers from 0, stored as such; else 32-bit floats
+    std::vector<float> values;
+};
+
+/// What a picture file holds.
+struct Picture {
+    std::variant<Image8, Image16, ImageF> pixels;
+    std::vector<Channel> layers{};  ///< of an ImageF
+};
+
+/// What a picture file is, as far as its name does not say it.
+struct Encoding {
+    std::string format{};          ///< "png", "jpg" ... of a file without a name; empty: its ending
+    int bits = 8;                  ///< of a channel, 8 or 16; not of EXR, whose colour is in halves
+    std::optional<int> quality{};  ///< 1 to 100, of JPEG, WebP and AVIF; none: kQuality
+};
+inline constexpr int kQuality = 95;
 
 /// A picture of a device, RGBA with rows from below, without its alpha.
 Image8 from_device(int width_px, int height_px, const std::vector<std::uint8_t>& rgba);
@@ -53,10 +78,23 @@ Image8 from_device(int width_px, int height_px, const std::vector<std::uint8_t>&
 /// Text that travels inside a picture, by keyword.
 using Metadata = std::map<std::string, std::string>;
 
-/// Formats by the ending of the file's name: png, jpg, jpeg, webp, tif, tiff hold an Image8, exr an
-/// ImageF.
+/// Formats by the ending of the file's name: png, jpg, jpeg, webp, avif, tif, tiff hold an Image8,
+/// png, tif and tiff also an Image16, exr an ImageF.
 bool is_picture_name(const std::filesystem::path& path);
 bool holds_linear_light(const std::filesystem::path& path);
+
+/// What a picture needs of its format.
+struct Needs {
+    int width_px = 1, height_px = 1;
+    bool alpha = false;   ///< transparent pixels
+    bool layers = false;  ///< Picture::layers
+};
+
+/// Says before any work is done whether the format has what is asked for: size, bits, quality,
+/// alpha, layers.
+/// @throws Error (BadInput) naming the formats that have it
+void check_encoding(const std::filesystem::path& path, const Encoding& encoding,
+                    const Needs& needs);
 
 /// Says before any work is done whether a picture of that size has a format.
 /// @throws Error (BadInput) if the ending of `path` is no picture's, or the format has no room for
@@ -70,12 +108,14 @@ bool metadata_fits(const std::filesystem::path& path, const Metadata& metadata, 
 /// @throws Error (Failed) if it is not installed
 void load_format(const std::filesystem::path& path);
 
-/// Writes a picture to `file`, all of it but finish(). An ImageF goes to EXR, an Image8 to the
-/// other formats.
-/// @throws Error as check_format and load_format, and (Failed) where memory, the disk or the format
+/// Writes a picture to `file`, all of it but finish(). An ImageF goes to EXR, whole numbers to the
+/// other formats. Alpha is stored as each format wants it: straight, in EXR premultiplied.
+/// @throws Error as check_encoding and load_format, and (Failed) where memory, the disk or the
+/// format
 ///     refuses
-void write(OutputFile& file, const Image8& image, const Metadata& metadata = {});
-void write(OutputFile& file, const ImageF& image, const Metadata& metadata = {});
+void write(OutputFile& file, const Picture& picture, const Metadata& metadata = {},
+           const Encoding& encoding = {});
+void write(OutputFile& file, Image8 image, const Metadata& metadata = {});
 
 /// The same for a path. The file appears under its name only when it is whole; an existing one is
 /// replaced only with `overwrite`.
@@ -85,12 +125,42 @@ void write(const std::filesystem::path& path, const Image8& image, const Metadat
 void write(const std::filesystem::path& path, const ImageF& image, const Metadata& metadata = {},
            bool overwrite = false);
 
+/// Says before any work is done whether pictures that are too large for memory, in bands of rows,
+/// can have a format.
+/// @throws Error (BadInput) naming those that can
+void check_bands(const std::filesystem::path& path);
+
+/// Writes a picture to a file band by band, from the top.
+class BandWriter {
+  public:
+    /// @param needs  of the whole picture
+    /// @throws Error as check_encoding and check_bands
+    BandWriter(OutputFile& file, const Needs& needs, const Metadata& metadata,
+               const Encoding& encoding);
+    ~BandWriter();
+    BandWriter(const BandWriter&) = delete;
+    BandWriter& operator=(const BandWriter&) = delete;
+
+    /// Adds rows. @throws Error (Failed) where the disk refuses
+    void write(const Picture& band);
+    /// All but the file's finish(), after the last band.
+    void end();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
 /// Reads a picture of any of those formats as 8-bit sRGB values.
 /// @throws Error (BadInput) if it is missing, broken or no regular file, or too large to be read
 Image8 read(const std::filesystem::path& path);
 
-/// Reads a picture as the values in the file, an 8-bit one scaled to 0..1.
+/// Reads a picture as the values in the file, those of 8 and 16 bits scaled to 0..1. Of an EXR with
+/// layers its colour.
 ImageF read_float(const std::filesystem::path& path);
+
+/// The channels of an EXR beside its colour. @throws Error (BadInput) as read()
+std::vector<Channel> read_layers(const std::filesystem::path& path);
 
 /// The texts inside a picture: all of a PNG and of an EXR, of the others those that write() puts
 /// into XMP, whose keywords begin with `relevo:`.

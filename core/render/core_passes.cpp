@@ -26,8 +26,9 @@ constexpr int kMaxStored = 7;
 void update_light(PassContext& frame, bool with_walls) {
     GroundLight& light = frame.terrain.light();
     const FrameInputs& inputs = frame.inputs;
+    const glm::ivec2 picture = frame.picture_px();
     const LodView view =
-        LodView::of_camera(inputs.camera, frame.width_px, frame.height_px, 1, inputs.exaggeration);
+        LodView::of_camera(inputs.camera, picture.x, picture.y, 1, inputs.exaggeration);
     // If no ground is visible, shadows of an earlier sun are kept. If there are none, the coarsest
     // are computed. While the sun stands still, tiles are a good enough answer.
     const bool has_moved = light.shadow_sun() != inputs.sun.direction;
@@ -84,6 +85,7 @@ class Declaration {
         : facts_(facts),
           tone_mapped_(facts.antialias ? "colour" : "output"),
           shaded_(facts.radiance ? "radiance" : tone_mapped_) {
+        if (facts.deep) end_defines_.push_back({"DEEP", ""});
         if (!facts.radiance)
             end_defines_.push_back({"SHOWN", ""});
         else if (facts.overlays)
@@ -128,6 +130,7 @@ class Declaration {
 
     void resources() {
         using enum PixelFormat;
+        const PixelFormat shown = facts_.deep ? RGBA16 : RGBA8;
         for (const char* name : {"tiles", "frame", "parameters", "light_clearance",
                                  "light_fraction", "light_sky", "floor_ground"})
             provided(name);
@@ -148,14 +151,16 @@ class Declaration {
         if (facts_.radiance && facts_.overlays)
             add(Resource{.name = "overlay", .format = RGBA8, .linear = true});
         if (facts_.surface)
-            add(Resource{.name = kSurfaceTexture, .format = RGBA16F, .linear = true});
+            add(Resource{
+                .name = kSurfaceTexture, .format = RGBA16F, .linear = true, .output = facts_.data});
         if (facts_.audited)
             add(Resource{.name = "sun_seen", .format = RGBA32F, .linear = true, .output = true});
         if (facts_.antialias) {
-            add(Resource{.name = "colour", .format = RGBA8, .linear = true});
+            add(Resource{.name = "colour", .format = shown, .linear = true});
             add(Resource{.name = "edge_marks", .format = Stencil8});
+            if (facts_.outside) add(Resource{.name = "walls", .format = R8});
         }
-        add(Resource{.name = "output", .format = RGBA8, .linear = true, .output = true});
+        add(Resource{.name = "output", .format = shown, .linear = true, .output = true});
     }
 
     /// Passes on the host before the first draw.
@@ -164,10 +169,12 @@ class Declaration {
                  .kind = PassKind::Host,
                  .writes = {"tiles"},
                  .body = [](PassContext& frame) {
+                     // All that the picture shows, also where the frame is a part of it: levels of
+                     // detail, shadows and instances are then those of one large frame.
+                     const glm::ivec2 picture = frame.picture_px();
                      frame.tiles = frame.terrain.select_for_frame(
-                         frame.inputs.camera, frame.width_px, frame.height_px,
-                         frame.inputs.exaggeration, frame.inputs.loading,
-                         frame.inputs.deterministic);
+                         frame.inputs.camera, picture.x, picture.y, frame.inputs.exaggeration,
+                         frame.inputs.loading, frame.inputs.deterministic);
                  }});
         add(Pass{.name = "light",
                  .kind = PassKind::Host,
@@ -386,11 +393,15 @@ class Declaration {
 
     /// The walls of a block, for views from outside.
     void side() {
+        shader::ProgramRecipe recipe{.vertex_main = "side.vert.glsl",
+                                     .fragment_main = "side.frag.glsl",
+                                     .defines = end_defines_};
+        if (facts_.antialias)
+            recipe.defines.push_back(
+                {"WALLS_OUTPUT", std::to_string(1 + has_overlay() + facts_.surface)});
         Pass pass{.name = "side",
                   .kind = PassKind::Geometry,
-                  .program = program("side", {.vertex_main = "side.vert.glsl",
-                                              .fragment_main = "side.frag.glsl",
-                                              .defines = end_defines_}),
+                  .program = program("side", std::move(recipe)),
                   .reads = {"tiles"},
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
@@ -400,6 +411,7 @@ class Declaration {
                   }};
         if (has_overlay()) pass.colours.push_back({.resource = "overlay", .updates = true});
         if (facts_.surface) pass.colours.push_back({.resource = kSurfaceTexture, .updates = true});
+        if (facts_.antialias) pass.colours.push_back({"walls", kNothing});
         add(std::move(pass));
     }
 
@@ -439,13 +451,18 @@ class Declaration {
                  .body = [](PassContext& frame) {
                      frame.texture("output").copy_from(frame.texture("colour"));
                  }});
+        // Of a block also where walls begin and end.
+        const auto smoothing = [&](const char* name, const char* of_block) {
+            shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
+                                         .fragment_main = std::string(name) + ".frag.glsl"};
+            if (facts_.outside) recipe.defines.push_back({"WALLS", ""});
+            return program(facts_.outside ? of_block : name, std::move(recipe));
+        };
         add(Pass{.name = "edges",
-                 .program = program(
-                     "edges", {.vertex_main = kFullscreen, .fragment_main = "edges.frag.glsl"}),
+                 .program = smoothing("edges", "edges_of_block"),
                  .stencil = Stencil{"edge_marks", /*marks=*/true}});
         add(Pass{.name = "antialias",
-                 .program = program("antialias", {.vertex_main = kFullscreen,
-                                                  .fragment_main = "antialias.frag.glsl"}),
+                 .program = smoothing("antialias", "antialias_of_block"),
                  .colours = {{.resource = "output", .updates = true}},
                  .stencil = Stencil{"edge_marks"}});
     }

@@ -41,6 +41,8 @@ struct FrameFacts {
     bool overlays = false;               ///< effects or a raster draw over the tone-mapped ground
     bool overlay_raster = false;         ///< the ground has an overlay: Terrain::set_overlay
     bool surface = false;                ///< plugins read core.normal or core.shadow
+    bool deep = false;                   ///< display-referred colours have 16 bits, not 8
+    bool data = false;                   ///< keeps what read_normals() and the like read
     bool audited = false;                ///< the terrain pass also writes the data of SunSeen
     bool vertex_normals = false;         ///< computed per vertex, not per fragment
     bool displaced = false;              ///< effects displace the ground

@@ -53,6 +53,20 @@ glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int heig
     return p;
 }
 
+glm::ivec2 picture_px(const FrameInputs& inputs, int width_px, int height_px) {
+    return inputs.part ? inputs.part->picture_px : glm::ivec2(width_px, height_px);
+}
+
+glm::dmat4 part_matrix(const PicturePart& part, int width_px, int height_px) {
+    const glm::dvec2 frame(width_px, height_px), picture(part.picture_px);
+    glm::dmat4 matrix(1.0);
+    for (int i = 0; i < 2; ++i) {
+        matrix[i][i] = picture[i] / frame[i];
+        matrix[3][i] = (picture[i] - 2 * part.corner_px[i]) / frame[i] - 1;
+    }
+    return matrix;
+}
+
 glm::dvec2 eye_anchor(const glm::dvec2& eye_m) {
     const double away_m = std::max(std::abs(eye_m.x), std::abs(eye_m.y));
     return away_m < kEyeAnchorFrom_m ? glm::dvec2(0) : glm::round(eye_m / kEyeAnchor_m);
@@ -89,18 +103,26 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
                             int height_px, double footprint_limit) {
     const scene::Camera& camera = inputs.camera;
     const glm::dvec3 right = cross(camera.forward, camera.up);
+    const glm::ivec2 picture = picture_px(inputs, width_px, height_px);
     const double tan_y = std::tan(camera.fov_y_rad / 2);
-    const double tan_x = tan_y * width_px / height_px;
+    const double tan_x = tan_y * picture.x / picture.y;
 
     FrameBlock block{};
-    block.view_projection =
-        glm::mat4(projection_matrix(camera, width_px, height_px) * view_matrix(camera));
-    const glm::dvec3 dx = right * (2 * tan_x / width_px);
-    const glm::dvec3 dy = camera.up * (2 * tan_y / height_px);
-    block.pixel_ray = glm::vec4(camera.forward - 0.5 * width_px * dx - 0.5 * height_px * dy, 0);
+    glm::dmat4 projection = projection_matrix(camera, picture.x, picture.y);
+    if (inputs.part) projection = part_matrix(*inputs.part, width_px, height_px) * projection;
+    block.view_projection = glm::mat4(projection * view_matrix(camera));
+    const glm::dvec3 dx = right * (2 * tan_x / picture.x);
+    const glm::dvec3 dy = camera.up * (2 * tan_y / picture.y);
+    const glm::dvec2 corner = inputs.part ? inputs.part->corner_px : glm::dvec2(0);
+    block.pixel_ray = glm::vec4(
+        camera.forward - (0.5 * picture.x - corner.x) * dx - (0.5 * picture.y - corner.y) * dy, 0);
     block.pixel_ray_dx = glm::vec4(dx, 0);
     block.pixel_ray_dy = glm::vec4(dy, 0);
     block.viewport = {width_px, height_px, 1.0 / width_px, 1.0 / height_px};
+    // Samples within a pixel belong to the same pixel.
+    block.part_left = static_cast<float>(std::round(corner.x));
+    block.part_below = static_cast<float>(std::round(corner.y));
+    block.picture = glm::vec4(glm::dvec2(picture), 1.0 / glm::dvec2(picture));
 
     const geo::Geodetic eye = ground.frame.to_geodetic(camera.eye_m);
     block.eye_m = glm::vec4(camera.eye_m, eye.height_m);

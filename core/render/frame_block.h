@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -49,9 +50,18 @@ SunLightTable sun_light_table(const SunLight& sun);
 /// As in lib/ground.glsl.
 double sun_light_scale(double sine);
 
+/// The part of a picture that a frame shows: a tile of one that is larger than a frame, or the
+/// whole moved by less than a pixel, for samples within pixels. Cameras are of the whole picture.
+struct PicturePart {
+    glm::ivec2 picture_px{0};  ///< size of the whole picture
+    /// Lower left corner of the frame, from that of the picture [px].
+    glm::dvec2 corner_px{0};
+};
+
 /// Inputs of a frame.
 struct FrameInputs {
     scene::Camera camera;
+    std::optional<PicturePart> part{};  ///< nullopt: the frame is the picture
     SunLight sun;
     sun::CelestialFrame stars;  ///< at the DEM's centre
     double exposure_ev = 0;     ///< stops above the natural exposure of this sun
@@ -123,6 +133,12 @@ glm::dmat4 view_matrix(const scene::Camera& camera);
 
 /// From camera space to clip space, with an infinite far plane: depth = near / distance.
 glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int height_px);
+
+/// Size of the picture that a frame of some size belongs to [px].
+glm::ivec2 picture_px(const FrameInputs& inputs, int width_px, int height_px);
+
+/// From clip space of a whole picture to that of a frame of some size that shows a part of it.
+glm::dmat4 part_matrix(const PicturePart& part, int width_px, int height_px);
 
 /// The frame block except its page tables, which the terrain fills in.
 /// @param footprint_limit  see frame.glsl

@@ -31,7 +31,8 @@ double pixel_of(const PassContext& frame) {
 }
 
 LodView view_of(const PassContext& frame) {
-    return LodView::of_camera(frame.inputs.camera, frame.width_px, frame.height_px, 1,
+    const glm::ivec2 picture = frame.picture_px();
+    return LodView::of_camera(frame.inputs.camera, picture.x, picture.y, 1,
                               frame.inputs.exaggeration);
 }
 

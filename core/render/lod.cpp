@@ -66,6 +66,7 @@ LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height
     view.eye_m = camera.eye_m;
     view.tolerance = pixel_error * 2 * tan_y / height_px;
     view.exaggeration = exaggeration;
+    view.frames = std::max(1.0, double{1} * width_px * height_px / kFrame_px);
     return view;
 }
 

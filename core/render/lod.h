@@ -26,6 +26,10 @@
 /// ranges are derived from each level's measured error.
 namespace relevo::render {
 
+/// Pixels of the largest frame that vertex budgets are for. Pictures with more have as many times
+/// the vertices, and are drawn in tiles.
+inline constexpr double kFrame_px = 1 << 25;
+
 /// A tile of dem::Pyramid.
 struct TileKey {
     int level = 0;
@@ -60,6 +64,9 @@ struct LodView {
     /// view [m]. 0: all posts are drawn.
     double tolerance = 0;
     double exaggeration = 1;
+    /// Pictures of usual size that the picture is as large as, at least 1: it may have as many
+    /// times the vertices of one.
+    double frames = 1;
 
     /// @param pixel_error  tolerance in pixels at the frame's centre
     static LodView of_camera(const scene::Camera& camera, int width_px, int height_px,

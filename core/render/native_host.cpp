@@ -155,8 +155,9 @@ struct NativeHost::Impl : effect::ModuleServices {
         const FrameState& drawn = *state;
         const scene::Camera& camera = drawn.inputs.camera;
         relevo_frame full{};
-        full.width_px = width_px;
-        full.height_px = height_px;
+        const glm::ivec2 picture = picture_px(drawn.inputs, width_px, height_px);
+        full.width_px = picture.x;
+        full.height_px = picture.y;
         full.software_device = context.info().device.software ? 1 : 0;
         full.ground = drawn.terrain.serial();
         full.unix_s = drawn.inputs.unix_s;
@@ -167,7 +168,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         full.fov_y_rad = camera.fov_y_rad;
         full.pixel_rad = length(glm::dvec3(drawn.block.pixel_ray_dx));
         write_matrix(view_matrix(camera), full.view);
-        write_matrix(projection_matrix(camera, width_px, height_px), full.projection);
+        write_matrix(projection_matrix(camera, picture.x, picture.y), full.projection);
         full.exposure = static_cast<double>(drawn.block.exposure);
         write_vector(drawn.inputs.sun.direction, full.sun);
         write_vector(normalize(glm::dvec3(drawn.block.sun_apparent)), full.sun_apparent);

@@ -31,14 +31,16 @@ struct PassContext {
     Terrain& terrain;
     const Ground& ground;
     const FrameInputs& inputs;
-    FrameBlock& block;     ///< uploaded in the pass "frame"
-    TileSelection& tiles;  ///< selected in the pass "select"
-    int width_px, height_px;
+    FrameBlock& block;        ///< uploaded in the pass "frame"
+    TileSelection& tiles;     ///< selected in the pass "select"
+    int width_px, height_px;  ///< of the frame
     const Plan& plan;
     GraphTargets& targets;
     FrameServices& services;
     const Pass* pass = nullptr;  ///< the current pass; set by the runner
 
+    /// Size of the picture that the frame is or belongs to [px].
+    glm::ivec2 picture_px() const { return render::picture_px(inputs, width_px, height_px); }
     /// True if a pass of this frame reads a resource.
     bool is_read(std::string_view resource) const { return plan.reads(resource); }
     /// A target of the graph. @throws Error (Failed) if the pass does not declare it, or it is of

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "render/graph/plan.h"
 #include "render/pass_texts.h"
+#include "render/renderer.h"
 #include "shader/driver_hints.h"
 
 namespace relevo::render {
@@ -77,7 +78,9 @@ class Stitcher {
             answers(input, "image") || answers(input, "finish") || answers(input, "overlay");
         facts_.overlays = options.overlay_raster || answers(input, "display");
         facts_.overlay_raster = options.overlay_raster;
-        facts_.surface = reads(input, "core.normal") || reads(input, "core.shadow");
+        facts_.surface = options.data || reads(input, "core.normal") || reads(input, "core.shadow");
+        facts_.data = options.data;
+        facts_.deep = options.deep;
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;
         facts_.displaced = answers(input, "displace");
@@ -328,6 +331,18 @@ gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text
         "render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
         shader::brief_text(log, {stage->text, text.stitched.names, text.stitched.values}),
         remedy(text.stitched, log.blamed())));
+}
+
+std::vector<shader::Param> core_params() {
+    shader::Param normal;
+    normal.name = "terrain_normal";
+    normal.address = kNormalAddress;
+    normal.type = shader::ParamType::Int;
+    normal.words = {"fragment", "vertex"};
+    normal.is_static = true;
+    normal.label = "Normals";
+    normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
+    return {normal};
 }
 
 }  // namespace relevo::render

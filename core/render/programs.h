@@ -21,6 +21,9 @@ struct ProgramText {
     static ProgramText of(std::string name, shader::Stitched stitched);
 };
 
+/// Address of core's parameter in core_params() of renderer.h.
+inline constexpr const char* kNormalAddress = "terrain.normal";
+
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool overlay_raster = false;  ///< with an overlay: Terrain::set_overlay
@@ -28,6 +31,8 @@ struct ProgramOptions {
     /// "post".
     bool shown = false;
     bool antialias = true;
+    bool deep = false;  ///< display-referred colours have 16 bits
+    bool data = false;  ///< keeps the data of PixelData of readback.h
     /// Terrain programs also write what audits read: SunSeen of readback.h.
     bool audited = false;
     /// For software renderers: slivers clipped at the near plane have heights of NaN, and filters

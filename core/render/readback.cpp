@@ -1,6 +1,7 @@
 #include "render/readback.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -51,6 +52,42 @@ image::Image8 read_output(const gl::Texture& output, int* non_finite) {
     output.read(0, std::as_writable_bytes(std::span(texels)));
     if (non_finite) *non_finite = count_non_finite(texels);
     return image::from_device(output.extent().width, output.extent().height, texels);
+}
+
+image::Image16 read_output16(const gl::Texture& output, int* non_finite) {
+    const auto texels = read_all<std::array<std::uint16_t, 4>>(output);
+    const auto is_marked = [](const auto& texel) { return texel[3] != 65535; };
+    if (non_finite) *non_finite = static_cast<int>(std::ranges::count_if(texels, is_marked));
+    const auto [width, height, layers] = output.extent();
+    image::Image16 picture(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        const auto* from = texels.data() + std::ptrdiff_t{height - 1 - y} * width;
+        std::uint16_t* to = picture.row(y);
+        for (int x = 0; x < width; ++x, ++from, to += 3)
+            std::copy_n(from->begin(), 3, to);
+    }
+    return picture;
+}
+
+PixelData read_data(const gl::Texture& surface, const gl::Texture& depth) {
+    const auto [width, height, layers] = surface.extent();
+    std::vector<float> seen(4 * texels_of(surface));
+    surface.read_floats(seen);
+    const std::vector<float> depths_m = read_depths(depth);
+    PixelData data;
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                  static_cast<std::size_t>(x);
+            const glm::vec3 normal(seen[4 * i], seen[4 * i + 1], seen[4 * i + 2]);
+            // side.frag.glsl leaves it 0.
+            const bool wall = std::isfinite(depths_m[i]) && normal == glm::vec3(0);
+            data.depths_m.push_back(depths_m[i]);
+            data.normals.push_back(normal);
+            data.sun.push_back(seen[4 * i + 3]);
+            data.walls.push_back(wall ? 1 : 0);
+        }
+    return data;
 }
 
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite) {

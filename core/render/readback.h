@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "gl/texture.h"
 #include "image/image.h"
@@ -22,6 +23,16 @@ struct SunSeen {
     bool shaded_by_instance = false;  ///< the shadow of a plugin's instance lies here
 };
 
+/// What pixels show, for layers of data: a value a pixel, rows from the top.
+struct PixelData {
+    std::vector<float> depths_m;  ///< along the optical axis; infinite in the sky
+    /// Unit normals of the shaded ground, with what effects change in them, in the local frame; 0
+    /// where there is no ground.
+    std::vector<glm::vec3> normals;
+    std::vector<float> sun;           ///< visible fraction of the sun, 0 to 1; 0 without ground
+    std::vector<std::uint8_t> walls;  ///< 1 where a cut side of the DEM is seen
+};
+
 /// Number of RGBA8 pixels that were NaN or infinite before clamping. Shaders mark them with an
 /// alpha below 1.
 int count_non_finite(std::span<const std::uint8_t> rgba);
@@ -36,6 +47,9 @@ NonFinite find_non_finite(const gl::Texture& output);
 /// Display-referred colours: RGB, rows from the top.
 /// @param non_finite  if not null, receives count_non_finite()
 image::Image8 read_output(const gl::Texture& output, int* non_finite);
+/// The same of RGBA16.
+image::Image16 read_output16(const gl::Texture& output, int* non_finite);
+PixelData read_data(const gl::Texture& surface, const gl::Texture& depth);
 /// Linear radiance, RGB, rows from the top. @param exposure  factor in the stored values
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite);
 /// Depth along the optical axis [m] of a stored depth.

@@ -53,8 +53,6 @@ int day_of(double unix_s) {
     return climate::day_of_year(date.month, date.day);
 }
 
-constexpr const char* kNormalAddress = "terrain.normal";
-
 /// "render: terrain: 13 of 16 texture units; bump.rock also serves as layering.rock"
 std::string units_text(const ProgramText& program, int max_texture_units) {
     std::string text = fmt::format("render: {}: {} of {} texture units", program.name,
@@ -84,6 +82,8 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                           .overlay_raster = options.overlay_raster,
                           .shown = !options.radiance,
                           .antialias = options.antialias,
+                          .deep = options.deep,
+                          .data = options.data,
                           .audited = options.audited,
                           .software = info.device.software};
     for (const effect::NativeModule* const module : effects.modules)
@@ -93,18 +93,6 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
     for (const ProgramText& text : frames.programs)
         log::debug(units_text(text, info.max_texture_units));
     return frames;
-}
-
-std::vector<shader::Param> core_params() {
-    shader::Param normal;
-    normal.name = "terrain_normal";
-    normal.address = kNormalAddress;
-    normal.type = shader::ParamType::Int;
-    normal.words = {"fragment", "vertex"};
-    normal.is_static = true;
-    normal.label = "Normals";
-    normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
-    return {normal};
 }
 
 struct Renderer::Impl : FrameServices {
@@ -319,9 +307,9 @@ struct Renderer::Impl : FrameServices {
                                          const FrameInputs& inputs, FrameBlock block) {
         describe(terrain, inputs, block);
         probe.aim(inputs, ground, block);
-        const TileSelection below =
-            terrain.select_below(inputs.camera, options.width_px, options.height_px,
-                                 inputs.exaggeration, inputs.deterministic);
+        const glm::ivec2 picture = picture_px(inputs, options.width_px, options.height_px);
+        const TileSelection below = terrain.select_below(inputs.camera, picture.x, picture.y,
+                                                         inputs.exaggeration, inputs.deterministic);
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
@@ -485,6 +473,16 @@ int Renderer::triangles() const {
 
 image::Image8 Renderer::read_output(int* non_finite) const {
     return render::read_output(output(), non_finite);
+}
+
+image::Image16 Renderer::read_output16(int* non_finite) const {
+    assert(impl_->options.deep);
+    return render::read_output16(output(), non_finite);
+}
+
+PixelData Renderer::read_data() const {
+    assert(impl_->options.data);
+    return render::read_data(impl_->runner.texture(kSurfaceTexture), depth());
 }
 
 NonFinite Renderer::non_finite() const {

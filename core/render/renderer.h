@@ -30,6 +30,10 @@ struct RendererOptions {
     /// Stores linear radiance for read_radiance(). Otherwise shading writes display-referred
     /// colours directly, which saves a pass.
     bool radiance = true;
+    /// Display-referred colours have 16 bits for read_output16(), not 8.
+    bool deep = false;
+    /// Stores the data for read_data().
+    bool data = false;
     /// Draws an overlay: Terrain::set_overlay. Not with normals per vertex.
     bool overlay_raster = false;
     /// Whether the first frame is probably seen from outside the DEM. Programs of the other graph
@@ -135,6 +139,10 @@ class Renderer {
     /// The last frame as RGB, rows from the top.
     /// @param non_finite  if not null, receives count_non_finite()
     image::Image8 read_output(int* non_finite = nullptr) const;
+    /// The same with 16 bits. Requires RendererOptions::deep.
+    image::Image16 read_output16(int* non_finite = nullptr) const;
+    /// What the last frame's pixels show. Requires RendererOptions::data.
+    PixelData read_data() const;
     /// Pixels of the last frame that are NaN or infinite.
     NonFinite non_finite() const;
     /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.

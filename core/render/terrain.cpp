@@ -187,8 +187,8 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
 }
 
 bool Terrain::in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const {
-    return wanted.tolerance <= 0 ||
-           draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
+    return wanted.tolerance <= 0 || static_cast<double>(draws.size() * kGridVertices) <=
+                                        wanted.frames * options_.vertex_budget;
 }
 
 double Terrain::tolerance_in_budget(const LodView& wanted) {

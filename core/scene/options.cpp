@@ -137,6 +137,16 @@ constexpr Option kOptions[] = {
      "Largest error of the drawn surface, pixels; 0 draws every post", Kind::Number, 0, 100, {},
      [](const Scene& s) { return number(s.pixel_error); },
      [](Scene& s, const Value& v) { s.pixel_error = v.number; }},
+    {"picture", "samples", "--samples", "Options",
+     "Samples of each pixel: smoother edges and fine detail in as many times the time; not in the "
+     "window", Kind::Whole, 1, kMaxSamples, {},
+     [](const Scene& s) { return number(s.samples); },
+     [](Scene& s, const Value& v) { s.samples = static_cast<int>(v.number); }},
+    {"picture", "transparent", "--transparent", "Options",
+     "Sky and surroundings of the DEM are transparent; at least 8 samples of each pixel; png, webp, "
+     "avif, tif, exr", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.transparent); },
+     [](Scene& s, const Value& v) { s.transparent = v.boolean; }},
 };
 // clang-format on
 

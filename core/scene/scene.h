@@ -74,10 +74,13 @@ struct Scene {
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
     double seconds = 0;  ///< of effects that move, frame.seconds in their shaders; to kMaxSeconds
     double exposure_ev = 0;
-    double pixel_error = 4;  ///< render::TerrainOptions
+    double pixel_error = 4;    ///< render::TerrainOptions
+    int samples = 1;           ///< of each pixel, 1 to kMaxSamples
+    bool transparent = false;  ///< what shows no ground of the DEM
 };
 
-inline constexpr int kMaxSide_px = 16384;
+inline constexpr int kMaxSide_px = 65536;
+inline constexpr int kMaxSamples = 64;
 
 /// Takes out all stamps but the legend, and puts in those of a list: "title,scale", "all", "none".
 /// Without words for it "all" leaves out the attribution.

@@ -20,6 +20,7 @@
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "session/picture_maker.h"
 #include "session/record.h"
 
 namespace relevo::session {
@@ -127,6 +128,11 @@ class Batch {
   private:
     void draw(const scene::Shot& shot, bool linear, TaskQueue& queue) {
         open_session(shot, linear);
+        if (needs_bands(shot.scene, options_.format, linear))
+            bad_input(
+                fmt::format("run: {} x {} px take more than 1 GiB; make it by itself with "
+                            "relevo capture",
+                            shot.scene.width_px, shot.scene.height_px));
         const SceneIn scene_is = scene_in(shot.output, shot.scene);
         const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
         auto outputs = std::make_shared<Outputs>(
@@ -136,7 +142,7 @@ class Batch {
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
         inputs_.record(shot.scene);  // before files are read, to notice later changes
         session_->show(shot.scene, shot.utc);
-        session_->draw();
+        auto picture = std::make_shared<image::Picture>(session_->make_picture());
         if (!options_.allow_blank && !session_->shows_ground()) return blank(shot);
         std::optional<ShadowAudit> audit;
         if (options_.audit) audit = audit_shadows(*session_);
@@ -145,26 +151,18 @@ class Batch {
             outputs->sidecar->write(
                 sidecar_text(*session_, inputs_, shot.output.filename().string(), audit));
         const image::Metadata metadata = metadata_of(*session_, inputs_, scene_is);
-        const auto write = [&](auto picture) {
-            auto kept = std::make_shared<decltype(picture)>(std::move(picture));
-            queue.add([this, &shot, outputs, metadata, kept] {
-                write_files(shot, *outputs, metadata, *kept);
-            });
-        };
-        if (linear)
-            write(session_->radiance());
-        else
-            write(session_->picture());
+        queue.add([this, &shot, outputs, metadata, picture] {
+            write_files(shot, *outputs, metadata, *picture);
+        });
         if (!linear)
             for (const std::string& note : session_->stamp_notes())
                 log::info(fmt::format("{}: {}", printable(shot.output.string()), note));
     }
 
-    template <typename Picture>
     void write_files(const scene::Shot& shot, Outputs& outputs, const image::Metadata& metadata,
-                     const Picture& picture) {
+                     const image::Picture& picture) {
         try {
-            image::write(outputs.picture, picture, metadata);
+            image::write(outputs.picture, picture, metadata, options_.encoding);
             std::vector<OutputFile*> both{&outputs.picture};
             if (outputs.sidecar) both.push_back(&*outputs.sidecar);
             OutputFile::finish_all(both);
@@ -190,16 +188,19 @@ class Batch {
     /// Opens a session for the shot's DEM unless it is already open.
     void open_session(const scene::Shot& shot, bool linear) {
         std::string key = dem_key(shot.scene);
-        if (session_ && key == dem_) return;
+        const RendererNeeds needs = needs_of(shot.scene, options_.format);
+        if (session_ && key == dem_ && needs == needs_) return;
         Options options;
         options.device = options_.device;
         options.radiance = linear;
         options.audited = options_.audit;
+        options.format = options_.format;
         session_.reset();
         times_.keep_only(shot.scene);
         options.dem = times_.loaded(shot.scene);
         session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
         dem_ = std::move(key);
+        needs_ = needs;
         opened_ = true;
     }
 
@@ -209,6 +210,7 @@ class Batch {
     FilesInUse& files_;
     std::unique_ptr<Session> session_;
     std::string dem_;
+    RendererNeeds needs_;
     bool opened_ = false;  ///< a session has been opened at least once
     std::mutex mutex_;     // guards the callbacks and failed_
     std::size_t failed_ = 0;
@@ -267,12 +269,13 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     session_options.device = options.device;
     session_options.audited = options.audit;
     session_options.dem = times.loaded(shots.front().scene);
+    session_options.format = options.format;
+    session_options.format->layers.clear();
     Session session(of_any_view(shots.front().scene), session_options, files);
     const auto draw = [&](const scene::Shot& shot) {
         const auto began = Clock::now();
         session.show(shot.scene, shot.utc);
-        session.draw();
-        session.picture();
+        session.make_picture();
         if (options.audit) audit_shadows(session);
         return seconds_since(began);
     };

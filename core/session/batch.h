@@ -34,6 +34,8 @@ struct BatchOptions {
     /// Writes a JSON sidecar for each picture (its name with .json). A picture whose format cannot
     /// hold its scene always gets one.
     bool sidecar = false;
+    image::Encoding encoding{};  ///< of the pictures
+    PictureFormat format{};
     bool audit = false;        ///< adds the shadow audit to the sidecar; needs `sidecar`
     bool allow_blank = false;  ///< also writes pictures without ground
     /// Callbacks for pictures that were written, failed, or show no ground of the DEM. They run on

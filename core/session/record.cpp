@@ -63,6 +63,13 @@ ordered_json dem_json(const Session& session, const std::vector<HashedFile>& fil
     return json;
 }
 
+std::string origin_line(const geo::Geodetic& origin) {
+    const ordered_json json{{"lat_deg", degrees(origin.lat_rad)},
+                            {"lon_deg", degrees(origin.lon_rad)},
+                            {"height_m", origin.height_m}};
+    return json.dump();
+}
+
 /// With the compared effects on.
 scene::Scene drawn(scene::Scene scene, const Session& session) {
     scene.effects = with(std::move(scene.effects), session.compared());
@@ -115,6 +122,8 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
         {"Description", fmt::format("{}; {}; sun at {}", session.place_text(),
                                     sun::to_iso(session.time()), session.sun_text())},
         {kInputsKeyword, inputs.record(drawn(scene, session))}};
+    if (session.format() && !session.format()->layers.empty())
+        metadata[kOriginKeyword] = origin_line(session.ground().frame.origin());
     if (where == SceneIn::Picture)
         metadata[kSceneKeyword] = line;
     else

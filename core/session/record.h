@@ -17,6 +17,9 @@ namespace relevo::session {
 inline constexpr const char* kSceneKeyword = "relevo:scene";
 inline constexpr const char* kComparedKeyword = "relevo:compared";
 inline constexpr const char* kInputsKeyword = "relevo:inputs";
+/// Of layers: the origin of the local frame, `{"lat_deg":46.5,"lon_deg":8,"height_m":0}`,
+/// ellipsoidal on WGS 84; x east, y north, z up there.
+inline constexpr const char* kOriginKeyword = "relevo:origin";
 /// SHA-256 of scene::scene_line(), for formats whose metadata cannot hold the scene. The scene is
 /// then in the sidecar.
 inline constexpr const char* kSceneDigestKeyword = "relevo:scene-sha256";

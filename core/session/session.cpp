@@ -9,6 +9,7 @@
 #include "session/climate_words.h"
 #include "session/colour_legends.h"
 #include "session/non_finite.h"
+#include "session/picture_maker.h"
 #include "session/session_impl.h"
 #include "session/stamps.h"
 #include "session/standing.h"
@@ -183,6 +184,18 @@ image::Image8 Session::picture() const {
     return picture;
 }
 
+image::Picture Session::make_picture(render::PassTimes* times) {
+    return impl_->make_picture(*this, times);
+}
+
+void Session::make_bands(const std::function<void(const image::Picture&)>& take) {
+    impl_->make_bands(take);
+}
+
+const std::optional<PictureFormat>& Session::format() const {
+    return impl_->options.format;
+}
+
 std::vector<Marks> Session::marks() const {
     const DrawnEffects& drawn = *impl_->drawn;
     return impl_->marks(drawn.marks(), drawn.effects(), drawn.renderer());
@@ -203,6 +216,7 @@ const gl::Texture& Session::depth() const {
 }
 
 bool Session::shows_ground() const {
+    if (impl_->picture_shows_ground) return *impl_->picture_shows_ground;
     std::vector<float> depths_m;
     read_depths(depths_m);
     return std::ranges::any_of(depths_m, [](float depth_m) { return std::isfinite(depth_m); });

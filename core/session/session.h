@@ -18,6 +18,7 @@
 #include "image/image.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
+#include "session/data_layers.h"
 #include "session/overlay_time.h"
 #include "sun/zone.h"
 
@@ -64,6 +65,17 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
 /// The ground of a DEM, in a local frame at the DEM's centre.
 render::Ground ground_of(const LoadedDem& dem);
 
+/// What a picture file is to hold besides what its scene says.
+struct PictureFormat {
+    int bits = 8;                         ///< of a channel of display-referred colour: 8 or 16
+    std::vector<DataLayer> layers{};      ///< needs Options::radiance
+    double frame_px = render::kFrame_px;  ///< pictures with more pixels are drawn in tiles
+};
+
+/// True if a scene's picture takes more than kMaxPictureBytes: Session::make_bands().
+bool needs_bands(const scene::Scene& scene, const PictureFormat& format, bool linear);
+inline constexpr double kMaxPictureBytes = double{1 << 30};
+
 struct Options {
     std::string device = "auto";  ///< as gl::Context
     /// Creates the context, such as that of a window. By default one is created on `device`.
@@ -74,6 +86,9 @@ struct Options {
     /// Session::take() replaces it.
     bool allow_preview = false;
     bool radiance = false;  ///< keep linear radiance, for Session::radiance()
+    /// For Session::make_picture(); the scene's samples, transparency and size are then those of
+    /// pictures. nullopt: of frames, which have one sample a pixel and no alpha.
+    std::optional<PictureFormat> format{};
     /// Keep the data that Session::read_sun_seen() reads.
     bool audited = false;
     /// Effects that the scene switches on by name may lack what they require: they are off, with a
@@ -177,6 +192,16 @@ class Session {
     /// Draws only the left half's effects of a comparison, and waits for the device.
     void draw_alone();
 
+    /// Draws the scene as its picture file has it: with all samples, transparency, layers, in tiles
+    /// if it is larger than a frame, with marks and stamps. Requires Options::format.
+    /// @param times  as draw(), of the first frame
+    /// @throws Error as draw() and picture(); (BadInput) where it is too large for memory
+    image::Picture make_picture(render::PassTimes* times = nullptr);
+    /// The same of a picture that is too large for memory, in bands of rows from the top.
+    /// @param take  called with each band
+    /// @throws Error (BadInput) for marks, stamps and layers, which need the whole
+    void make_bands(const std::function<void(const image::Picture&)>& take);
+
     /// The last frame with marks of effects and the scene's stamps; both halves of a comparison.
     /// @throws Error (Failed) if pixels are not finite, naming the effect at fault
     image::Image8 picture() const;
@@ -188,6 +213,8 @@ class Session {
     /// Which hook of an active effect makes pixels of the last frame NaN or infinite, by drawing it
     /// without each hook; nullopt if none does. Slow.
     std::optional<NonFiniteCause> non_finite_cause(const std::string& id) const;
+    /// Options::format.
+    const std::optional<PictureFormat>& format() const;
     /// Sentences on stamps that the last picture() omitted.
     const std::vector<std::string>& stamp_notes() const;
     /// As picture(), as linear radiance without marks and stamps. Requires Options::radiance.
@@ -242,6 +269,7 @@ class Session {
     const gl::DeviceInfo& device() const;
 
   private:
+    friend class PictureMaker;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -7,6 +7,7 @@
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
 #include "session/non_finite.h"
+#include "session/picture_maker.h"
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/zone_of_place.h"
@@ -90,9 +91,15 @@ void Session::Impl::take_effects() {
 }
 
 render::RendererOptions Session::Impl::renderer_options() {
-    return {.width_px = state.scene.width_px,
-            .height_px = state.scene.height_px,
+    const RendererNeeds needs =
+        options.format ? needs_of(state.scene, *options.format) : RendererNeeds{};
+    const glm::ivec2 frame = frame_px();
+    return {.width_px = frame.x,
+            .height_px = frame.y,
+            .antialias = needs.antialias,
             .radiance = options.radiance,
+            .deep = needs.deep,
+            .data = needs.data,
             .overlay_raster = has_overlay_raster(),
             .outside = !state.scene.view.eye,
             .audited = options.audited,
@@ -143,7 +150,7 @@ void Session::Impl::switch_to(const EffectsRequest& wanted) {
 void Session::Impl::switch_effects(const EffectsRequest& wanted) {
     if (std::optional<DrawnEffects> known = recent.take(wanted)) {
         lay_rasters(*known);
-        known->resize(state.scene.width_px, state.scene.height_px);
+        known->resize(frame_px().x, frame_px().y);
         recent.keep(std::exchange(*drawn, std::move(*known)));
         return;
     }
@@ -167,7 +174,7 @@ void Session::Impl::lay_rasters(const DrawnEffects& of) {
 void Session::Impl::resize(int width_px, int height_px) {
     state.scene.width_px = width_px;
     state.scene.height_px = height_px;
-    drawn->resize(width_px, height_px);
+    drawn->resize(frame_px().x, frame_px().y);
 }
 
 void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
@@ -182,6 +189,9 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     scene.exposure_ev = next.exposure_ev;
     scene.seconds = next.seconds;
     scene.refraction = next.refraction;
+    scene.samples = next.samples;
+    scene.transparent = next.transparent;
+    part.reset();
     const bool other_shape = next.exaggeration != scene.exaggeration;
     scene.exaggeration = next.exaggeration;
     if (next.pixel_error != scene.pixel_error) {
@@ -265,6 +275,7 @@ std::optional<double> Session::Impl::drawn_height_m(const scene::Camera& camera)
     context->make_current();
     render::FrameInputs frame = state.inputs;
     frame.camera = camera;
+    frame.part = {{state.scene.width_px, state.scene.height_px}, {0, 0}};
     return drawn->renderer().drawn_height_m(*terrain, ground, frame);
 }
 
@@ -272,6 +283,7 @@ void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
     context->make_current();
     render::FrameInputs frame = state.inputs;
     frame.loading = loading;
+    frame.part = part;
     drawn->render(*terrain, state.ground(), frame, times);
 }
 
@@ -292,15 +304,31 @@ std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
     return result;
 }
 
-void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken) {
+glm::ivec2 Session::Impl::frame_px() const {
+    if (!options.format) return {state.scene.width_px, state.scene.height_px};
+    return session::frame_px(state.scene, *options.format, context->info().max_picture_size);
+}
+
+bool Session::Impl::has_marks() const {
+    const auto any = [](const std::vector<LoadedMarks>& lists) {
+        return std::ranges::any_of(
+            lists, [](const LoadedMarks& list) { return list.places || list.spec->from.empty(); });
+    };
+    return any(drawn->marks()) || any(drawn->other_marks());
+}
+
+void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
+                                  const std::vector<float>* given_m) {
     const double width = picture.width, height = picture.height;
     const auto draw = [&](const std::vector<Marks>& lists, const render::Renderer& renderer,
                           const chart::Rect& within) {
         if (lists.empty()) return;
         std::vector<float> depths_m;
-        renderer.read_depths(depths_m);
+        if (!given_m) renderer.read_depths(depths_m);
         chart::Drawing drawing(width, height);
-        draw_marks(lists, view_of(state.inputs.camera, picture.width, picture.height, depths_m),
+        draw_marks(lists,
+                   view_of(state.inputs.camera, picture.width, picture.height,
+                           given_m ? *given_m : depths_m),
                    within, taken, drawing);
         chart::paint(drawing, 0, 0, 1, picture);
     };

@@ -56,6 +56,8 @@ struct Session::Impl {
     EffectRasters rasters;  // of the drawn effects
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
+    std::optional<render::PicturePart> part;   // of the scene's picture, that frames show
+    std::optional<bool> picture_shows_ground;  // of the last picture in several frames
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
     /// Events that depend on terrain need all posts, not a preview.
@@ -90,8 +92,17 @@ struct Session::Impl {
     /// Marks of the effects of a half.
     std::vector<Marks> marks(const std::vector<LoadedMarks>& loaded, const ActiveEffects& effects,
                              const render::Renderer& renderer);
-    /// Draws the marks of both halves on the frame's picture. @param taken  has none of them
-    void draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken);
+    /// Draws the marks of both halves on the frame's picture.
+    /// @param taken     has none of them
+    /// @param depths_m  of the picture, if it is not the last frame
+    void draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
+                       const std::vector<float>* depths_m = nullptr);
+    /// Whether active effects may draw marks.
+    bool has_marks() const;
+    /// Size of frames [px]: that of the scene, or less if its picture is drawn in tiles.
+    glm::ivec2 frame_px() const;
+    image::Picture make_picture(const Session& session, render::PassTimes* times);
+    void make_bands(const std::function<void(const image::Picture&)>& take);
     FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);

@@ -154,10 +154,12 @@ std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geo
 
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture, std::vector<chart::Rect>& taken) {
+                                    image::Image8& picture, std::vector<chart::Rect>& taken,
+                                    const std::vector<float>* depths_m) {
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
-    if (needs_depths(wanted)) session.read_depths(stamped.depths_m);
+    if (needs_depths(wanted) && depths_m) stamped.depths_m = *depths_m;
+    if (needs_depths(wanted) && !depths_m) session.read_depths(stamped.depths_m);
     const std::optional<OverlayTime>& laid = session.overlay_time();
     if (wanted.date)
         stamped.clock =

@@ -26,11 +26,13 @@ bool needs_depths(const scene::Stamps& wanted);
 
 /// Draws a scene's stamps on its picture.
 /// @param legends  of the colours in it
-/// @param taken    receives where stamps stand in the picture, without lines of the graticule
+/// @param taken     receives where stamps stand in the picture, without lines of the graticule
+/// @param depths_m  of the picture, if it is not the session's last frame
 /// @returns sentences on stamps that were omitted
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture, std::vector<chart::Rect>& taken);
+                                    image::Image8& picture, std::vector<chart::Rect>& taken,
+                                    const std::vector<float>* depths_m = nullptr);
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
                                     image::Image8& picture, std::vector<chart::Rect>& taken);
 

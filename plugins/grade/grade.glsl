@@ -37,7 +37,7 @@ void grade_on_finish(in Pixel p, inout vec3 colour) {
     contrasted = mix(vec3(wanted), contrasted, grade_saturation);
     contrasted = grade_looked_up(clamp(contrasted, 0.0, 1.0));
     // 0 in the middle, 1 in the corners. cos^4 of a lens would depend on the field of view.
-    vec2 off = 2.0 * p.at - 1.0;
+    vec2 off = 2.0 * p.in_picture - 1.0;
     float corner = 0.5 * dot(off, off);
     colour = clamp(contrasted, 0.0, 1.0) * (1.0 - grade_vignette * corner * corner);
 }

@@ -105,7 +105,7 @@ float snowfall_flake(in int layer, in vec3 direction, in float pixel_rad) {
 }
 
 void snowfall_on_image(in Pixel p, inout vec3 radiance) {
-    float pixel_rad = length(frame.pixel_ray_dx.xyz) / length(frame.pixel_ray.xyz + 0.5 * (frame.pixel_ray_dx.xyz * frame.viewport.x + frame.pixel_ray_dy.xyz * frame.viewport.y));
+    float pixel_rad = length(frame.pixel_ray_dx.xyz);  // in the middle of the picture
     vec3 flake = snowfall_white / 3.14159265 * snowfall_irradiance() * frame.exposure;
     for (int layer = snowfall_layers - 1; layer >= 0; --layer) {
         if (snowfall_nearest_m * pow(snowfall_growth, float(layer)) > p.distance_m) continue;

@@ -60,4 +60,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 instance_shadow_maps[3];  // finest first; xyz: from a map's centre to the eye along these axes [m], w: 1 / half of
                               // its side [1/m]
     vec4 instance_shadow_eye;  // xyz: from the eye to where it was when the last map was drawn [m]
+    float part_left;          // of a frame that is a tile of a large picture: its lower left corner from that of the
+    float part_below;         // picture [px]; 0 where the frame is the picture
+    vec4 picture;             // the whole picture; xy: width and height [px], zw: their inverses
 } frame;

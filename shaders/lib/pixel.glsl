@@ -7,8 +7,13 @@ vec3 pixel_ray_at(in vec2 at_px) {
     return frame.pixel_ray.xyz + at_px.x * frame.pixel_ray_dx.xyz + at_px.y * frame.pixel_ray_dy.xyz;
 }
 
+/// Of this pixel, from the lower left corner of the whole picture, of which a frame may be a tile.
+vec2 picture_px() {
+    return gl_FragCoord.xy + vec2(frame.part_left, frame.part_below);
+}
+
 /// This pixel. @param distance_m  from the eye to what it shows, or kSky_m
 Pixel pixel_with(in float distance_m) {
     return Pixel(gl_FragCoord.xy, gl_FragCoord.xy * frame.viewport.zw, normalize(pixel_ray_at(gl_FragCoord.xy)),
-                 distance_m);
+                 distance_m, picture_px() * frame.picture.zw);
 }

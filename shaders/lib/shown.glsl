@@ -2,14 +2,19 @@
 //! hook      image, tonemap, finish, overlay
 
 //@ include lib/finite.glsl
+//@ include lib/pixel.glsl
 //@ include lib/srgb.glsl
 
 /// Rounds to 8 bits up or down by where the pixel is, so that a sky's gradient does not end in steps.
 /// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
 /// course, slide 123: interleaved gradient noise
 vec3 dithered(in vec3 colour) {
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+#ifdef DEEP
+    return colour;  // stored with 16 bits
+#else
+    float noise = fract(52.9829189 * fract(dot(picture_px(), vec2(0.06711056, 0.00583715))));
     return colour + (noise - 0.5) / 255.0;
+#endif
 }
 
 /// @param pixel     for hooks

@@ -55,6 +55,7 @@ struct Pixel {
     vec2 at;           // the same as shares of the picture's width and height, 0..1
     vec3 direction;    // of its ray in the local frame, unit
     float distance_m;  // from the eye to the ground or a wall; 1e9 in the sky [m]
+    vec2 in_picture;   // as `at`, of the whole picture; differs where `at` is of a tile of a large picture, 0..1
 };
 
 /// A candidate site of an instance on the ground.

@@ -53,7 +53,7 @@ TEST_F(ImageFiles, OtherFormatsComeThroughTheModule) {
     EXPECT_EQ(read(dir_ / "a.tif").values, image.values);
     Image8 flat(64, 48, 3);
     std::fill(flat.values.begin(), flat.values.end(), std::uint8_t{128});
-    for (const char* name : {"a.jpg", "a.webp"}) {
+    for (const char* name : {"a.jpg", "a.webp", "a.avif"}) {
         write(dir_ / name, flat);
         EXPECT_LE(compare(read(dir_ / name), flat).worst, 2) << name;
     }
@@ -83,7 +83,7 @@ TEST_F(ImageFiles, NothingIsLeftBehindByAFailure) {
 }
 
 TEST_F(ImageFiles, OfAFullDiskAreErrorsInEveryFormat) {
-    for (const char* name : {"a.png", "a.jpg", "a.webp", "a.tif"}) {
+    for (const char* name : {"a.png", "a.jpg", "a.webp", "a.avif", "a.tif"}) {
         std::filesystem::create_symlink("/dev/full", dir_ / name);
         EXPECT_EQ(test::error_of([&] { write(dir_ / name, gradient(64, 48, 3)); }),
                   "exit 1: image: " + (dir_ / name).string() +
@@ -101,7 +101,7 @@ TEST_F(ImageFiles, OutputsAreCheckedBeforeTheWork) {
               "exit 3: image: " + (dir_ / "none" / "a.png").string() + ": the folder " +
                   (dir_ / "none").string() + " does not exist; create it first");
     const std::string gif = "exit 3: image: " + (dir_ / "a.gif").string() +
-                            ": unknown picture format; use png, jpg, webp, tif or exr";
+                            ": unknown picture format; use png, jpg, webp, avif, tif or exr";
     EXPECT_EQ(test::error_of([&] { check_format(dir_ / "a.gif", 4, 4); }), gif);
     EXPECT_EQ(test::error_of([&] { load_format(dir_ / "a.gif"); }), gif);
     EXPECT_EQ(test::error_of([&] { write(dir_ / "a.gif", image); }), gif);

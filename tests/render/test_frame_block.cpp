@@ -54,6 +54,28 @@ TEST(FrameBlock, UpIsTheNormalOfTheEllipsoidEverywhere) {
     EXPECT_LT(worst, 1e-5);
 }
 
+TEST(FrameBlock, APartOfAPictureHasItsRaysAndPlaces) {
+    const Ground ground{
+        .frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0)), .lowest_m = 0, .highest_m = 3000};
+    FrameInputs inputs = inputs_at({3000, -8000, 4000});
+    const FrameBlock whole = make_frame_block(inputs, ground, 1000, 600, 4);
+    inputs.part = PicturePart{{1000, 600}, {640, 128}};
+    const FrameBlock part = make_frame_block(inputs, ground, 256, 192, 4);
+    const auto place = [](const FrameBlock& block, const glm::vec3& point) {
+        const glm::vec4 clip = block.view_projection * glm::vec4(point, 1);
+        return 0.5F * (glm::vec2(clip) / clip.w + 1.0F) * glm::vec2(block.viewport);
+    };
+    for (const glm::vec2 at : {glm::vec2(650, 130), {800.25, 300.5}, {895, 319}}) {
+        const glm::vec3 ray = glm::vec3(whole.pixel_ray) + at.x * glm::vec3(whole.pixel_ray_dx) +
+                              at.y * glm::vec3(whole.pixel_ray_dy);
+        EXPECT_LT(distance(place(whole, 5000.0F * ray), at), 1e-2F);
+        EXPECT_LT(distance(place(part, 5000.0F * ray), at - glm::vec2(640, 128)), 1e-2F);
+    }
+    EXPECT_EQ(part.part_left, 640);
+    EXPECT_EQ(part.picture, whole.picture);
+    EXPECT_EQ(part.pixel_ray_dx, whole.pixel_ray_dx);
+}
+
 TEST(FrameBlock, TheTargetIsInTheMiddleOfThePicture) {
     const Ground ground{
         .frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0)), .lowest_m = 0, .highest_m = 3000};

@@ -1,6 +1,6 @@
 // How often passes are executed, and what their bodies may use.
-#include <stdexcept>
 #include <optional>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 

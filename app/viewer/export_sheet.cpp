@@ -1,0 +1,158 @@
+#include "viewer/export_sheet.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/name_template.h"
+#include "scene/scene_words.h"
+
+namespace relevo::viewer {
+namespace {
+
+struct Format {
+    const char* name;
+    const char* ending;
+    int bits = 8;
+    bool has_quality = false;
+};
+constexpr std::array<Format, 7> kFormats = {{{"PNG", "png"},
+                                             {"PNG, 16 bits", "png", 16},
+                                             {"JPEG", "jpg", 8, true},
+                                             {"WebP", "webp", 8, true},
+                                             {"AVIF", "avif", 8, true},
+                                             {"TIFF", "tif"},
+                                             {"EXR, linear light", "exr"}}};
+
+struct Size {
+    const char* name;
+    glm::ivec2 px;  ///< 0: the window's
+};
+constexpr std::array<Size, 6> kSizes = {{{"window", {0, 0}},
+                                         {"1920 x 1080", {1920, 1080}},
+                                         {"3840 x 2160", {3840, 2160}},
+                                         {"square, 2048 x 2048", {2048, 2048}},
+                                         {"A4 at 300 dpi", {3508, 2480}},
+                                         {"A2 at 300 dpi", {7016, 4961}}}};
+
+constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
+
+/// A name in the working folder that no file has.
+std::string free_name(const std::string& stem, const std::string& ending) {
+    std::string name = stem + "." + ending;
+    std::error_code ignored;
+    for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
+        name = fmt::format("{}-{}.{}", stem, n, ending);
+    return name;
+}
+
+}  // namespace
+
+void ExportSheet::size_fields(glm::vec2 window_px) {
+    if (ImGui::BeginCombo("Size", fmt::format("{} x {}", size_px_.x, size_px_.y).c_str())) {
+        for (const Size& size : kSizes)
+            if (ImGui::Selectable(size.name))
+                size_px_ = size.px.x > 0 ? size.px : glm::ivec2(window_px);
+        ImGui::EndCombo();
+    }
+    if (ImGui::InputInt2("Pixels", &size_px_.x))
+        size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
+    ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
+}
+
+void ExportSheet::format_fields() {
+    const auto name_of = [](void*, int i, const char** name) {
+        *name = kFormats[static_cast<std::size_t>(i)].name;
+        return true;
+    };
+    ImGui::Combo("Format", &format_, name_of, nullptr, static_cast<int>(kFormats.size()));
+    if (kFormats[static_cast<std::size_t>(format_)].has_quality)
+        ImGui::SliderInt("Quality", &quality_, 1, 100);
+    if (ImGui::BeginCombo("Samples", fmt::format("{} a pixel", samples_).c_str())) {
+        for (const int samples : kSamples)
+            if (ImGui::Selectable(fmt::format("{} a pixel", samples).c_str())) samples_ = samples;
+        ImGui::EndCombo();
+    }
+    ImGui::Checkbox("Transparent where there is no ground", &is_transparent_);
+}
+
+void ExportSheet::stamp_fields(const scene::Scene& scene) {
+    if (!stamps_) stamps_ = scene.stamps;
+    ImGui::TextUnformatted("On the picture:");
+    int column = 0;
+    for (const auto& [word, member] : scene::stamp_words()) {
+        if (member == &scene::Stamps::attribution && stamps_->attribution_text.empty()) continue;
+        if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
+        ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
+    }
+    if (stamps_->title) ImGui::InputText("Title", &stamps_->title_text);
+}
+
+PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
+                                const sun::Zone& zone) const {
+    const Format& format = kFormats[static_cast<std::size_t>(format_)];
+    PictureOrder order;
+    order.scene = scene;
+    order.scene.width_px = size_px_.x;
+    order.scene.height_px = size_px_.y;
+    order.scene.samples = samples_;
+    order.scene.transparent = is_transparent_;
+    order.scene.stamps = stamps_.value_or(scene.stamps);
+    order.encoding.bits = format.bits;
+    if (format.has_quality) order.encoding.quality = quality_;
+    const std::string dem = std::filesystem::path(scene.dems.front()).stem().string();
+    const std::string stem =
+        scene::NameTemplate(name_, {}).name({.number = 1, .dem = dem, .utc = utc, .zone = zone});
+    order.path = free_name(stem, format.ending);
+    image::check_encoding(
+        order.path, order.encoding,
+        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = is_transparent_});
+    return order;
+}
+
+void ExportSheet::result(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone,
+                         bool is_busy) {
+    PictureOrder wanted;
+    try {
+        wanted = order(scene, utc, zone);
+    } catch (const Error& error) {
+        ImGui::TextWrapped("%s", error.what());
+        return;
+    }
+    ImGui::TextWrapped("%s", printable(wanted.path).c_str());
+    if (is_busy) ImGui::BeginDisabled();
+    if (ImGui::Button(is_busy ? "drawing ..." : "Export", {8 * ImGui::GetFontSize(), 0}))
+        order_ = wanted;
+    if (is_busy) ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button("Copy the command")) ImGui::SetClipboardText(command_of(wanted).c_str());
+}
+
+void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Instant utc,
+                       const sun::Zone& zone, bool is_busy) {
+    if (!is_open_) return;
+    const float line = ImGui::GetFrameHeight();
+    ImGui::SetNextWindowPos({window_px.x - line, 3 * line}, ImGuiCond_Appearing, {1, 0});
+    ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
+    if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
+        ImGui::PushItemWidth(-4 * line);
+        size_fields(window_px);
+        format_fields();
+        stamp_fields(scene);
+        ImGui::InputText("Name", &name_);
+        if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+            ImGui::SetTooltip("{dem}, and {time:...} with the conversions of strftime");
+        ImGui::PopItemWidth();
+        ImGui::Separator();
+        result(scene, utc, zone, is_busy);
+    }
+    ImGui::End();
+}
+
+}  // namespace relevo::viewer

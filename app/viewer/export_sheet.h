@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include <glm/vec2.hpp>
+
+#include "viewer/picture_export.h"
+
+namespace relevo::viewer {
+
+/// Asks what is exported as a picture: size, format, samples, transparency, stamps, name.
+class ExportSheet {
+  public:
+    void open() { is_open_ = true; }
+    void close() { is_open_ = false; }
+    bool is_open() const { return is_open_; }
+    /// What the sheet does to the view: centres the picture on what the panels leave free.
+    bool is_centred() const { return is_centred_; }
+    /// Width over height of the picture.
+    double aspect() const { return static_cast<double>(size_px_.x) / size_px_.y; }
+
+    /// @param scene    as it is now, with the view of the picture
+    /// @param utc, zone  its time, for the name
+    /// @param is_busy  a picture is being exported
+    void draw(glm::vec2 window_px, const scene::Scene& scene, sun::Instant utc,
+              const sun::Zone& zone, bool is_busy);
+    /// What was ordered since the last call.
+    std::optional<PictureOrder> take() { return std::exchange(order_, std::nullopt); }
+
+  private:
+    void size_fields(glm::vec2 window_px);
+    void format_fields();
+    void stamp_fields(const scene::Scene& scene);
+    /// @throws Error (BadInput) for names and formats that cannot be
+    PictureOrder order(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone) const;
+    void result(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone, bool is_busy);
+
+    bool is_open_ = false, is_centred_ = true, is_transparent_ = false;
+    glm::ivec2 size_px_{1920, 1080};
+    int format_ = 0, samples_ = 4, quality_ = image::kQuality;
+    std::optional<scene::Stamps> stamps_;  // nullopt: the scene's
+    std::string name_ = "{dem}_{time:%Y%m%dT%H%M}";
+    std::optional<PictureOrder> order_;
+};
+
+}  // namespace relevo::viewer

@@ -1,0 +1,86 @@
+#include "viewer/picture_export.h"
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/files_in_use.h"
+#include "base/text.h"
+#include "dem/files_of.h"
+#include "session/picture_file.h"
+#include "session/record.h"
+#include "viewer/document.h"
+
+namespace relevo::viewer {
+
+std::string command_of(const PictureOrder& order) {
+    std::string command = capture_command(order.scene, order.path);
+    if (order.encoding.bits != 8) command += fmt::format(" --bits {}", order.encoding.bits);
+    if (order.encoding.quality) command += fmt::format(" --quality {}", *order.encoding.quality);
+    return command;
+}
+
+PictureExport::PictureExport(PictureOrder order, std::string device,
+                             std::shared_ptr<const session::LoadedDem> dem,
+                             std::function<void()> on_change)
+    : order_(std::move(order)),
+      device_(std::move(device)),
+      dem_(std::move(dem)),
+      on_change_(std::move(on_change)),
+      thread_([this] { run(); }) {}
+
+PictureExport::~PictureExport() {
+    thread_.join();
+}
+
+std::string PictureExport::result() const {
+    if (failure_) std::rethrow_exception(failure_);
+    return result_;
+}
+
+void PictureExport::run() {
+    try {
+        result_ = write();
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    is_done_ = true;
+    on_change_();
+}
+
+std::string PictureExport::write() {
+    const scene::Scene& scene = order_.scene;
+    const std::filesystem::path path = order_.path;
+    FilesInUse files;
+    dem::add_named(scene.dems, files);
+    OutputFile& file = files.open_output(path, /*overwrite=*/false, "export");
+    const session::SceneIn scene_in = session::scene_in(path, scene);
+    OutputFile* const sidecar =
+        scene_in == session::SceneIn::Sidecar
+            ? &files.open_output(session::sidecar_to_write(path), /*overwrite=*/false, "export")
+            : nullptr;
+    const session::PictureFormat format{.bits = order_.encoding.bits};
+    const bool linear = image::holds_linear_light(path);
+    const bool in_bands = session::needs_bands(scene, format, linear);
+    if (in_bands) image::check_bands(path);
+    image::load_format(path);
+    session::SceneInputs inputs(RELEVO_VERSION);
+    inputs.record(scene);
+    session::Session session(
+        scene, {.device = device_, .dem = dem_, .radiance = linear, .format = format}, files);
+    std::optional<image::Picture> picture;
+    if (!in_bands) picture = session.make_picture();
+    session::write_picture(session, picture, file, session::metadata_of(session, inputs, scene_in),
+                           order_.encoding);
+    if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
+    files.finish_outputs();
+    std::string text = fmt::format("{}: picture saved, {} x {}", printable(order_.path),
+                                   scene.width_px, scene.height_px);
+    for (const std::string& note : session.stamp_notes())
+        text += "; " + note;
+    return text;
+}
+
+}  // namespace relevo::viewer
