@@ -24,6 +24,7 @@
 #include "effect/search_path.h"
 #include "geo/format.h"
 #include "session/batch.h"
+#include "session/picture_file.h"
 #include "session/record.h"
 #include "session/session.h"
 
@@ -139,20 +140,6 @@ class Timings {
     nlohmann::ordered_json stages_ = nlohmann::ordered_json::object();
     render::PassTimes passes_;
 };
-
-/// Encodes the picture; one that is too large for memory is drawn here, band by band.
-void write_picture(session::Session& session, const std::optional<image::Picture>& picture,
-                   OutputFile& file, const image::Metadata& metadata,
-                   const image::Encoding& encoding) {
-    if (picture) return image::write(file, *picture, metadata, encoding);
-    const scene::Scene& scene = session.scene();
-    image::BandWriter writer(
-        file,
-        {.width_px = scene.width_px, .height_px = scene.height_px, .alpha = scene.transparent},
-        metadata, encoding);
-    session.make_bands([&](const image::Picture& band) { writer.write(band); });
-    writer.end();
-}
 
 /// "21 June 2026 16:34", local time of the scene's zone.
 std::string local_time(const session::Session& session) {
@@ -273,7 +260,7 @@ void capture(const Arguments& arguments) {
     const image::Metadata metadata = session::metadata_of(session, inputs, scene_in);
     const auto write_began = Clock::now();
     if (picture) check_shows_ground(arguments, session);
-    write_picture(session, picture, picture_file, metadata, encoding);
+    session::write_picture(session, picture, picture_file, metadata, encoding);
     if (!picture) check_shows_ground(arguments, session);
     timings.add("write", milliseconds_since(write_began));
     for (const std::string& note : session.stamp_notes())

@@ -14,6 +14,7 @@ enum class Command {
     PreviousFile,
     ReadAgain,
     TakePicture,
+    ExportPicture,  ///< asks how
     CopyCommand,
     SaveScene,
     SaveJob,

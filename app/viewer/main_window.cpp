@@ -25,7 +25,7 @@ void play(State& state, double passed_s) {
 }  // namespace
 
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
-    : device_(device, presentation_of_environment()), zone_(scene.time.zone) {
+    : device_name_(device), device_(device, presentation_of_environment()), zone_(scene.time.zone) {
     state_.document.scene = scene;
     state_.time_is_pinned = !scene.time.at.empty();
     Window::check_display();
@@ -99,6 +99,7 @@ void MainWindow::leave() {
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
     discard_.take(std::move(overlay_));
+    discard_.take(std::move(picture_export_));
     // No file is being written by now, and the system frees everything else.
     if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
 }
@@ -148,6 +149,9 @@ void MainWindow::draw_panels() {
     open_dialog_.draw(size());
     import_sheet_.draw(size());
     find_sheet_.draw(size(), state_.effects.get());
+    if (export_sheet_.is_open())
+        export_sheet_.draw(size(), scene_to_export(), state_.document.utc, state_.document.zone,
+                           picture_export_ != nullptr);
     status_line(state_, work_in_progress());
     message_box(state_, size(), unit());
     if (shows_keys_) key_sheet();

@@ -8,6 +8,7 @@
 #include "viewer/charts_panel.h"
 #include "viewer/comparison.h"
 #include "viewer/discard.h"
+#include "viewer/export_sheet.h"
 #include "viewer/file_kind.h"
 #include "viewer/find_sheet.h"
 #include "viewer/frame_pacing.h"
@@ -145,9 +146,14 @@ class MainWindow {
     void copy_command();
     /// Saves the image as soon as it is complete.
     void take_picture();
+    /// The scene of a picture of the sheet.
+    scene::Scene scene_to_export() const;
+    void start_picture_export();
+    void poll_picture_export();
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     Discard discard_;
+    std::string device_name_;
     SceneDevice device_;
     std::string zone_;  // of --tz
     Memory memory_ = Memory::of_user();
@@ -159,6 +165,8 @@ class MainWindow {
     OpenDialog open_dialog_;
     ImportSheet import_sheet_;
     FindSheet find_sheet_;
+    ExportSheet export_sheet_;
+    std::unique_ptr<PictureExport> picture_export_;
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;

@@ -92,6 +92,8 @@ void MainWindow::run_scene_command(Command command) {
             return reload_effects();
         case Command::TakePicture:
             return take_picture();
+        case Command::ExportPicture:
+            return export_sheet_.open();
         case Command::CopyCommand:
             return copy_command();
         case Command::SaveScene:
@@ -136,6 +138,7 @@ void MainWindow::close_dialogs() {
     open_dialog_.close();
     import_sheet_.close();
     find_sheet_.close();
+    export_sheet_.close();
     closes_menus_ = true;
     state_.message.clear();
 }
@@ -299,6 +302,35 @@ void MainWindow::take_picture() {
                                       overlay_->coloured(*picture_)) +
                          note);
     });
+}
+
+scene::Scene MainWindow::scene_to_export() const {
+    Document document = state_.document;
+    if (export_sheet_.is_centred())
+        document.pose = centred(document.pose, state_.land, panel_insets(),
+                                static_cast<double>(size().x) / size().y, export_sheet_.aspect());
+    scene::Scene scene = viewer::whole_scene(document, state_.land, window_->size_px());
+    overlay_->add_to(scene);
+    return scene;
+}
+
+void MainWindow::start_picture_export() {
+    std::optional<PictureOrder> order = export_sheet_.take();
+    if (!order || picture_export_) return;
+    if (opening_->is_preview())
+        return messages_.show("the picture can be exported when all posts are read");
+    if (const std::string note = overlay_->missing_note(); !note.empty())
+        messages_.note("the picture is" + note.substr(1));
+    picture_export_ = std::make_unique<PictureExport>(std::move(*order), device_name_,
+                                                      opening_->opened()->dem, &Window::wake);
+}
+
+void MainWindow::poll_picture_export() {
+    if (is_open()) start_picture_export();
+    if (!picture_export_ || !picture_export_->is_done()) return;
+    messages_.try_to([&] { messages_.report(picture_export_->result()); });
+    picture_export_.reset();
+    pacing_.need_frames(2);
 }
 
 }  // namespace relevo::viewer

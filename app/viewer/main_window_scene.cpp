@@ -96,6 +96,7 @@ void MainWindow::poll_threads() {
         pacing_.need_frames(2);
     }
     if (point_->poll()) pacing_.need_frames(2);
+    poll_picture_export();
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }
 

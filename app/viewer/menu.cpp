@@ -20,12 +20,13 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 29> kKeys = {{
+constexpr std::array<Key, 30> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
     {GLFW_KEY_F5, false, Command::ReadAgain},
     {GLFW_KEY_F12, false, Command::TakePicture},
+    {GLFW_KEY_P, true, Command::ExportPicture},
     {GLFW_KEY_C, true, Command::CopyCommand},
     {GLFW_KEY_S, true, Command::SaveScene},
     {GLFW_KEY_J, true, Command::SaveJob},
@@ -79,6 +80,7 @@ void file_menu(State& state) {
     item(state, "Reload effects", "F5", Command::ReadAgain);
     ImGui::Separator();
     item(state, "Save picture", "F12", Command::TakePicture);
+    item(state, "Export a picture...", "Ctrl+P", Command::ExportPicture);
     item(state, "Copy command", "Ctrl+C", Command::CopyCommand);
     item(state, "Save scene", "Ctrl+S", Command::SaveScene);
     item(state, "Export overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,

@@ -210,6 +210,22 @@ Pose facing(const Pose& pose, const Land& land, const glm::dvec3& point_m) {
     return looking(pose, land, pose.eye_m, normalize(to));
 }
 
+Pose centred(const Pose& pose, const Land& land, const scene::Insets& insets, double window,
+             double picture) {
+    const scene::Camera camera = camera_of(pose, land);
+    const glm::dvec2 low(2 * insets.left - 1, 2 * insets.bottom - 1),
+        high(1 - 2 * insets.right, 1 - 2 * insets.top);
+    const glm::dvec2 middle = 0.5 * (low + high);
+    const auto angle = [&](glm::dvec2 a, glm::dvec2 b) {
+        return std::acos(std::clamp(dot(ray(camera, a, window), ray(camera, b, window)), -1.0, 1.0));
+    };
+    Pose turned = looking(pose, land, pose.eye_m, ray(camera, middle, window));
+    const double height_rad = angle({middle.x, low.y}, {middle.x, high.y});
+    const double width_rad = angle({low.x, middle.y}, {high.x, middle.y});
+    turned.fov_y_rad = std::max(height_rad, 2 * std::atan(std::tan(width_rad / 2) / picture));
+    return turned;
+}
+
 Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
     constexpr double kDown_deg = -20;
     Pose there = pose;

@@ -81,6 +81,10 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m);
 std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m);
 /// Turns to a point.
 Pose facing(const Pose& pose, const Land& land, const glm::dvec3& point_m);
+/// Turns to the middle of what the insets leave free of a window, which then fills a picture.
+/// @param window, picture  their width over height
+Pose centred(const Pose& pose, const Land& land, const scene::Insets& insets, double window,
+             double picture);
 /// Looks at a point from a distance, from the current direction but at least 20 degrees downwards.
 Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m);
 /// Looks straight down at a point from a distance, north up.

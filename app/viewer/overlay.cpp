@@ -228,7 +228,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 33> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 34> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -249,7 +249,8 @@ void key_sheet() {
         {"M", "measure from the point to the cursor, until M or a click"},
         {"C", "compare: the left side stays, the right side follows; drag the line"},
         {"O", "sun hours of the day on the ground, on and off"},
-        {"F12", "save a picture"},
+        {"F12", "save the image as a picture"},
+        {"Ctrl + P", "export a picture: size, format, samples, stamps"},
         {"Ctrl + C", "copy the command for this picture"},
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "export the sun overlay as GeoTIFF"},

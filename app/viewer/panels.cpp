@@ -18,6 +18,7 @@ void export_panel(State& state) {
     };
     button("Picture (F12)", Command::TakePicture);
     ImGui::SameLine();
+    button("Export...", Command::ExportPicture);
     button("Copy command", Command::CopyCommand);
     ImGui::SameLine();
     button("Save scene", Command::SaveScene);

@@ -170,6 +170,33 @@ TEST_F(Navigation, StandsAtAPointAndTurnsToOne) {
     EXPECT_FALSE(stand(pose_, land_, point));
 }
 
+TEST_F(Navigation, APictureOfWhatThePanelsLeaveFreeHasItInItsMiddle) {
+    const scene::Insets insets{.left = 0.3, .right = 0, .bottom = 0.05, .top = 0.03};
+    const double window = 1.6;
+    const scene::Camera before = camera_of(pose_, land_);
+    const glm::dvec3 middle = ray(before, {0.3, 0.02}, window);
+    for (const double picture : {0.5, 1.2, 2.0}) {
+        const Pose turned = centred(pose_, land_, insets, window, picture);
+        const scene::Camera camera = camera_of(turned, land_);
+        EXPECT_EQ(turned.eye_m, pose_.eye_m);
+        EXPECT_LT(distance(camera.forward, middle), 1e-9);
+        // The ends of the free part are inside, and one pair is at the edges.
+        double out = 0;
+        for (const glm::dvec2 at : {glm::dvec2(-0.4, 0.02), glm::dvec2(1, 0.02),
+                                    glm::dvec2(0.3, -0.9), glm::dvec2(0.3, 0.94)}) {
+            const glm::dvec2 seen =
+                in_picture(camera, pose_.eye_m + 1e4 * ray(before, at, window), picture).value();
+            out = std::max({out, std::abs(seen.x), std::abs(seen.y)});
+        }
+        EXPECT_GT(out, 0.9);
+        EXPECT_LT(out, 1.15);
+    }
+    // Without panels it is the window.
+    const Pose same = centred(pose_, land_, {}, window, window);
+    EXPECT_NEAR(same.heading_deg, pose_.heading_deg, 1e-6);
+    EXPECT_NEAR(same.fov_y_rad, pose_.fov_y_rad, 0.02);
+}
+
 TEST_F(Navigation, StandsOnTheGroundAsItIsDrawn) {
     land_.exaggeration = 3;  // the ground is at 1500 m
     const auto height_m = [&](const Pose& pose) { return frame_.to_geodetic(pose.eye_m).height_m; };
