@@ -12,6 +12,7 @@ pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
 find_package(TIFF REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake files want its programs too
+pkg_check_modules(ffmpeg REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 find_package(GDAL CONFIG REQUIRED)
 find_package(date REQUIRED)
 find_package(glm REQUIRED)
