@@ -12,8 +12,8 @@ namespace relevo::film {
 
 /// A film to be encoded.
 struct Request {
-    int descriptor = -1;  ///< of the file, readable and writable, at its beginning
-    std::string muxer;    ///< FFmpeg's name of the format: "mp4"
+    int descriptor = -1;                ///< of the file, readable and writable, at its beginning
+    std::string muxer;                  ///< FFmpeg's name of the format: "mp4"
     std::vector<std::string> encoders;  ///< FFmpeg's names; the first that is installed is used
     int width_px = 0, height_px = 0;
     Rate rate;

@@ -299,10 +299,10 @@ class FfmpegEncoder final : public Encoder {
     /// From full-range RGB to the encoder's pixels, without a change of size.
     SwsContext* scaler(AVPixelFormat given) {
         if (scaler_) return scaler_.get();
-        scaler_.reset(sws_getContext(
-            request_.width_px, request_.height_px, given, request_.width_px, request_.height_px,
-            codec_->pix_fmt, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, nullptr, nullptr,
-            nullptr));
+        scaler_.reset(sws_getContext(request_.width_px, request_.height_px, given,
+                                     request_.width_px, request_.height_px, codec_->pix_fmt,
+                                     SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, nullptr,
+                                     nullptr, nullptr));
         if (!scaler_) throw Failure{"the colours cannot be converted"};
         const int* const matrix = sws_getCoefficients(SWS_CS_ITU709);
         constexpr int kOne = 1 << 16;

@@ -27,13 +27,14 @@ struct Format {
     bool even_sizes;                    ///< colours are stored for squares of 2 x 2 pixels
     bool loops;                         ///< the file says whether it repeats
     bool has_quality;
-    int largest_px;                     ///< side
+    int largest_px;  ///< side
     double max_fps;
 };
 
 const std::array<Format, 4>& formats() {
     static const std::array<Format, 4> all{
-        Format{".mp4", "mp4", {"libx264", "libopenh264"}, "H.264", true, false, true, 8192, kMaxFps},
+        Format{
+            ".mp4", "mp4", {"libx264", "libopenh264"}, "H.264", true, false, true, 8192, kMaxFps},
         Format{".webm",
                "webm",
                {"libvpx-vp9", "libsvtav1", "libaom-av1"},
@@ -79,10 +80,10 @@ const EncoderModule* load_module(std::string& reason) {
 const EncoderModule& encoder_module(const std::string& subject) {
     std::string reason;
     if (const EncoderModule* const module = load_module(reason)) return *module;
-    failed(
-        fmt::format("film: {}: the module for films cannot be loaded, {}; install FFmpeg's "
-                    "libraries (libavformat59, libswscale6), or make pictures, as frames/{{n:04}}.png",
-                    subject, reason));
+    failed(fmt::format(
+        "film: {}: the module for films cannot be loaded, {}; install FFmpeg's "
+        "libraries (libavformat59, libswscale6), or make pictures, as frames/{{n:04}}.png",
+        subject, reason));
 }
 
 /// "1280x720": the next size with even sides.
@@ -104,10 +105,10 @@ void check(const std::filesystem::path& path, int width_px, int height_px,
     if (!format)
         bad_input(name + ": unknown film format; use mp4 (H.264), webm (VP9), webp or gif");
     if (format->even_sizes && (width_px % 2 != 0 || height_px % 2 != 0))
-        bad_input(fmt::format("{}: {} needs an even width and height but the size is {}x{}; use "
-                              "--size {}, or a webm",
-                              name, format->name, width_px, height_px,
-                              even_size(width_px, height_px)));
+        bad_input(
+            fmt::format("{}: {} needs an even width and height but the size is {}x{}; use "
+                        "--size {}, or a webm",
+                        name, format->name, width_px, height_px, even_size(width_px, height_px)));
     if (std::max(width_px, height_px) > format->largest_px)
         bad_input(fmt::format("{}: {} has at most {} pixels a side but the size is {}x{}", name,
                               format->name, format->largest_px, width_px, height_px));
@@ -116,10 +117,10 @@ void check(const std::filesystem::path& path, int width_px, int height_px,
                               format->name, format->max_fps, settings.fps));
     if (settings.loop && !format->loops)
         bad_input(fmt::format(
-            "{}: {} says nothing of loops, the player decides; leave out loop, or use webp or gif",
+            "{}: {} says nothing of loops, the player decides; remove loop, or use webp or gif",
             name, format->name));
     if (settings.quality && !format->has_quality)
-        bad_input(fmt::format("{}: {} has no quality; leave it out", name, format->name));
+        bad_input(fmt::format("{}: {} has no quality; remove it", name, format->name));
 }
 
 Rate rate_of(double fps) {
@@ -137,9 +138,10 @@ Film::Film(OutputFile file, int width_px, int height_px, const Settings& setting
     const Format& format = *format_of(file_.path());
     const EncoderModule& module = encoder_module(printable(file_.path().string()));
     if (std::ranges::none_of(format.encoders, module.has_encoder))
-        fail(fmt::format("this FFmpeg ({}) has none of the encoders {}; use another ending: mp4, "
-                         "webm, webp or gif",
-                         module.version(), fmt::join(format.encoders, ", ")));
+        fail(
+            fmt::format("this FFmpeg ({}) has none of the encoders {}; use another ending: mp4, "
+                        "webm, webp or gif",
+                        module.version(), fmt::join(format.encoders, ", ")));
     std::string reason;
     encoder_.reset(module.open({.descriptor = file_.descriptor(),
                                 .muxer = format.muxer,

@@ -61,9 +61,10 @@ class FlightHeights {
             bad_input("expected a line over the DEM but all of it lies outside, or in voids");
         const double share = static_cast<double>(outside) * step_m_ / path.length_m();
         if (share > 0.01)
-            log::warning(fmt::format("flight: {:.0f} % of the line has no ground; the height is "
-                                     "kept from the nearest that it has",
-                                     std::min(100 * share, 100.0)));
+            log::warning(
+                fmt::format("flight: {:.0f} % of the line has no ground; the height is "
+                            "kept from the nearest that it has",
+                            std::min(100 * share, 100.0)));
         for (double& at_m : heights_m_)
             at_m += height_m;
         const auto radius = static_cast<std::size_t>(std::ceil(reach.rise_m / step_m_));
@@ -112,16 +113,16 @@ std::vector<Pose> along_line(const FlightMotion& motion, const MotionGround& gro
     return poses;
 }
 
-/// x, y, z of the place below the eye in the DEM's frame, the eye's height, heading, pitch and field
-/// of view.
+/// x, y, z of the place below the eye in the DEM's frame, the eye's height, heading, pitch and
+/// field of view.
 using Knot = std::array<double, 7>;
 
 Knot knot_of(const Camera& camera, const geo::LocalFrame& frame) {
     Pose pose{frame.to_geodetic(camera.eye_m)};
     point_along(camera.forward, frame, pose);
     const glm::dvec3 below = frame.to_local({pose.eye.lat_rad, pose.eye.lon_rad, 0});
-    return {below.x, below.y, below.z, pose.eye.height_m, pose.heading_rad, pose.pitch_rad,
-            camera.fov_y_rad};
+    return {below.x,          below.y,        below.z,         pose.eye.height_m,
+            pose.heading_rad, pose.pitch_rad, camera.fov_y_rad};
 }
 
 /// The knots of views, without those that are like the one before.
@@ -133,9 +134,8 @@ std::vector<Knot> knots_of(const std::vector<View>& views, const MotionGround& g
         if (!knots.empty()) {
             double& heading = knot[4];
             heading -= 2 * kPi * std::round((heading - knots.back()[4]) / (2 * kPi));
-            const bool same = std::ranges::equal(knot, knots.back(), [](double a, double b) {
-                return std::abs(a - b) < kSame;
-            });
+            const bool same = std::ranges::equal(
+                knot, knots.back(), [](double a, double b) { return std::abs(a - b) < kSame; });
             if (same) continue;
         }
         knots.push_back(knot);
@@ -156,7 +156,8 @@ class Metric {
     }
 
     double length(const Knot& a, const Knot& b) const {
-        const double turn_rad = std::hypot((b[4] - a[4]) * std::cos(0.5 * (a[5] + b[5])), b[5] - a[5]);
+        const double turn_rad =
+            std::hypot((b[4] - a[4]) * std::cos(0.5 * (a[5] + b[5])), b[5] - a[5]);
         return std::hypot(moved_m(a, b), per_rad_m_ * turn_rad);
     }
 
@@ -206,7 +207,8 @@ std::vector<Knot> at_shares(const std::vector<Knot>& curve, const Metric& metric
 /// Smooths each member over frames: curves through points bend anew at each.
 void smooth_over_time(std::vector<Knot>& knots, double fps) {
     constexpr double kSmooth_s = 0.75;
-    const std::size_t radius = std::min(static_cast<std::size_t>(kSmooth_s * fps), knots.size() / 6);
+    const std::size_t radius =
+        std::min(static_cast<std::size_t>(kSmooth_s * fps), knots.size() / 6);
     for (std::size_t c = 0; c < std::tuple_size_v<Knot>; ++c) {
         std::vector<double> values;
         for (const Knot& knot : knots)

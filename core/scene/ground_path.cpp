@@ -51,8 +51,7 @@ std::vector<glm::dvec3> curve_through(const std::vector<glm::dvec3>& points, dou
     std::vector<std::array<double, 3>> given;
     std::vector<double> lengths_m;
     for (const glm::dvec3& point : points) {
-        if (!given.empty())
-            lengths_m.push_back(distance(points[given.size() - 1], point));
+        if (!given.empty()) lengths_m.push_back(distance(points[given.size() - 1], point));
         given.push_back({point.x, point.y, point.z});
     }
     const CentripetalSpline<3> spline(std::move(given), lengths_m);
@@ -67,8 +66,7 @@ std::vector<glm::dvec3> curve_through(const std::vector<glm::dvec3>& points, dou
     return line;
 }
 
-std::vector<glm::dvec3> smoothed_points(const std::vector<glm::dvec3>& points,
-                                        std::size_t radius) {
+std::vector<glm::dvec3> smoothed_points(const std::vector<glm::dvec3>& points, std::size_t radius) {
     std::vector<glm::dvec3> result = points;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
@@ -106,7 +104,8 @@ GroundPath::GroundPath(std::span<const geo::Geodetic> places, double smoothing_m
         point = on_ellipsoid(point);
     const auto count = static_cast<std::size_t>(std::ceil(length_m / fine_m)) + 1;
     points_m_ = evenly(line, count, step_m_);
-    // A line is longer for its noise, so that noise is smoothed over less of it: until that is gone.
+    // A line is longer for its noise, so that noise is smoothed over less of it: until that is
+    // gone.
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
         const double before_m = step_m_;
@@ -141,8 +140,9 @@ geo::Geodetic GroundPath::at(double along_m) const {
     const glm::dvec3 p0 = point(cell - 1), p1 = point(cell), p2 = point(cell + 1),
                      p3 = point(cell + 2);
     const glm::dvec3 at_m =
-        p1 + 0.5 * t * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 +
-                                       t * (3.0 * (p1 - p2) + p3 - p0)));
+        p1 +
+        0.5 * t *
+            (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)));
     geo::Geodetic place = frame_.to_geodetic(at_m);
     place.height_m = 0;
     return place;

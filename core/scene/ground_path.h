@@ -14,7 +14,7 @@ namespace relevo::scene {
 /// A smooth line over the ellipsoid along places, by its length.
 class GroundPath {
   public:
-    /// @param places       heights are ignored; those nearer than 1 cm to the one before are skipped
+    /// @param places       heights are ignored; places within 1 cm of the previous one are skipped
     /// @param smoothing_m  bends narrower than this are cut; the ends stay
     /// @throws Error (BadInput) `expected E but got G` for fewer than two different places, and for
     ///     what is no place

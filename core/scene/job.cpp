@@ -129,9 +129,9 @@ class Expansion {
         for (const Axis& axis : job_.sweep) {
             columns.push_back(values_of(axis, draft));
             if (columns.back().size() != columns.front().size())
-                fail(axis.line, axis.path,
-                     unlike(columns.front().size(), job_.sweep.front().path,
-                            columns.back().size()));
+                fail(
+                    axis.line, axis.path,
+                    unlike(columns.front().size(), job_.sweep.front().path, columns.back().size()));
         }
         const std::size_t count = columns.empty() ? 1 : columns.front().size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -155,7 +155,8 @@ class Expansion {
             if (const auto* const orbit = std::get_if<OrbitMotion>(&*axis.motion))
                 views = orbit_views(*orbit, draft.scene.view, ground);
             else
-                views = flight_views(std::get<FlightMotion>(*axis.motion), draft.scene.view, ground);
+                views =
+                    flight_views(std::get<FlightMotion>(*axis.motion), draft.scene.view, ground);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
             fail(axis.line, axis.path, error.what());
@@ -293,7 +294,7 @@ class Expansion {
             const Shot& first = result_.shots.front();
             if (shot.output == first.output) continue;
             bad_output(
-                fmt::format("a film is one file but \"{}\" names {} and {}; leave out what differs "
+                fmt::format("a film is one file but \"{}\" names {} and {}; remove what differs "
                             "between its frames",
                             job_.output, printable(first.output.filename().string()),
                             printable(shot.output.filename().string())));
@@ -320,7 +321,8 @@ class Expansion {
 std::optional<std::size_t> Axis::count() const {
     if (range) return range->frames > 0 ? std::optional<std::size_t>(range->frames) : std::nullopt;
     if (motion)
-        return std::visit([](const auto& m) { return static_cast<std::size_t>(m.frames); }, *motion);
+        return std::visit([](const auto& m) { return static_cast<std::size_t>(m.frames); },
+                          *motion);
     return values.size();
 }
 

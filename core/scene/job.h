@@ -38,7 +38,7 @@ struct Change {
 struct TimeRange {
     std::string from, to;
     double step_s = 0;
-    int frames = 0;  ///< instead of `step_s`, where it is above 0: so many times, both ends included
+    int frames = 0;  ///< if above 0, instead of `step_s`: number of times, both ends included
 };
 
 /// A camera that moves over the ground of a scene.
@@ -66,6 +66,7 @@ struct JobFile {
 /// A scene, and how its pictures differ.
 struct Job {
     std::string file;                                            ///< as messages name it
+    std::string text;                                            ///< what it was read from
     std::vector<JobFile> files;                                  ///< that it names
     Scene scene;                                                 ///< that all begin with
     std::string output = "{dem}_{time:%Y%m%dT%H%M}_{n:04}.png";  ///< template of names
@@ -106,6 +107,10 @@ struct JobDay {
 /// The file of a job that draws a scene through a day, paths as scene_text() has them.
 std::string day_job_text(const Scene& scene, const JobDay& day,
                          const std::filesystem::path& folder);
+
+/// A job as a film carries it: its members on one line, with absolute paths in the scene's, and the
+/// folder from which those in shots and sweep count.
+std::string job_record(const Job& job);
 
 /// A picture of a job.
 struct Shot {

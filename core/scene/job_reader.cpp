@@ -57,6 +57,7 @@ class JobReader {
                                     kFormat, json::describe(format)));
         object.string("$schema", "");  // which editors look for
         job_.file = file_;
+        job_.text = text;
         job_.folder = folder_;
         if (const std::string base = object.string("scene", ""); !base.empty()) {
             job_.files.push_back({reader_.beside(base), "the scene"});
@@ -173,7 +174,8 @@ class JobReader {
         if (orbit) return orbit_axis(*orbit, path + ".orbit");
         if (flight) return flight_axis(*flight, path + ".flight");
         object.finish();
-        object.fail(item.line, "", "expected one of times, dates, cameras, sites, effects, set, orbit and "
+        object.fail(item.line, "",
+                    "expected one of times, dates, cameras, sites, effects, set, orbit and "
                     "flight");
     }
 
@@ -314,8 +316,8 @@ class JobReader {
     }
 
     Axis flight_axis(const json::Value& value, const std::string& path) {
-        return {"camera", path, value.line, {}, {},
-                read_flight(reader_, value, path, fps_, job_.scene, job_.files)};
+        return {"camera", path, value.line,
+                {},       {},   read_flight(reader_, value, path, fps_, job_.scene, job_.files)};
     }
 
     Axis effects_axis(const json::Value& value, const std::string& path) {
@@ -422,8 +424,7 @@ class JobReader {
             if (to < from && frames == 0)
                 object.fail(object.line_of("to"), "to",
                             fmt::format("expected {} or more but got {}", from, to));
-            const double steps =
-                frames > 0 ? frames - 1 : std::floor((to - from) / step + 1e-9);
+            const double steps = frames > 0 ? frames - 1 : std::floor((to - from) / step + 1e-9);
             if (steps >= kMostValues)
                 object.fail(object.line_of("step"), "step",
                             fmt::format("expected at most {} values", kMostValues));

@@ -37,8 +37,8 @@ namespace {
 /// What an orbit turns around, and the camera's place relative to it.
 struct Turn {
     glm::dvec3 target_m;
-    geo::Axes axes;       ///< at the target
-    double azimuth_rad;   ///< of the camera as seen from the target
+    geo::Axes axes;      ///< at the target
+    double azimuth_rad;  ///< of the camera as seen from the target
     double elevation_rad;
     double distance_m;
 };
@@ -92,8 +92,8 @@ Turn whole_turn(const View& view, const Camera& camera, const MotionGround& grou
     if (!std::isnan(ground_m)) place.height_m = ground_m;
     const glm::dvec3 target_m = ground.frame.to_local(place);
     Turn turn = turn_about(target_m, target_m - camera.forward, ground.frame);
-    turn.distance_m = distance_to_show(turn, ground.points, camera.fov_y_rad, ground.aspect) /
-                      view.orbit.zoom;
+    turn.distance_m =
+        distance_to_show(turn, ground.points, camera.fov_y_rad, ground.aspect) / view.orbit.zoom;
     return turn;
 }
 
@@ -111,8 +111,9 @@ Turn turn_of(const View& view, const MotionGround& ground) {
     const auto target_m = first_ground(camera.eye_m, camera.forward, ground.points, ground.height_m,
                                        ground.frame, ground.exaggeration);
     if (!target_m)
-        bad_input("expected a camera that looks at the ground, or at a place (look_at), but it "
-                  "looks past all ground");
+        bad_input(
+            "expected a camera that faces the ground, or a place (look_at), but it "
+            "looks past all ground");
     return turn_about(*target_m, camera.eye_m, ground.frame);
 }
 
@@ -122,8 +123,9 @@ std::vector<View> orbit_views(const OrbitMotion& motion, const View& view,
                               const MotionGround& ground) {
     const Turn turn = turn_of(view, ground);
     if (std::abs(turn.elevation_rad) > radians(89))
-        bad_input("expected a camera beside its target but it looks straight down; give it an "
-                  "elevation below 89 degrees");
+        bad_input(
+            "expected a camera next to its target but it looks straight down; give it an "
+            "elevation below 89 degrees");
     std::vector<geo::Geodetic> eyes;
     const int last = motion.frames - 1;
     for (int i = 0; i < motion.frames; ++i) {

@@ -11,7 +11,7 @@
 #include "scene/camera.h"
 #include "scene/view.h"
 
-/// Cameras that move: a view for each frame of a film. Pure: what they need of the DEM is handed in.
+/// Cameras that move: a view for each frame of a film. Pure: the ground comes in as functions.
 namespace relevo::scene {
 
 /// Limits of a motion's frames.
@@ -22,8 +22,8 @@ inline constexpr double kMostTurn_deg_s = 30;
 
 /// The scene that a camera moves over.
 struct MotionGround {
-    GroundHeight height_m;    ///< of the drawn ground, without the exaggeration; NaN: none
-    geo::LocalFrame frame;    ///< the DEM's
+    GroundHeight height_m;  ///< of the drawn ground, without the exaggeration; NaN: none
+    geo::LocalFrame frame;  ///< the DEM's
     double exaggeration = 1;
     std::vector<glm::dvec3> points;  ///< that an orbit has to show, in `frame` [m]
     double aspect = 1;               ///< width / height of the frames
@@ -33,8 +33,8 @@ struct MotionGround {
 
 /// Once around what a camera looks at, at one height and distance.
 struct OrbitMotion {
-    double turns = 1;  ///< clockwise from above; negative: the other way
-    int frames = 240;  ///< the last is one step before the first again
+    double turns = 1;   ///< clockwise from above; negative: the other way
+    int frames = 240;   ///< the last is one step before the first again
     bool ease = false;  ///< begins and ends at rest; the last frame is then the end of the turn
 };
 
@@ -78,8 +78,8 @@ double frames_at_speed(const FlightMotion& motion, double speed_m_s);
 /// to the ground than the views are. Where the line has no ground, it keeps the height from the
 /// nearest that it has.
 /// @param view  its field of view is that of a flight along a line
-/// @throws Error (BadInput) `expected E but got G` for a line or views that are one place, and where
-///     no part of the line has ground
+/// @throws Error (BadInput) `expected E but got G` for a line or views that are one place, and for
+///     a line without any ground
 std::vector<View> flight_views(const FlightMotion& motion, const View& view,
                                const MotionGround& ground);
 

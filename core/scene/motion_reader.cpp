@@ -39,8 +39,7 @@ std::vector<View> read_views(const SceneReader& reader, const ObjectReader& obje
 std::vector<geo::Geodetic> read_places(ObjectReader& object, const std::string& file) {
     std::vector<geo::Geodetic> places;
     const std::string crs = object.string("crs", "");
-    const int number =
-        static_cast<int>(object.number("line", 0, 1, dem::kMostPlaces, true));
+    const int number = static_cast<int>(object.number("line", 0, 1, dem::kMostPlaces, true));
     for (const dem::NamedPlace& place : dem::read_line(file, kWho, crs, number).places)
         places.push_back(place.at.place);
     return places;
@@ -64,8 +63,7 @@ int read_frames(ObjectReader& object, double fps, double otherwise_s) {
     if (object.has("frames") && object.has("duration_s"))
         object.fail(object.line_of("duration_s"), "duration_s",
                     "expected frames or a duration but got both");
-    const double duration_s =
-        object.number("duration_s", otherwise_s, 1e-3, kLongest_s, false);
+    const double duration_s = object.number("duration_s", otherwise_s, 1e-3, kLongest_s, false);
     const double frames = std::max(1.0, std::round(duration_s * fps));
     if (!object.has("frames") && frames > kMostFrames)
         object.fail(object.line_of("duration_s"), "duration_s",

@@ -106,11 +106,11 @@ std::vector<double> without_gaps(std::vector<double> values) {
     for (std::size_t i = 0; i < size; ++i) {
         if (std::isnan(values[i])) continue;
         for (std::size_t gap = known == size ? 0 : known + 1; gap < i; ++gap) {
-            const double share = known == size ? 1
-                                               : static_cast<double>(gap - known) /
-                                                     static_cast<double>(i - known);
-            values[gap] = known == size ? values[i]
-                                        : values[known] + share * (values[i] - values[known]);
+            const double share =
+                known == size ? 1
+                              : static_cast<double>(gap - known) / static_cast<double>(i - known);
+            values[gap] =
+                known == size ? values[i] : values[known] + share * (values[i] - values[known]);
         }
         known = i;
     }

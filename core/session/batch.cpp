@@ -124,7 +124,7 @@ class Batch {
     SceneInputs& inputs_;
     FilesInUse& files_;
     ShotSession session_of_;
-    std::mutex mutex_;     // guards the callbacks and failed_
+    std::mutex mutex_;  // guards the callbacks and failed_
     std::size_t failed_ = 0;
 };
 

@@ -85,9 +85,10 @@ FilmReport draw_film(const std::vector<scene::Shot>& shots, const FilmOptions& o
                 frame = draw(sessions, shot, shows_ground);
             } catch (...) {
                 if (!sessions.was_opened()) throw;
-                failed(fmt::format("{}: frame {} of {} ({}) cannot be drawn, so there is no film: {}",
-                                   printable(shot.output.string()), number, shots.size(),
-                                   sun::to_iso(shot.utc), reason_of(std::current_exception())));
+                failed(
+                    fmt::format("{}: frame {} of {} ({}) cannot be drawn, so there is no film: {}",
+                                printable(shot.output.string()), number, shots.size(),
+                                sun::to_iso(shot.utc), reason_of(std::current_exception())));
             }
             if (!shows_ground && report.blank++ == 0) report.first_blank = number;
             encoding.add(std::move(frame));

@@ -31,8 +31,8 @@ struct FilmReport {
 /// Draws shots as the frames of one film, which is encoded on a thread of its own while the next
 /// frames are drawn. The file appears complete or not at all.
 /// @param shots  settled, at least one, all of one size and one output
-/// @throws Error as Session's constructor and film::Film; for a frame that cannot be drawn, with its
-///     number; and (Failed) where no frame shows ground
+/// @throws Error as Session's constructor and film::Film, and (Failed) for a frame that cannot be
+///     drawn, with its number, and if no frame shows ground
 FilmReport draw_film(const std::vector<scene::Shot>& shots, const FilmOptions& options,
                      SceneTimes& times, FilesInUse& files);
 

@@ -23,8 +23,8 @@ void check(int result, const char* what) {
 image::Image8 rgb_of(const AVFrame& frame) {
     SwsContext* const scaler = sws_getContext(
         frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width,
-        frame.height, AV_PIX_FMT_RGB24,
-        SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr);
+        frame.height, AV_PIX_FMT_RGB24, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT,
+        nullptr, nullptr, nullptr);
     const bool bt709 = frame.colorspace == AVCOL_SPC_BT709;
     const int* const matrix = sws_getCoefficients(bt709 ? SWS_CS_ITU709 : SWS_CS_ITU601);
     sws_setColorspaceDetails(scaler, matrix, frame.color_range == AVCOL_RANGE_JPEG, matrix, 1, 0,
@@ -86,8 +86,8 @@ DecodedFilm decode_film(const std::filesystem::path& path,
             film.range = text(av_color_range_name(frame->color_range));
             film.times_s.push_back(static_cast<double>(frame->best_effort_timestamp) *
                                    av_q2d(stream.time_base));
-            film.duration_s = film.times_s.back() + static_cast<double>(frame->pkt_duration) *
-                                                        av_q2d(stream.time_base);
+            film.duration_s = film.times_s.back() +
+                              static_cast<double>(frame->pkt_duration) * av_q2d(stream.time_base);
             if (keep(film.times_s.size() - 1)) film.frames.push_back(rgb_of(*frame));
         }
     };

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -8,8 +9,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-
-#include <csignal>
 
 #include "base/error.h"
 #include "film/decoded_film.h"
@@ -41,8 +40,9 @@ Image8 frame(int number, int width = 320, int height = 180) {
             const bool coloured = y < height / 2;
             for (int c = 0; c < 3; ++c)
                 image.row(y)[x * 3 + c] = static_cast<std::uint8_t>(
-                    coloured ? kColours[static_cast<std::size_t>(patch)][static_cast<std::size_t>(c)]
-                             : 255 * x / (width - 1));
+                    coloured
+                        ? kColours[static_cast<std::size_t>(patch)][static_cast<std::size_t>(c)]
+                        : 255 * x / (width - 1));
         }
     return image;
 }
@@ -240,7 +240,8 @@ TEST_F(Films, RefusesBeforeAnyWork) {
               "--size 642x480, or a webm");
     EXPECT_EQ(error("a.gif", 64, 48, {.fps = 60}),
               "film: a.gif: GIF has at most 50 frames a second but fps is 60");
-    EXPECT_THAT(error("a.mp4", 64, 48, {.loop = true}), testing::HasSubstr("says nothing of loops"));
+    EXPECT_THAT(error("a.mp4", 64, 48, {.loop = true}),
+                testing::HasSubstr("says nothing of loops"));
     EXPECT_THAT(error("a.gif", 64, 48, {.quality = 50}), testing::HasSubstr("has no quality"));
     EXPECT_THAT(error("a.mp4", 16000, 48), testing::HasSubstr("at most 8192 pixels"));
     EXPECT_EQ(error("a.webm", 641, 481), "");

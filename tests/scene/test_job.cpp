@@ -335,8 +335,9 @@ TEST_F(JobFile, TheSchemasKnowTheKeysThatTheReadersKnow) {
 // --- Films
 
 TEST_F(JobFile, AFilmIsOneFile) {
-    const std::string times = "\"sweep\": [{\"times\": [\"2026-06-21T06:00Z\", "
-                              "\"2026-06-21T07:00Z\"]}],";
+    const std::string times =
+        "\"sweep\": [{\"times\": [\"2026-06-21T06:00Z\", "
+        "\"2026-06-21T07:00Z\"]}],";
     EXPECT_THAT(names(times + "\"output\": \"{dem}.mp4\""), ElementsAre("alps.mp4", "alps.mp4"));
     const Job webp = read_job(write(with(times + "\"output\": \"a.webp\", \"film\": {}")));
     EXPECT_TRUE(webp.is_film());
@@ -344,29 +345,33 @@ TEST_F(JobFile, AFilmIsOneFile) {
     // The frames of a film as pictures.
     EXPECT_FALSE(read_job(write(with(times + "\"output\": \"{n}.png\", \"film\": {}"))).is_film());
     EXPECT_EQ(error(with(times + "\"output\": \"{n}.mp4\"")),
-              "2: output: a film is one file but \"{n}.mp4\" names 1.mp4 and 2.mp4; leave out what "
+              "2: output: a film is one file but \"{n}.mp4\" names 1.mp4 and 2.mp4; remove what "
               "differs between its frames");
     EXPECT_EQ(error(with("\"film\": {\"fps\": 0}")),
               "2: film.fps: expected a number in [0.1, 240] but got 0");
 }
 
 TEST_F(JobFile, RangesByTheNumberOfFrames) {
-    const auto times = shots("\"sweep\": [{\"times\": {\"from\": \"2026-06-21T06:00Z\", \"to\": "
-                             "\"2026-06-21T07:00Z\", \"frames\": 5}}]");
+    const auto times = shots(
+        "\"sweep\": [{\"times\": {\"from\": \"2026-06-21T06:00Z\", \"to\": "
+        "\"2026-06-21T07:00Z\", \"frames\": 5}}]");
     ASSERT_EQ(times.size(), 5u);
     EXPECT_EQ(sun::to_iso(times[1].utc), "2026-06-21T06:15:00Z");
     EXPECT_EQ(sun::to_iso(times[4].utc), "2026-06-21T07:00:00Z");
-    const auto seconds = shots("\"film\": {\"fps\": 24}, \"sweep\": [{\"times\": {\"from\": "
-                               "\"2026-06-21T06:00Z\", \"to\": \"2026-06-21T07:00Z\", "
-                               "\"duration_s\": 2.5}}]");
+    const auto seconds = shots(
+        "\"film\": {\"fps\": 24}, \"sweep\": [{\"times\": {\"from\": "
+        "\"2026-06-21T06:00Z\", \"to\": \"2026-06-21T07:00Z\", "
+        "\"duration_s\": 2.5}}]");
     EXPECT_EQ(seconds.size(), 60u);
-    const auto dates = shots("\"sweep\": [{\"dates\": {\"from\": \"2026-01-01\", \"to\": "
-                             "\"2026-01-31\", \"frames\": 4, \"at\": \"12:00\"}}]");
+    const auto dates = shots(
+        "\"sweep\": [{\"dates\": {\"from\": \"2026-01-01\", \"to\": "
+        "\"2026-01-31\", \"frames\": 4, \"at\": \"12:00\"}}]");
     ASSERT_EQ(dates.size(), 4u);
     EXPECT_EQ(sun::to_iso(dates[1].utc), "2026-01-11T12:00:00Z");
     EXPECT_EQ(sun::to_iso(dates[3].utc), "2026-01-31T12:00:00Z");
-    const auto values = shots("\"sweep\": [{\"set\": \"haze.density\", \"from\": 0.2, \"to\": 0, "
-                              "\"frames\": 3}]");
+    const auto values = shots(
+        "\"sweep\": [{\"set\": \"haze.density\", \"from\": 0.2, \"to\": 0, "
+        "\"frames\": 3}]");
     ASSERT_EQ(values.size(), 3u);
     EXPECT_EQ(values[1].names.at("haze.density"), "0.1");
     EXPECT_EQ(values[2].names.at("haze.density"), "0");
@@ -426,9 +431,8 @@ TEST_F(JobFile, CamerasMoveWhileTimePasses) {
     }
     // 2711 m at 100 m/s, at rest at both ends.
     EXPECT_THAT(
-        test::error_of([&] {
-            moving("\"flight\": {\"along\": \"line.csv\", \"speed_m_s\": 100}");
-        }),
+        test::error_of(
+            [&] { moving("\"flight\": {\"along\": \"line.csv\", \"speed_m_s\": 100}"); }),
         HasSubstr("sweep[1].flight: expected 31 values, as sweep[0].times has, but got 1016; "
                   "\"combine\": \"zip\" takes axes of one length"));
 }
@@ -440,9 +444,10 @@ TEST_F(JobFile, FlightsThatAreNone) {
     const auto of = [&](const std::string& members) {
         return error(with("\"sweep\": [{\"flight\": {" + members + "}}]"));
     };
-    EXPECT_EQ(of("\"along\": \"same.csv\""),
-              "2: sweep[0].flight.along: expected two different places or more but got the same one "
-              "again");
+    EXPECT_EQ(
+        of("\"along\": \"same.csv\""),
+        "2: sweep[0].flight.along: expected two different places or more but got the same one "
+        "again");
     EXPECT_THAT(of("\"along\": \"one.csv\""), HasSubstr("one.csv"));
     EXPECT_THAT(of("\"along\": \"nan.csv\""), HasSubstr("nan.csv"));
     EXPECT_EQ(of("\"frames\": 3"), "2: sweep[0].flight: expected a member \"along\"");

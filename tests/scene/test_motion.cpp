@@ -3,9 +3,9 @@
 #include <limits>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <glm/geometric.hpp>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -98,9 +98,11 @@ TEST(Series, StepsAreBounded) {
 }
 
 TEST(Series, GapsAreBridged) {
-    EXPECT_THAT(without_gaps({kNaN, 2, kNaN, kNaN, 5, kNaN}), testing::ElementsAre(2, 2, 3, 4, 5, 5));
+    EXPECT_THAT(without_gaps({kNaN, 2, kNaN, kNaN, 5, kNaN}),
+                testing::ElementsAre(2, 2, 3, 4, 5, 5));
     EXPECT_TRUE(std::isnan(without_gaps({kNaN, kNaN})[0]));
-    EXPECT_THAT(unwrapped({3, -3, 3}), testing::ElementsAre(3, testing::DoubleNear(3.283, 1e-3), 3));
+    EXPECT_THAT(unwrapped({3, -3, 3}),
+                testing::ElementsAre(3, testing::DoubleNear(3.283, 1e-3), 3));
 }
 
 // --- Paths
@@ -174,8 +176,7 @@ MotionGround hills(double exaggeration = 1) {
     const geo::LocalFrame frame(geo::geodetic_deg(46.5, 8));
     MotionGround ground{.height_m =
                             [frame](const geo::Geodetic& at) {
-                                const glm::dvec3 p =
-                                    frame.to_local({at.lat_rad, at.lon_rad, 0});
+                                const glm::dvec3 p = frame.to_local({at.lat_rad, at.lon_rad, 0});
                                 if (std::abs(p.x) > 12000 || std::abs(p.y) > 12000) return kNaN;
                                 const double wall = std::abs(p.x - 500) < 30 ? 200 : 0;
                                 return 500 + 300 * std::sin(p.x / 318) * std::cos(p.y / 318) + wall;
@@ -227,7 +228,8 @@ TEST(Flight, AlongALineIsSmoothAndAboveTheGround) {
     for (const double exaggeration : {1.0, 2.0}) {
         const MotionGround ground = hills(exaggeration);
         FlightMotion motion{.height_m = 100, .frames = 600};
-        for (const auto& [x, y] : {std::pair(-6000, -3000), {-2000, 1000}, {2500, -500}, {6000, 2500}})
+        for (const auto& [x, y] :
+             {std::pair(-6000, -3000), {-2000, 1000}, {2500, -500}, {6000, 2500}})
             motion.along.push_back(place(ground, x, y));
         const std::vector<View> views = flight_views(motion, View(), ground);
         ASSERT_EQ(views.size(), 600u);
@@ -248,8 +250,10 @@ TEST(Flight, AlongALineIsSmoothAndAboveTheGround) {
         EXPECT_LE(smooth.heading_deg.first, 1.0001);
         EXPECT_LT(smooth.heading_deg.second, 0.06);
         EXPECT_LT(smooth.pitch_deg.second, 0.15 * exaggeration);
-        EXPECT_NEAR(degrees(views.front().eye->place.lat_rad), degrees(motion.along[0].lat_rad), 1e-6);
-        EXPECT_NEAR(degrees(views.back().eye->place.lon_rad), degrees(motion.along[3].lon_rad), 1e-6);
+        EXPECT_NEAR(degrees(views.front().eye->place.lat_rad), degrees(motion.along[0].lat_rad),
+                    1e-6);
+        EXPECT_NEAR(degrees(views.back().eye->place.lon_rad), degrees(motion.along[3].lon_rad),
+                    1e-6);
         // It looks ahead and down.
         EXPECT_NEAR(views.front().heading_deg, degrees(std::atan2(4000, 4000)), 15);
     }
@@ -300,7 +304,8 @@ TEST(Flight, ThroughViewsPassesThemAndStaysAboveTheGround) {
     // The view in the middle is passed within some metres.
     double nearest_m = 1e9;
     for (const View& view : views)
-        nearest_m = std::min(nearest_m, geo::geodesic(view.eye->place, place(ground, 0, 3000)).distance_m);
+        nearest_m =
+            std::min(nearest_m, geo::geodesic(view.eye->place, place(ground, 0, 3000)).distance_m);
     EXPECT_LT(nearest_m, 40);
 }
 
@@ -360,7 +365,8 @@ TEST(OrbitMotion, AroundATargetStaysAboveTheGround) {
     const MotionGround ground = hills();
     View view = looking_from(ground, -1500, 0, 30, 0, 0);
     view.look_at = Standpoint{place(ground, 0, 0), true};
-    const std::vector<View> views = orbit_views({.turns = -0.5, .frames = 200, .ease = true}, view, ground);
+    const std::vector<View> views =
+        orbit_views({.turns = -0.5, .frames = 200, .ease = true}, view, ground);
     for (const View& at : views)
         EXPECT_GE(above_m(at, ground), kClearance_m - 0.01);
     EXPECT_LT(geo::geodesic(views.front().eye->place, view.eye->place).distance_m, 0.01);
@@ -371,10 +377,12 @@ TEST(OrbitMotion, AroundATargetStaysAboveTheGround) {
 TEST(OrbitMotion, NeedsATarget) {
     const MotionGround ground = hills();
     View up = looking_from(ground, 0, 0, 100, 0, 20);
-    EXPECT_THAT(test::error_of([&] { orbit_views({}, up, ground); }), HasSubstr("looks past all ground"));
+    EXPECT_THAT(test::error_of([&] { orbit_views({}, up, ground); }),
+                HasSubstr("looks past all ground"));
     View map;
     map.orbit = {.azimuth_deg = 180, .elevation_deg = 90};
-    EXPECT_THAT(test::error_of([&] { orbit_views({}, map, ground); }), HasSubstr("looks straight down"));
+    EXPECT_THAT(test::error_of([&] { orbit_views({}, map, ground); }),
+                HasSubstr("looks straight down"));
     up.pitch_deg = -30;
     EXPECT_EQ(orbit_views({.frames = 7}, up, ground).size(), 7u);
 }
