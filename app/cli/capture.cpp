@@ -19,7 +19,6 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
-#include "cli/trust.h"
 #include "dem/files_of.h"
 #include "effect/search_path.h"
 #include "geo/format.h"
@@ -58,7 +57,8 @@ Wanted wanted(const Arguments& arguments) {
     Wanted result{scene::read_scene_text(text->second, path.string(), path.parent_path()),
                   arguments.ab};
     arguments.scene.apply_to(result.scene);
-    Trust trusted(arguments.scene, "--from: " + printable(path.string()), NamedBy::Picture);
+    session::Trust trusted(arguments.scene.named(), "--from: " + printable(path.string()),
+                           session::NamedBy::Picture);
     trusted.check_names(result.scene);
     trusted.keep_folders(result.scene.effects);
     trusted.tell();

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "cli/trust.h"
+#include "session/trust.h"
 
 namespace relevo::cli {
 namespace {
@@ -50,7 +50,8 @@ void JobRun::read_job(const JobArguments& arguments) {
 void JobRun::read(const JobArguments& arguments) {
     if (!arguments.dry_run) times.before_reading([this](const auto& scene) { hash(scene); });
     read_job(arguments);
-    Trust trusted(arguments.scene, "job: " + printable(job.file), NamedBy::File);
+    session::Trust trusted(arguments.scene.named(), "job: " + printable(job.file),
+                           session::NamedBy::File);
     for (const scene::JobFile& file : job.files)
         files.add_input(file.path, file.what);
     scene::Shots drawn_up = scene::shots_of(

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "cli/trust.h"
 
 namespace relevo::cli {
 
@@ -68,11 +67,18 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
             values.add_to(verb, option);
 }
 
+session::Named SceneArguments::named() const {
+    return {.all = trust,
+            .plugin_folders = effects.plugin_path,
+            .dems = dem.paths,
+            .overlays = {overlay.file}};
+}
+
 scene::Scene SceneArguments::scene() const {
     scene::Scene result;
     if (!file.empty()) result = scene::read_scene(file);
     apply_to(result);
-    Trust trusted(*this, "scene: " + printable(file), NamedBy::File);
+    session::Trust trusted(named(), "scene: " + printable(file), session::NamedBy::File);
     trusted.check_names(result);
     trusted.keep_folders(result.effects);
     trusted.tell();

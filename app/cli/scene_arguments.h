@@ -5,6 +5,7 @@
 #include "cli/effects.h"
 #include "cli/shared.h"
 #include "scene/scene.h"
+#include "session/trust.h"
 
 namespace relevo::cli {
 
@@ -28,12 +29,14 @@ struct SceneArguments {
     OverlayArguments overlay;
     OptionArguments values;
     std::string file, size, stamps;
-    bool trust = false;  ///< --trust: Trust
+    bool trust = false;  ///< --trust
 
     /// @param with_file  there is --scene
     void add_to(CLI::App& verb, bool with_file = true);
     /// Puts what was given in the place of what a scene says. @throws Error as those who read
     void apply_to(scene::Scene& scene) const;
+    /// What the command line names, and whether it trusts the names in files.
+    session::Named named() const;
     /// The scene of --scene, if there is one, with what else was given in the place of its own.
     /// @throws Error as those who read
     scene::Scene scene() const;

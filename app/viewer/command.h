@@ -9,6 +9,7 @@ struct KeyPress;
 /// What keys and menus have the window do.
 enum class Command {
     Open,
+    HowToRead,  ///< CRS, unit and so on of the DEM
     NextFile,
     PreviousFile,
     ReadAgain,
@@ -23,6 +24,8 @@ enum class Command {
     NorthUp,
     FromAbove,
     Walk,
+    StandHere,  ///< at the chosen point
+    LookThere,  ///< to the chosen point
     SaveView,
     Measure,
     Compare,

@@ -19,7 +19,8 @@ constexpr float kClick_px = 4;  // greatest motion of a click
 /// Decay of zooming and gliding [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
 constexpr float kPanANotch_px = 60;
-constexpr double kAhead_deg = -10;  // pitch of a walker's view
+/// An eye below this height walks where it is.
+constexpr double kLow_m = 50;
 
 }  // namespace
 
@@ -112,16 +113,40 @@ bool Hand::move(Command command, const std::function<Whole()>& whole) {
             return true;
         }
         case Command::Walk:
-            walking_ = !walking_;
-            if (walking_) {
-                // Not straight at the feet after a view from above.
-                pose.pitch_deg = std::max(pose.pitch_deg, kAhead_deg);
-                pose = walk(pose, state_.land, {0, 0});
-            }
-            return true;
+            return walk_or_fly();
         default:
             return false;
     }
+}
+
+/// The clicked point, unless the last walk began there; else below a low eye; else the ground in
+/// the middle of the image.
+std::optional<glm::dvec3> Hand::start_of_walk() {
+    const std::optional<geo::Geodetic>& chosen = state_.chosen;
+    const bool is_new = chosen && !(walked_from_ && walked_from_->lat_rad == chosen->lat_rad &&
+                                    walked_from_->lon_rad == chosen->lon_rad);
+    walked_from_ = chosen;
+    if (is_new) return state_.land.frame->to_local(*chosen);
+    if (height_above_ground() < kLow_m) return state_.document.pose.eye_m;
+    return ground_at(0.5f * window_.size());
+}
+
+bool Hand::walk_or_fly() {
+    if (walking_) {
+        walking_ = false;
+        return true;
+    }
+    const std::optional<glm::dvec3> start = start_of_walk();
+    return start && stand_at(*start);
+}
+
+bool Hand::stand_at(const glm::dvec3& point_m) {
+    const std::optional<Pose> standing = stand(state_.document.pose, state_.land, point_m);
+    if (!standing) return false;
+    stop_gliding();
+    state_.document.pose = *standing;
+    walking_ = true;
+    return true;
 }
 
 glm::dvec2 Hand::in_view(glm::vec2 at_px) const {
@@ -190,8 +215,10 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
         const bool click = distance(mouse, pressed_px_) < kClick_px;
-        if (click && *dragging_ == Drag::Pan) clicked_ = ground_at(mouse);
-        if (clicked_ && std::isnan(drawn_height_m(*clicked_))) clicked_.reset();
+        const bool right = *dragging_ == Drag::Orbit;
+        const std::optional<glm::dvec3> ground =
+            click && (right || *dragging_ == Drag::Pan) ? ground_at(mouse) : std::nullopt;
+        if (ground && !std::isnan(drawn_height_m(*ground))) clicked_ = Click{*ground, right};
         dragging_.reset();
         return;
     }

@@ -13,6 +13,12 @@
 
 namespace relevo::viewer {
 
+/// Ground that was clicked.
+struct Click {
+    glm::dvec3 point_m;
+    bool asks_for_menu = false;  ///< by the right button
+};
+
 /// Home view of the whole DEM, and from above.
 struct Whole {
     Pose home, above;
@@ -30,7 +36,8 @@ class Hand {
     /// @param comparing  there is a dividing line to drag
     /// @param new_input  ImGui has processed mouse events since the last call
     void act(double passed_s, bool comparing, bool new_input);
-    /// Carries out a command that moves the camera. @returns false: `command` is another one
+    /// Carries out a command that moves the camera. @returns false: `command` is another one, or
+    /// there is no ground to walk on
     /// @param whole  called only for commands that show the whole DEM
     bool move(Command command, const std::function<Whole()>& whole);
     /// Ends drags, glides and walking.
@@ -43,8 +50,9 @@ class Hand {
     /// Whether the last act() moved the camera.
     bool has_moved() const { return has_moved_; }
     bool is_walking() const { return walking_; }
-    /// The ground that was clicked since the last call.
-    std::optional<glm::dvec3> take_click() { return std::exchange(clicked_, std::nullopt); }
+    /// Stands on the ground at a point, and walks from there. @returns false: there is none
+    bool stand_at(const glm::dvec3& point_m);
+    std::optional<Click> take_click() { return std::exchange(clicked_, std::nullopt); }
 
     /// The ground at a place of the displayed image.
     std::optional<glm::dvec3> ground_at(glm::vec2 at_px) const;
@@ -56,6 +64,8 @@ class Hand {
     glm::dvec2 in_view(glm::vec2 at_px) const;
     glm::dvec3 hold(glm::vec2 at_px) const;
     double height_above_ground() const;
+    std::optional<glm::dvec3> start_of_walk();
+    bool walk_or_fly();
     void stop_gliding();
     bool glides() const;
     void press(glm::vec2 mouse, bool comparing);
@@ -72,7 +82,8 @@ class Hand {
     State& state_;
     std::shared_ptr<const Picture> picture_;
     std::optional<Drag> dragging_;
-    std::optional<glm::dvec3> clicked_;
+    std::optional<Click> clicked_;
+    std::optional<geo::Geodetic> walked_from_;  // the chosen point at which the last walk began
     glm::vec2 pressed_px_{0}, last_px_{0};
     glm::dvec3 held_{0}, zoom_at_{0};
     double zoom_left_ = 0;  // natural logarithm of the remaining zoom factor

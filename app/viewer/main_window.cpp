@@ -27,7 +27,7 @@ void play(State& state, double passed_s) {
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     : device_(device, presentation_of_environment()), zone_(scene.time.zone) {
     state_.document.scene = scene;
-    if (scene.overlay) state_.document.overlay = {OverlayKind::File, scene.overlay->opacity};
+    state_.time_is_pinned = !scene.time.at.empty();
     Window::check_display();
     // The scene opens while the window is created.
     opening_ = std::make_unique<Opening>(scene, device_, messages_, discard_);
@@ -46,7 +46,7 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
     style_ = std::make_unique<WindowStyle>(*window_, state_.settings);
-    begin_scene();
+    opening_->thread().want(first_wanted());
 }
 
 scene::Scene MainWindow::scene() const {
@@ -135,7 +135,7 @@ void MainWindow::draw_panels() {
     if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        waiting_text(state_, opening_->has_failed(), opening_->has_last_good());
+        waiting_text(opening_->scene());
         return;
     }
     if (picture_) draw_over_image();
@@ -144,10 +144,18 @@ void MainWindow::draw_panels() {
         side_panel(state_, size(), unit());
         charts_.draw(state_, size(), unit());
     }
+    point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
-    status_line(state_, is_drawing());
+    import_sheet_.draw(size());
+    status_line(state_, work_in_progress());
     message_box(state_, size(), unit());
     if (shows_keys_) key_sheet();
+}
+
+std::string MainWindow::work_in_progress() const {
+    if (opening_->is_opening())
+        return "opening " + short_name(opening_->next_scene().dems) + " ...   Esc cancels";
+    return is_drawing() ? "drawing ..." : "";
 }
 
 void MainWindow::draw_over_image() {
@@ -197,8 +205,8 @@ void MainWindow::check_files() {
     checked_at_ = Clock::now();
     remember_settings();
     if (messages_.expire()) pacing_.need_frames(2);
-    if (!is_open() && !opening_->has_failed()) return;
-    if (is_open() && opening_->effects_changed()) reload_effects();
+    if (!is_open() || opening_->is_opening()) return;
+    if (opening_->effects_changed()) reload_effects();
     if (opening_->dem_changed()) reload_dem();
 }
 

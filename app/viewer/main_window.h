@@ -4,12 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "session/trust.h"
 #include "viewer/charts_panel.h"
 #include "viewer/comparison.h"
 #include "viewer/discard.h"
+#include "viewer/file_kind.h"
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
 #include "viewer/history.h"
+#include "viewer/import_sheet.h"
 #include "viewer/mark_overlay.h"
 #include "viewer/messages.h"
 #include "viewer/open_dialog.h"
@@ -41,6 +44,8 @@ class MainWindow {
     bool is_open() const { return opening_->opened() != nullptr; }
     /// Whether the image is overdue, so that the status line reports it.
     bool is_drawing() const;
+    /// For the status line; empty: none.
+    std::string work_in_progress() const;
     void leave();
     /// Whether a frame would repeat the last one while an image of the moving scene is due.
     bool repeats_frame() const;
@@ -59,19 +64,26 @@ class MainWindow {
 
     // ---- the open scene and its images: main_window_scene.cpp
 
-    void open_requested_files();
     void reload_effects();
     void reload_dem();
-    /// Clears what belongs to the last scene after opening_ began to open another one.
-    void begin_scene();
+    /// What the thread of a scene begins with.
+    Wanted first_wanted() const;
+    /// Clears what belongs to the scene before the one that is open now.
+    void clear_scene();
     void want_view();
     Wanted wanted_now() const;
     void poll_threads();
-    /// @returns false: the scene could not be opened
-    bool poll_opening();
+    void poll_opening();
     void poll_images();
     void stop_comparison();
-    void start_scene(bool is_first);
+    /// @param is_first  of the window
+    /// @param view      of a DEM that was read again; none: the scene's
+    void start_scene(bool is_first, const std::optional<scene::View>& view);
+    /// After the DEM was read again. Keeps view, time and steps of undo.
+    void restart_scene(const Opened& before);
+    /// The time at which a scene without one is shown: that of the clocks before, or, unless the
+    /// time is pinned, the next to it that has sun. Says so if it is another.
+    sun::Instant time_from(const sun::Zone& zone_before);
     /// @param before  the scene with a coarse DEM
     void complete_scene(const Opened& before);
     void use_dem();
@@ -83,6 +95,23 @@ class MainWindow {
     bool is_image_complete() const;
     /// The pose of a view that leaves room for the panels.
     Pose pose_in(const scene::View& view) const;
+
+    // ---- files: main_window_files.cpp; they throw Error (BadInput) for files that are wrong
+
+    void open_requested_files();
+    void open_files(const std::vector<std::string>& files);
+    void open_dem(const RecentDem& dem);
+    void open_scene(scene::Scene scene);
+    void open_file(FileKind kind, const std::string& path);
+    /// Opens a scene that a file names, without plugin folders and names on the net in it.
+    void open_named_scene(scene::Scene scene, const std::string& path, session::NamedBy by);
+    /// Switches on an effect that shows the places or lines of a file.
+    void show_features(FileKind kind, const std::string& path);
+    void lay_over(const std::string& path);
+    /// Stands where a photograph was taken, at its time, with its lens.
+    void stand_where_taken(const std::string& path);
+    /// After a DEM could not be opened: shows the sheet if options could help.
+    void ask_how_to_read();
 
     // ---- keys and commands: main_window_commands.cpp
 
@@ -98,6 +127,8 @@ class MainWindow {
     void toggle_overlay();
     void restore(const Document& document);
     void move(Command command);
+    /// Stands on the chosen point, or looks at it.
+    void move_to_point(Command command);
     /// The whole DEM, from its side and from above.
     Whole whole_views() const;
     void save_view();
@@ -121,6 +152,7 @@ class MainWindow {
     FramePacing pacing_;
     History history_;
     OpenDialog open_dialog_;
+    ImportSheet import_sheet_;
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;
@@ -137,6 +169,7 @@ class MainWindow {
     bool sun_moved_ = false;      // in the frame before
     bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
+    bool opens_point_menu_ = false;
 };
 
 }  // namespace relevo::viewer

@@ -15,9 +15,12 @@ namespace relevo::viewer {
 void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
-    const std::optional<glm::dvec3> clicked = hand_->take_click();
+    const std::optional<Click> clicked = hand_->take_click();
     Measurement& line = state_.measurement;
-    if (clicked && !std::exchange(line.follows_cursor, false)) choose_point(*clicked);
+    if (clicked && !std::exchange(line.follows_cursor, false)) {
+        choose_point(clicked->point_m);
+        opens_point_menu_ = clicked->asks_for_menu;
+    }
     if (line.follows_cursor && state_.cursor) line.follow(state_.cursor->point_m, state_.land);
 }
 
@@ -46,6 +49,12 @@ bool MainWindow::run_program_command(Command command) {
     switch (command) {
         case Command::Open:
             open_dialog_.open(opening_->requested_file());
+            return true;
+        case Command::HowToRead:
+            if (is_open()) {
+                const scene::Scene& scene = state_.document.scene;
+                import_sheet_.open({scene.dems, scene.dem, scene.holes}, "");
+            }
             return true;
         case Command::NextFile:
             open_neighbour(1);
@@ -118,13 +127,10 @@ void MainWindow::run_scene_command(Command command) {
 }
 
 void MainWindow::close_dialogs() {
-    if (opening_->can_cancel()) {
-        opening_->cancel();
-        begin_scene();
-        return;
-    }
+    if (opening_->can_cancel()) return opening_->cancel();
     shows_keys_ = state_.measurement.follows_cursor = false;
     open_dialog_.close();
+    import_sheet_.close();
     closes_menus_ = true;
     state_.message.clear();
 }
@@ -156,14 +162,31 @@ void MainWindow::move(Command command) {
         by(-kDay_s);
     else if (command == Command::DayLater)
         by(kDay_s);
-    else if (!hand_->move(command, [this] { return whole_views(); }))
+    else if (command == Command::StandHere || command == Command::LookThere)
+        move_to_point(command);
+    else if (!hand_->move(command, [this] { return whole_views(); })) {
+        if (command == Command::Walk)
+            messages_.note("no ground to walk on here; click a point, then press G");
         return;
-    if (command == Command::Walk)
+    }
+    if (command == Command::Walk || command == Command::StandHere)
         messages_.note(hand_->is_walking()
                            ? "walking at eye height: W A S D, faster with Shift; G flies again"
                            : "flying: W A S D, Q down and E up, faster with Shift");
     pacing_.moved();
     state_.step = true;
+}
+
+void MainWindow::move_to_point(Command command) {
+    if (!state_.chosen) return messages_.note("click a point on the ground first");
+    geo::Geodetic drawn = *state_.chosen;
+    drawn.height_m = state_.land.ground_under(state_.land.frame->to_local(drawn));
+    if (std::isnan(drawn.height_m)) return;
+    const glm::dvec3 point_m = state_.land.frame->to_local(drawn);
+    if (command == Command::StandHere)
+        hand_->stand_at(point_m);
+    else
+        state_.document.pose = facing(state_.document.pose, state_.land, point_m);
 }
 
 void MainWindow::measure() {

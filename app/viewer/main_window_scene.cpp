@@ -26,29 +26,6 @@ bool same(const Wanted& a, const Wanted& b) {
 
 }  // namespace
 
-void MainWindow::open_requested_files() {
-    std::vector<std::string> files = window_->take_dropped_files();
-    if (std::vector<std::string> chosen = open_dialog_.take(); !chosen.empty())
-        files = std::move(chosen);
-    if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
-    const std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
-    if (recent) files = recent->files;
-    if (files.empty() || !opening_->has_last_good()) return;
-    // Options of the last DEM do not apply, except for the window's limit of memory.
-    scene::Scene scene = state_.document.scene;
-    const std::int64_t max_posts = scene.dem.max_posts;
-    scene.dems = std::move(files);
-    scene.view = {};
-    scene.overlay.reset();
-    scene.dem = recent ? recent->options : dem::LoadOptions();
-    scene.dem.max_posts = max_posts;
-    if (recent) scene.holes = recent->holes;
-    state_.document.overlay = {};
-    state_.message.clear();
-    opening_->open(std::move(scene));
-    begin_scene();
-}
-
 void MainWindow::reload_effects() {
     state_.set_effects(state_.document.scene.effects);
     state_.take_effects(/*is_step=*/false);
@@ -57,13 +34,20 @@ void MainWindow::reload_effects() {
 
 void MainWindow::reload_dem() {
     scene::Scene scene = state_.document.scene;
-    if (is_open()) scene.view = view_of(state_.document.pose, state_.land);
-    messages_.note("the DEM changed and was reloaded");
-    opening_->reload(std::move(scene));
-    begin_scene();
+    scene.view = view_of(state_.document.pose, state_.land);
+    opening_->reload(std::move(scene), first_wanted());
+    pacing_.need_frames(3);
 }
 
-void MainWindow::begin_scene() {
+Wanted MainWindow::first_wanted() const {
+    Wanted wanted;
+    wanted.width_px = window_->size_px().x;
+    wanted.height_px = window_->size_px().y;
+    wanted.insets = panel_insets();
+    return wanted;
+}
+
+void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
     point_->clear();
     overlay_->clear();
@@ -76,11 +60,6 @@ void MainWindow::begin_scene() {
     history_ = {};  // its poses are relative to the last DEM
     stop_comparison();
     pacing_.need_frames(3);
-    Wanted wanted;
-    wanted.width_px = window_->size_px().x;
-    wanted.height_px = window_->size_px().y;
-    wanted.insets = panel_insets();
-    opening_->thread().want(wanted);
 }
 
 void MainWindow::want_view() {
@@ -108,8 +87,8 @@ Wanted MainWindow::wanted_now() const {
 }
 
 void MainWindow::poll_threads() {
-    if (opening_->has_failed() || !poll_opening()) return;
-    poll_images();
+    poll_opening();
+    if (is_open()) poll_images();
     if (auto message = opening_->thread().take_message()) {
         messages_.show(std::move(*message));
         pacing_.need_frames(2);
@@ -118,27 +97,24 @@ void MainWindow::poll_threads() {
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }
 
-bool MainWindow::poll_opening() {
+void MainWindow::poll_opening() {
     // State::land refers to this one until it refers to the next.
     const std::shared_ptr<const Opened> before = opening_->opened();
-    const bool is_first = !opening_->has_last_good();
     switch (opening_->poll()) {
         case Opening::Event::None:
-            return true;
+            return;
         case Opening::Event::Opened:
-            start_scene(is_first);
-            return true;
+            return start_scene(/*is_first=*/!before, std::nullopt);
+        case Opening::Event::Reloaded:
+            return restart_scene(*before);
         case Opening::Event::Completed:
-            complete_scene(*before);
-            return true;
-        case Opening::Event::WentBack:
-            begin_scene();
-            return false;
+            return complete_scene(*before);
+        case Opening::Event::Broken:
+            return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
             pacing_.need_frames(3);
-            return false;
+            return ask_how_to_read();
     }
-    return false;
 }
 
 void MainWindow::poll_images() {
@@ -160,11 +136,16 @@ void MainWindow::stop_comparison() {
     state_.compare_is_wanted = false;
 }
 
-void MainWindow::start_scene(bool is_first) {
+void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& view) {
+    clear_scene();
     const Opened& opened = *opening_->opened();
     const scene::Scene& scene = opened.scene;
     use_dem();
     Document& document = state_.document;
+    if (!view) {
+        document.overlay = {};
+        if (scene.overlay) document.overlay = {OverlayKind::File, scene.overlay->opacity};
+    }
     if (opened.legend) {  // until overlay_ has read the file
         auto shown = std::make_shared<OverlayShown>();
         shown->overlay.legend = *opened.legend;
@@ -172,15 +153,41 @@ void MainWindow::start_scene(bool is_first) {
     }
     const sun::Zone zone_before = document.zone;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
-    document.pose = pose_in(scene.view);
-    state_.set_utc(is_first ? opened.utc
-                            : same_local_time(document.utc, zone_before, document.zone));
+    document.pose = pose_in(view.value_or(scene.view));
+    const bool has_time = is_first || !opening_->scene().time.at.empty();
+    state_.set_utc(has_time && !view ? opened.utc : time_from(zone_before));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     const std::vector<std::string> names = absolute_names(scene.dems);
     state_.views = memory_.views(names);
     try_or_log([&] { memory_.add_recent({names, scene.dem, scene.holes}); });
     state_.recent = memory_.recent();
+}
+
+void MainWindow::restart_scene(const Opened& before) {
+    const geo::Geodetic centre = before.ground.frame.origin();
+    History history = std::move(history_);
+    start_scene(/*is_first=*/false, view_of(state_.document.pose, state_.land));
+    const geo::Geodetic now = opening_->opened()->ground.frame.origin();
+    if (now.lat_rad == centre.lat_rad && now.lon_rad == centre.lon_rad)
+        history_ = std::move(history);
+    messages_.note("the DEM changed and was reloaded");
+}
+
+sun::Instant MainWindow::time_from(const sun::Zone& zone_before) {
+    const Document& document = state_.document;
+    const sun::Instant same = same_local_time(document.utc, zone_before, document.zone);
+    if (state_.time_is_pinned || sun_at(same, state_.centre, state_.air).elevation_deg > 0)
+        return same;
+    const sun::Date date = document.zone.local(same).wall.date;
+    const SunDay day = SunDay::of(date, document.zone, state_.centre, state_.air);
+    const sun::Instant lit = time_with_sun(day, same).value_or(opening_->opened()->utc);
+    const auto clock = [&](sun::Instant utc) {
+        const int minute = DayMinute::of(utc, document.zone).minute;
+        return fmt::format("{:02}:{:02}", minute / 60, minute % 60);
+    };
+    messages_.note(fmt::format("it is night here at {}; shown at {}", clock(same), clock(lit)));
+    return lit;
 }
 
 void MainWindow::complete_scene(const Opened& before) {

@@ -57,13 +57,6 @@ void item(State& state, const char* label, const char* keys, Command command, bo
 }
 
 /// The file name of a DEM, and the number of its other files.
-std::string short_name(const std::vector<std::string>& dems) {
-    std::string name = printable(std::filesystem::path(dems.front()).filename().string());
-    if (name.empty()) name = printable(dems.front());
-    if (dems.size() > 1) name += fmt::format(" and {} more", dems.size() - 1);
-    return name;
-}
-
 void recent_files(State& state) {
     if (!ImGui::BeginMenu("Open recent", !state.recent.empty())) return;
     for (std::size_t i = 0; i < state.recent.size(); ++i) {
@@ -79,6 +72,7 @@ void file_menu(State& state) {
     if (!ImGui::BeginMenu("File")) return;
     item(state, "Open...", "Ctrl+O", Command::Open);
     recent_files(state);
+    item(state, "How this DEM is read...", nullptr, Command::HowToRead);
     item(state, "Next DEM in the folder", "Ctrl+Page down", Command::NextFile);
     item(state, "Previous DEM in the folder", "Ctrl+Page up", Command::PreviousFile);
     item(state, "Reload effects", "F5", Command::ReadAgain);

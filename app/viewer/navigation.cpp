@@ -187,6 +187,21 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
     return moved;
 }
 
+std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m) {
+    constexpr double kAhead_deg = -10;
+    if (std::isnan(land.ground_under(point_m))) return std::nullopt;
+    Pose standing = pose;
+    standing.eye_m = point_m;
+    standing.pitch_deg = std::max(pose.pitch_deg, kAhead_deg);
+    return walk(standing, land, {0, 0});
+}
+
+Pose facing(const Pose& pose, const Land& land, const glm::dvec3& point_m) {
+    const glm::dvec3 to = point_m - pose.eye_m;
+    if (length(to) < kNearest_m) return pose;
+    return looking(pose, land, pose.eye_m, normalize(to));
+}
+
 Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
     constexpr double kDown_deg = -20;
     Pose there = pose;

@@ -73,6 +73,11 @@ Pose look_around(const Pose& pose, double right_deg, double up_deg);
 Pose fly(const Pose& pose, const Land& land, const glm::dvec3& by_m);
 /// Moves horizontally by (right, forward) [m], at eye height above ground.
 Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m);
+/// Stands at eye height on the drawn ground at a point, looking as before but not at the feet.
+/// @returns none: there is no ground
+std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m);
+/// Turns to a point.
+Pose facing(const Pose& pose, const Land& land, const glm::dvec3& point_m);
 /// Looks at a point from a distance, from the current direction but at least 20 degrees downwards.
 Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m);
 /// Looks straight down at a point from a distance, north up.

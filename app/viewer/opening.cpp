@@ -13,78 +13,94 @@ namespace relevo::viewer {
 Opening::Opening(scene::Scene scene, const SceneDevice& device, Messages& messages,
                  Discard& discard)
     : device_(device), messages_(messages), discard_(discard) {
-    begin(std::move(scene));
-}
-
-void Opening::open(scene::Scene scene) {
-    attempt_ = Attempt::Requested;
-    is_reload_ = false;
     requested_file_ = scene.dems.front();
-    begin(std::move(scene));
+    begin(std::move(scene), /*is_reload=*/false);
 }
 
-void Opening::reload(scene::Scene scene) {
-    attempt_ = Attempt::Requested;
-    is_reload_ = true;
-    begin(std::move(scene));
+void Opening::open(scene::Scene scene, const Wanted& first) {
+    requested_file_ = scene.dems.front();
+    begin(std::move(scene), /*is_reload=*/false);
+    next_->thread->want(first);
+}
+
+void Opening::reload(scene::Scene scene, const Wanted& first) {
+    begin(std::move(scene), /*is_reload=*/true);
+    next_->thread->want(first);
+}
+
+void Opening::go_back(const Wanted& first) {
+    begin(*complete_, /*is_reload=*/false);
+    next_->thread->want(first);
 }
 
 void Opening::cancel() {
-    go_back("opening " + printable(scene_.dems.front()) + " was cancelled");
+    messages_.note("opening " + printable(next_->scene.dems.front()) + " was cancelled");
+    discard_.take(std::move(next_->thread));
+    next_.reset();
+}
+
+void Opening::begin(scene::Scene scene, bool is_reload) {
+    if (next_) discard_.take(std::move(next_->thread));
+    failure_.reset();
+    auto thread = std::make_unique<SceneThread>(scene, device_, &Window::wake);
+    next_ = Attempt{std::move(scene), std::move(thread), is_reload};
 }
 
 Opening::Event Opening::poll() {
-    if (has_failed()) return Event::None;
+    if (next_)
+        if (const Event event = poll_next(); event != Event::None) return event;
+    return opened_ && !is_broken_ ? poll_open() : Event::None;
+}
+
+Opening::Event Opening::poll_next() {
     try {
-        thread_->check();
+        next_->thread->check();
     } catch (const gl::DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        if (is_preview()) last_good_ = last_good_before_;  // this DEM cannot be read completely
-        if (!last_good_) throw;
-        return go_back(error.what());
-    }
-    std::shared_ptr<const Opened> opened = thread_->opened();
-    if (!opened || opened == opened_) return Event::None;
-    if (opened_) {
-        opened_ = std::move(opened);
-        return Event::Completed;
-    }
-    accept(std::move(opened));
-    return Event::Opened;
-}
-
-void Opening::begin(scene::Scene scene) {
-    scene_ = std::move(scene);
-    opened_ = nullptr;
-    discard_.take(std::move(thread_));
-    thread_ = std::make_unique<SceneThread>(scene_, device_, &Window::wake);
-}
-
-Opening::Event Opening::go_back(std::string reason) {
-    messages_.show(std::move(reason));
-    if (attempt_ == Attempt::Fallback) {
-        attempt_ = Attempt::Failed;
+        if (!opened_) throw;
+        fail(error.what());
         return Event::Failed;
     }
-    attempt_ = Attempt::Fallback;
-    // A DEM that is reloaded keeps the current view.
-    is_reload_ = is_reload_ && scene_.dems == last_good_->dems;
-    scene::Scene scene = *last_good_;
-    if (is_reload_) scene.view = scene_.view;
-    begin(std::move(scene));
-    return Event::WentBack;
+    std::shared_ptr<const Opened> opened = next_->thread->opened();
+    if (!opened) return Event::None;
+    return accept(std::move(opened));
 }
 
-void Opening::accept(std::shared_ptr<const Opened> opened) {
+void Opening::fail(std::string reason) {
+    messages_.show(reason);
+    failure_ = Failure{std::move(next_->scene), std::move(reason)};
+    discard_.take(std::move(next_->thread));
+    next_.reset();
+}
+
+Opening::Event Opening::poll_open() {
+    try {
+        open_.thread->check();
+    } catch (const gl::DeviceLost&) {
+        throw;
+    } catch (const std::exception& error) {
+        if (!complete_) throw;
+        is_broken_ = true;
+        messages_.show(error.what());
+        return next_ ? Event::None : Event::Broken;
+    }
+    std::shared_ptr<const Opened> opened = open_.thread->opened();
+    if (opened == opened_) return Event::None;
     opened_ = std::move(opened);
-    if (!std::exchange(is_reload_, false)) home_view_ = opened_->scene.view;
-    const bool is_fallback = attempt_ == Attempt::Fallback;
-    last_good_before_ = is_fallback ? std::nullopt : last_good_;
-    last_good_ = scene_;
-    if (!is_fallback) requested_file_ = scene_.dems.front();
-    attempt_ = Attempt::Requested;
+    complete_ = open_.scene;
+    return Event::Completed;
+}
+
+Opening::Event Opening::accept(std::shared_ptr<const Opened> opened) {
+    if (!next_->is_reload) home_view_ = opened->scene.view;
+    discard_.take(std::move(open_.thread));
+    open_ = *std::exchange(next_, std::nullopt);
+    opened_ = std::move(opened);
+    is_broken_ = false;
+    if (!is_preview()) complete_ = open_.scene;
     watch_files();
+    return open_.is_reload ? Event::Reloaded : Event::Opened;
 }
 
 void Opening::watch_files() {

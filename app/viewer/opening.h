@@ -12,43 +12,56 @@
 
 namespace relevo::viewer {
 
-/// Opens one scene at a time on a thread of its own. If a scene cannot be opened, it opens the last
-/// one that could.
+/// The open scene, and the next one while it opens. The open scene stays, with its image, until the
+/// next one is open; if that fails nothing has changed.
 class Opening {
   public:
     enum class Event {
         None,
-        Opened,     ///< opened() is available
+        Opened,     ///< opened() is another scene
+        Reloaded,   ///< the same DEM was read again; opened() is another
         Completed,  ///< all posts of the DEM have replaced coarse ones; opened() is another
-        WentBack,   ///< the scene cannot be opened; scene() is the last good one, being opened
-        Failed,     ///< the last good scene cannot be opened either
+        Failed,     ///< the next scene could not be opened: take_failure()
+        Broken,     ///< the posts of the open scene cannot be read completely
+    };
+
+    /// A scene that could not be opened.
+    struct Failure {
+        scene::Scene scene;
+        std::string reason;
     };
 
     /// Starts to open a scene. @param messages, discard  outlive this
     Opening(scene::Scene scene, const SceneDevice& device, Messages& messages, Discard& discard);
 
-    /// Opens another scene.
-    void open(scene::Scene scene);
+    /// Opens another scene. One that is being opened is given up.
+    /// @param first  what its thread begins with: size and insets of the window
+    void open(scene::Scene scene, const Wanted& first);
     /// Opens a scene of the same DEM after its files changed. home_view() stays.
-    void reload(scene::Scene scene);
-    /// Opens the last good scene instead. Requires can_cancel().
+    void reload(scene::Scene scene, const Wanted& first);
+    /// Opens the last scene of which all posts were read again, after Event::Broken.
+    void go_back(const Wanted& first);
+    /// Gives up the next scene. Requires can_cancel().
     void cancel();
-    bool can_cancel() const { return !opened_ && attempt_ == Attempt::Requested && last_good_; }
+    bool can_cancel() const { return opened_ && next_; }
+    bool is_opening() const { return next_.has_value(); }
     /// @throws std::exception if the first scene cannot be opened
     Event poll();
+    std::optional<Failure> take_failure() { return std::exchange(failure_, std::nullopt); }
 
-    SceneThread& thread() const { return *thread_; }
-    /// Null: the scene is still being opened.
+    /// The thread of the open scene, or of the first one while it opens.
+    SceneThread& thread() const { return opened_ ? *open_.thread : *next_->thread; }
+    /// Null: the first scene is still being opened.
     const std::shared_ptr<const Opened>& opened() const { return opened_; }
     /// Whether opened() has a coarse DEM until all posts are read.
     bool is_preview() const { return opened_ && opened_->dem->is_preview; }
-    bool has_failed() const { return attempt_ == Attempt::Failed; }
-    bool has_last_good() const { return last_good_.has_value(); }
-    /// As requested, not as opened.
-    const scene::Scene& scene() const { return scene_; }
+    /// The open scene as requested, not as opened.
+    const scene::Scene& scene() const { return opened_ ? open_.scene : next_->scene; }
+    /// The scene that is being opened. Requires is_opening().
+    const scene::Scene& next_scene() const { return next_->scene; }
     /// The scene's view when its DEM was opened first.
     const scene::View& home_view() const { return home_view_; }
-    /// The first file of the DEM that the user asked for last; empty: none was opened yet.
+    /// The first file of the DEM that the user asked for last.
     const std::string& requested_file() const { return requested_file_; }
 
     /// Whether files of effects have changed since the last call that returned true.
@@ -57,22 +70,28 @@ class Opening {
     bool dem_changed() { return dem_files_.changed() && dem_files_.all_there(); }
 
   private:
-    enum class Attempt { Requested, Fallback, Failed };
+    struct Attempt {
+        scene::Scene scene;
+        std::unique_ptr<SceneThread> thread;
+        bool is_reload = false;
+    };
 
-    void begin(scene::Scene scene);
-    Event go_back(std::string reason);
-    void accept(std::shared_ptr<const Opened> opened);
+    void begin(scene::Scene scene, bool is_reload);
+    void fail(std::string reason);
+    Event poll_next();
+    Event poll_open();
+    Event accept(std::shared_ptr<const Opened> opened);
     void watch_files();
 
     SceneDevice device_;
     Messages& messages_;
     Discard& discard_;
-    scene::Scene scene_;
-    std::unique_ptr<SceneThread> thread_;
-    std::shared_ptr<const Opened> opened_;
-    Attempt attempt_ = Attempt::Requested;
-    bool is_reload_ = false;
-    std::optional<scene::Scene> last_good_, last_good_before_;
+    Attempt open_;  // without a thread until the first scene is open
+    std::optional<Attempt> next_;
+    std::shared_ptr<const Opened> opened_;  // of open_
+    bool is_broken_ = false;                // its posts cannot be read completely
+    std::optional<Failure> failure_;
+    std::optional<scene::Scene> complete_;  // the last one whose posts were all read
     scene::View home_view_;
     std::string requested_file_;
     FileWatch dem_files_;

@@ -78,7 +78,7 @@ scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px
     return std::max(insets.left, insets.right) > 0.5 ? scene::Insets() : insets;
 }
 
-void status_line(const State& state, bool is_drawing) {
+void status_line(const State& state, const std::string& work) {
     std::string text;
     if (state.cursor) {
         const Cursor& at = *state.cursor;
@@ -94,7 +94,7 @@ void status_line(const State& state, bool is_drawing) {
         text = "H: keys";
     }
     if (state.is_preview) text += "   reading all posts; terrain and shadows are coarse until then";
-    if (is_drawing) text += "   drawing ...";
+    if (!work.empty()) text += "   " + work;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
@@ -103,18 +103,14 @@ void status_line(const State& state, bool is_drawing) {
     list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
 }
 
-void waiting_text(const State& state, bool has_failed, bool can_give_up) {
+void waiting_text(const scene::Scene& scene) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({size.x / 2, 20 + ImGui::GetFrameHeight()}, ImGuiCond_Always,
                             {0.5f, 0});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 20, size.y});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-    if (has_failed)
-        ImGui::TextWrapped("%s", state.message.c_str());
-    else
-        ImGui::Text("opening %s ...%s", printable(state.document.scene.dems.front()).c_str(),
-                    can_give_up ? "   Esc cancels" : "");
+    ImGui::Text("opening %s ...", printable(scene.dems.front()).c_str());
     ImGui::End();
 }
 

@@ -104,6 +104,18 @@ void light_of(State& state, const PointLight& point) {
 
 }  // namespace
 
+void point_menu(State& state, bool opens) {
+    if (opens) ImGui::OpenPopup("point");
+    if (!ImGui::BeginPopup("point")) return;
+    if (ImGui::MenuItem("Stand here")) state.commands.push_back(Command::StandHere);
+    if (ImGui::MenuItem("Look there")) state.commands.push_back(Command::LookThere);
+    if (ImGui::MenuItem("Measure from here", "M")) state.commands.push_back(Command::Measure);
+    if (state.chosen && ImGui::MenuItem("Copy coordinates"))
+        ImGui::SetClipboardText(
+            coordinates_text(*state.chosen, state.settings.coordinates).c_str());
+    ImGui::EndPopup();
+}
+
 void point_panel(State& state) {
     if (!state.chosen) {
         ImGui::TextDisabled("Click the ground to see its direct sun of the day.");
@@ -114,6 +126,9 @@ void point_panel(State& state) {
         ImGui::Text("%s%s", kind == Coordinates::Mgrs ? "MGRS " : "",
                     coordinates_text(place, kind).c_str());
     ImGui::Text("height %.1f m", place.height_m);
+    if (ImGui::SmallButton("Stand here")) state.commands.push_back(Command::StandHere);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Look there")) state.commands.push_back(Command::LookThere);
     if (state.point && !state.point->error.empty())
         ImGui::TextWrapped("%s", state.point->error.c_str());
     else if (state.is_preview)

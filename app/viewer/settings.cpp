@@ -262,6 +262,13 @@ std::vector<std::string> absolute_names(std::vector<std::string> dems) {
     return dems;
 }
 
+std::string short_name(const std::vector<std::string>& dems) {
+    std::string name = printable(std::filesystem::path(dems.front()).filename().string());
+    if (name.empty()) name = printable(dems.front());
+    if (dems.size() > 1) name += fmt::format(" and {} more", dems.size() - 1);
+    return name;
+}
+
 std::vector<std::string> dems_in(const fs::path& folder) {
     static constexpr std::array<std::string_view, 13> kEndings = {
         ".tif", ".tiff", ".asc", ".hgt", ".dem", ".dt0", ".dt1",

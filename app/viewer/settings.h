@@ -79,6 +79,9 @@ class Memory {
 /// Absolute file names. Names that are not files, such as "/vsizip/a.zip/a.tif", are kept.
 std::vector<std::string> absolute_names(std::vector<std::string> dems);
 
+/// "jacksboro.tif", "a.tif and 3 more".
+std::string short_name(const std::vector<std::string>& dems);
+
 /// Names of DEM files in a folder by their extensions, sorted, without the folder.
 std::vector<std::string> dems_in(const std::filesystem::path& folder);
 

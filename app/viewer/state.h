@@ -40,6 +40,7 @@ struct State {
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
 
+    bool time_is_pinned = false;  ///< other DEMs are shown at this time of day even if it is night
     bool playing = false;
     double hours_a_second = 1;
     std::string search, place;       ///< text in input fields
@@ -109,13 +110,15 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
 /// The part of the window that it covers at a side; none if it covers more than half.
 scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit);
 /// The ground under the cursor, at the lower edge.
-void status_line(const State& state, bool is_drawing);
-/// While no scene is open.
-/// @param can_give_up  another scene was open before
-void waiting_text(const State& state, bool has_failed, bool can_give_up);
+/// @param work  in progress; empty: none
+void status_line(const State& state, const std::string& work);
+/// While the first scene opens.
+void waiting_text(const scene::Scene& scene);
 /// State::message, at the upper edge, also if panels are hidden.
 void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
+/// What can be done with the chosen point. @param opens  at the cursor
+void point_menu(State& state, bool opens);
 void overlay_panel(State& state);
 /// "sun hours 5.43 h": the overlay's value at a place; empty: unknown.
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place);

@@ -34,6 +34,21 @@ SunDay SunDay::of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& pl
     return day;
 }
 
+std::optional<sun::Instant> time_with_sun(const SunDay& day, sun::Instant wanted) {
+    constexpr double kHigh_deg = 10;
+    double most_deg = 0;
+    for (const SunPoint& point : day.points)
+        most_deg = std::max(most_deg, point.elevation_deg);
+    if (most_deg <= 0) return std::nullopt;
+    std::optional<sun::Instant> nearest;
+    for (const SunPoint& point : day.points) {
+        if (point.elevation_deg < std::min(kHigh_deg, most_deg / 2)) continue;
+        if (!nearest || std::abs(point.utc - wanted) < std::abs(*nearest - wanted))
+            nearest = point.utc;
+    }
+    return nearest;
+}
+
 DayMinute DayMinute::of(sun::Instant utc, const sun::Zone& zone) {
     const sun::CivilTime wall = zone.local(utc).wall;
     return {wall.date, wall.hour * 60 + wall.minute};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ struct SunDay {
 /// @param place  the DEM's middle
 /// @param air    over it, as the scene has it
 SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place, const sun::Refraction& air);
+
+/// The time of a day nearest to `wanted` at which the sun is 10 degrees high, or half as high as at
+/// most if that is lower. None if the sun does not rise.
+std::optional<sun::Instant> time_with_sun(const SunDay& day, sun::Instant wanted);
 
 /// A wall clock's minute of a local day, 0 to 1439, and the day.
 struct DayMinute {

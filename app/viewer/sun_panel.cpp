@@ -141,6 +141,10 @@ void play(State& state) {
     ImGui::SetNextItemWidth(110);
     if (ImGui::Combo("##speed", &speed, kNames.data(), static_cast<int>(kNames.size())))
         state.hours_a_second = kSpeeds[static_cast<std::size_t>(speed)];
+    ImGui::SameLine();
+    ImGui::Checkbox("Pin", &state.time_is_pinned);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Shows the next DEM at this time of day, even if it is night there");
 }
 
 }  // namespace

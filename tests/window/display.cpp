@@ -71,6 +71,16 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
 
 }  // namespace
 
+nlohmann::json answer_of(const std::string& arguments) {
+    const std::string command =
+        fmt::format("{} -q {} 2>/dev/null", (build_dir() / "bin/relevo").string(), arguments);
+    std::FILE* const pipe = popen(command.c_str(), "r");
+    std::string text(1 << 16, ' ');
+    text.resize(std::fread(text.data(), 1, text.size(), pipe));
+    pclose(pipe);
+    return nlohmann::json::parse(text);
+}
+
 Display::Display(int width_px, int height_px) : folder_(own_folder("display")) {
     std::array<int, 2> tube{};
     if (pipe(tube.data()) != 0) failed("test: no pipe");

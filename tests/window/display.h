@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <sys/types.h>
 
 #include "image/image.h"
@@ -18,6 +19,9 @@ constexpr double kPatience_s = 240;
 #else
 constexpr double kPatience_s = 60;
 #endif
+
+/// What `relevo -q ARGUMENTS` prints, as JSON.
+nlohmann::json answer_of(const std::string& arguments);
 
 /// An X server of its own (Xvfb), whose screen is a file.
 class Display {

@@ -117,78 +117,6 @@ TEST(Command, IsQuotedForAShell) {
               "--fov 40 --disable haze --set sea.colour=0,0.1,0.2 --size 1280x1024 -o picture.png");
 }
 
-TEST(SunModel, MinutesAndDaysOfTheYear) {
-    const sun::Zone zone = sun::Zone::named("Europe/Zurich");
-    const sun::Instant utc = sun::Instant::from_utc({.date = {2026, 6, 21}, .hour = 16});
-    const DayMinute at = DayMinute::of(utc, zone);
-    EXPECT_EQ(at.minute, 18 * 60);
-    EXPECT_EQ(at.utc(zone), utc);
-    EXPECT_EQ(day_of_year({2026, 1, 1}), 0);
-    EXPECT_EQ(date_of(2024, day_of_year({2024, 12, 31})), (sun::Date{2024, 12, 31}));
-    EXPECT_EQ(days_in_month(2024, 2), 29);
-    EXPECT_EQ(in_year({2024, 2, 29}, 2026), (sun::Date{2026, 2, 28}));
-    // The day's way passes where the sun is.
-    const SunDay day =
-        SunDay::of({2026, 6, 21}, zone, geo::geodetic_deg(46.5, 8, 0), sun::Refraction::none());
-    EXPECT_EQ(day.points.size(), 145u);
-    double highest = -90;
-    for (const SunPoint& point : day.points)
-        highest = std::max(highest, point.elevation_deg);
-    EXPECT_NEAR(highest, 90 - 46.5 + 23.44, 0.1);
-}
-
-TEST(SunModel, SeasonsHaveTheDateOfTheZone) {
-    // The autumn's equinox of 2026 is at 00:05 UTC on 23 September.
-    const sun::Instant equinox = sun::seasons(2026).september_equinox;
-    const auto label = [&](const char* zone) {
-        return day_label(sun::Zone::named(zone).local(equinox).wall.date);
-    };
-    EXPECT_EQ(label("Europe/Zurich"), "23 Sep");
-    EXPECT_EQ(label("America/New_York"), "22 Sep");
-}
-
-/// What the program answers with --json.
-nlohmann::json json_of(const std::string& arguments) {
-    const std::string command =
-        fmt::format("{} -q {} 2>/dev/null", (test::build_dir() / "bin/relevo").string(), arguments);
-    std::FILE* const pipe = popen(command.c_str(), "r");
-    std::string text(1 << 16, ' ');
-    text.resize(std::fread(text.data(), 1, text.size(), pipe));
-    pclose(pipe);
-    return nlohmann::json::parse(text);
-}
-
-TEST(SunPanel, SaysWhatTheCommandLineSaysInTheSameAir) {
-    const std::string time = "2026-06-21T10:32:00Z";  // low, where air lifts the most
-    for (const char* refraction : {"standard", "none"}) {
-        scene::Scene scene;
-        scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-        scene.refraction = refraction;
-        scene.effects.switches.only.emplace();
-        FilesInUse files;
-        const session::Session session(scene, {.device = "software"}, files);
-        State state;
-        state.document.scene = scene;
-        state.stand_on(session.ground());
-        state.set_utc(sun::parse_time(time).utc);
-        const geo::Geodetic at = session.ground().frame.origin();
-        const double expected = json_of(
-            fmt::format("sun position --at={:.7f},{:.7f},{:.1f} --time {} --refraction {} --json",
-                        degrees(at.lat_rad), degrees(at.lon_rad), session.ground().air_height_m(),
-                        time, refraction))["apparent_elevation_deg"];
-        ASSERT_GT(expected, 0.2);
-        ASSERT_LT(expected, 3);
-        EXPECT_THAT(sun_figures(state),
-                    testing::EndsWith(fmt::format(", elevation {:.2f}°", expected)));
-        // And so does the way of the day.
-        const SunPoint& dawn = state.day.points[62];
-        EXPECT_NEAR(
-            dawn.elevation_deg,
-            degrees(state.air.apparent_rad(sun::position(dawn.utc, state.centre).elevation_rad)),
-            1e-9);
-    }
-}
-
 std::shared_ptr<const session::LoadedDem> jacksboro() {
     const std::string file = (test::source_dir() / "data/dem/jacksboro.tif").string();
     dem::Source source = dem::Source::open(file);
@@ -261,9 +189,9 @@ TEST(PointWork, HasTheFiguresOfTheCommandLine) {
         while (!work.is_done())
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const auto json =
-            json_of(fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
-                                (test::source_dir() / "data/dem/jacksboro.tif").string(),
-                                wanted.refraction == "none" ? "--no-refraction" : ""));
+            test::answer_of(fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
+                                        (test::source_dir() / "data/dem/jacksboro.tif").string(),
+                                        wanted.refraction == "none" ? "--no-refraction" : ""));
         EXPECT_NEAR(work.answer()->lit_s / 3600, json["direct_sun_h"], 1e-6);
         EXPECT_NEAR(work.answer()->flat_s / 3600, json["day_length_h"], 1e-6);
     }

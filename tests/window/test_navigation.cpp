@@ -152,6 +152,24 @@ TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
     EXPECT_EQ(walk(pose_, land_, {0, 5}).eye_m, pose_.eye_m);
 }
 
+TEST_F(Navigation, StandsAtAPointAndTurnsToOne) {
+    const glm::dvec3 point = ground(pose_, {0.3, -0.2});
+    pose_.pitch_deg = -90;
+    const Pose standing = stand(pose_, land_, point).value();
+    const geo::Geodetic eye = frame_.to_geodetic(standing.eye_m), at = frame_.to_geodetic(point);
+    EXPECT_NEAR(eye.lat_rad, at.lat_rad, 1e-12);
+    EXPECT_NEAR(eye.lon_rad, at.lon_rad, 1e-12);
+    EXPECT_NEAR(eye.height_m, 500 + kWalk_m, 1e-6);
+    EXPECT_EQ(standing.heading_deg, pose_.heading_deg);
+    EXPECT_EQ(standing.pitch_deg, -10);  // not at the feet
+    const glm::dvec3 other = ground(pose_, {-0.7, 0.4});
+    const Pose turned = facing(standing, land_, other);
+    EXPECT_EQ(turned.eye_m, standing.eye_m);
+    EXPECT_LT(distance(camera_of(turned, land_).forward, normalize(other - turned.eye_m)), 1e-9);
+    land_.aim_m = [](const geo::Geodetic&) { return std::numeric_limits<double>::quiet_NaN(); };
+    EXPECT_FALSE(stand(pose_, land_, point));
+}
+
 TEST_F(Navigation, StandsOnTheGroundAsItIsDrawn) {
     land_.exaggeration = 3;  // the ground is at 1500 m
     const auto height_m = [&](const Pose& pose) { return frame_.to_geodetic(pose.eye_m).height_m; };

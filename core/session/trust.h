@@ -6,31 +6,36 @@
 
 #include "scene/scene.h"
 
-namespace relevo::cli {
+namespace relevo::session {
 
-struct SceneArguments;
+/// What the user has named, on the command line or by opening it.
+struct Named {
+    bool all = false;  ///< --trust: whatever files name is used
+    std::vector<std::string> plugin_folders, dems, overlays;
+};
 
-/// Whose names a scene has besides those of the command line.
+/// Whose names a scene has besides those of the user.
 enum class NamedBy {
     File,     ///< a scene or a job
     Picture,  ///< the record in one, which may come from anybody
 };
 
-/// What a scene, a job or a picture names is used like what the command line names, but for two
-/// kinds: plugin folders, whose code would run, and names on the net, which would be asked. Those
-/// are used where the command line has the same name or --trust. Native modules of a folder that
-/// only a picture names are never loaded.
+/// What a scene, a job or a picture names is used like what the user names, but for two kinds:
+/// plugin folders, whose code would run, and names on the net, which would be asked. Those are used
+/// where the user has named the same or trusts all. Native modules of a folder that only a picture
+/// names are never loaded.
 class Trust {
   public:
-    /// @param given  the command line
     /// @param file   as messages name it: "scene: view.json"
-    Trust(const SceneArguments& given, std::string file, NamedBy by);
+    Trust(Named given, std::string file, NamedBy by);
 
     /// @throws Error (Usage) for a DEM or an overlay that is on the net
     void check_names(const scene::Scene& scene) const;
     /// Keeps of a scene's plugin folders those that are used, each once.
     void keep_folders(scene::Effects& effects);
-    /// Warns, on one line, of the folders that were skipped.
+    /// Of the folders that were skipped, in a line for each kind.
+    std::vector<std::string> warnings() const;
+    /// Logs them.
     void tell() const;
 
   private:
@@ -43,7 +48,7 @@ class Trust {
     const Known& folder(const std::string& name);
     std::vector<std::string> without_modules(const std::string& folder);
 
-    const SceneArguments& given_;
+    Named given_;
     std::string file_;
     NamedBy by_;
     std::vector<std::string> named_;      ///< by the command line and the user's own
@@ -52,4 +57,4 @@ class Trust {
     std::vector<std::string> modules_;    ///< folders of plugins whose modules are not loaded
 };
 
-}  // namespace relevo::cli
+}  // namespace relevo::session

@@ -1,4 +1,4 @@
-#include "cli/trust.h"
+#include "session/trust.h"
 
 #include <filesystem>
 #include <utility>
@@ -10,12 +10,11 @@
 #include "base/log.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "cli/scene_arguments.h"
 #include "dem/remote.h"
 #include "effect/registry.h"
 #include "effect/search_path.h"
 
-namespace relevo::cli {
+namespace relevo::session {
 namespace {
 
 /// One name for a folder, whichever way it is named.
@@ -27,9 +26,9 @@ std::string absolute(const std::string& folder) {
 
 }  // namespace
 
-Trust::Trust(const SceneArguments& given, std::string file, NamedBy by)
-    : given_(given), file_(std::move(file)), by_(by) {
-    for (const std::string& folder : given.effects.plugin_path)
+Trust::Trust(Named given, std::string file, NamedBy by)
+    : given_(std::move(given)), file_(std::move(file)), by_(by) {
+    for (const std::string& folder : given_.plugin_folders)
         named_.push_back(absolute(folder));
     // Their plugins are loaded whether or not a scene names the folder.
     for (const std::filesystem::path& folder : effect::user_plugin_folders())
@@ -37,7 +36,7 @@ Trust::Trust(const SceneArguments& given, std::string file, NamedBy by)
 }
 
 void Trust::check_names(const scene::Scene& scene) const {
-    if (given_.trust) return;
+    if (given_.all) return;
     const auto check = [&](const char* key, const std::string& name,
                            const std::vector<std::string>& named) {
         if (dem::is_remote(name) && !contains(named, name))
@@ -47,8 +46,8 @@ void Trust::check_names(const scene::Scene& scene) const {
                             file_, key, printable(name)));
     };
     for (const std::string& name : scene.dems)
-        check("dem.files", name, given_.dem.paths);
-    if (scene.overlay) check("overlay.file", scene.overlay->file, {given_.overlay.file});
+        check("dem.files", name, given_.dems);
+    if (scene.overlay) check("overlay.file", scene.overlay->file, given_.overlays);
 }
 
 /// The plugins below a folder that have no native module.
@@ -69,7 +68,7 @@ const Trust::Known& Trust::folder(const std::string& name) {
     Known folder{absolute(name), Folder::LeftOut, {name}};
     if (contains(named_, folder.path))
         folder.kind = Folder::Named;
-    else if (given_.trust)
+    else if (given_.all)
         folder.kind = Folder::Allowed;
     else if (!contains(left_out_, folder.path))
         left_out_.push_back(folder.path);
@@ -88,18 +87,25 @@ void Trust::keep_folders(scene::Effects& effects) {
     }
 }
 
-void Trust::tell() const {
-    const auto warn = [&](const std::vector<std::string>& folders, const char* what,
-                          const char* otherwise) {
+std::vector<std::string> Trust::warnings() const {
+    std::vector<std::string> lines;
+    const auto add = [&](const std::vector<std::string>& folders, const char* what,
+                         const char* otherwise) {
         if (folders.empty()) return;
         const std::string first = printable(folders.front());
         const std::string more =
             folders.size() == 1 ? "" : fmt::format(" and {} more", folders.size() - 1);
-        log::warning(fmt::format("{}: {} {}{} are not used; add --plugin-path {}{}", file_, what,
-                                 first, more, first, otherwise));
+        lines.push_back(fmt::format("{}: {} {}{} are not used; add --plugin-path {}{}", file_, what,
+                                    first, more, first, otherwise));
     };
-    warn(left_out_, "plugins of", ", or --trust for all");
-    warn(modules_, "native modules of", "");
+    add(left_out_, "plugins of", ", or --trust for all");
+    add(modules_, "native modules of", "");
+    return lines;
 }
 
-}  // namespace relevo::cli
+void Trust::tell() const {
+    for (const std::string& line : warnings())
+        log::warning(line);
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,186 @@
+#include "viewer/import_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "viewer/image_texture.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr int kPreview_px = 320;
+constexpr std::size_t kMostFound = 40;
+constexpr std::array<const char*, 8> kUnits = {
+    "as the file says", "m", "ft", "us-ft", "cm", "mm", "dm", "km"};
+constexpr std::array<const char*, 3> kEncodings = {"none: a band has heights", "terrain-rgb",
+                                                   "terrarium"};
+
+}  // namespace
+
+ImportSheet::Fields ImportSheet::Fields::of(const dem::LoadOptions& options) {
+    Fields fields;
+    fields.crs = options.crs;
+    fields.unit = options.unit;
+    fields.band = options.band;
+    fields.encoding = static_cast<int>(options.encoding);
+    if (options.no_nodata)
+        fields.nodata = "none";
+    else if (options.nodata)
+        fields.nodata = fmt::format("{}", *options.nodata);
+    if (const auto& bounds = options.bounds)
+        fields.bounds = fmt::format("{},{},{},{}", bounds->west_deg, bounds->south_deg,
+                                    bounds->east_deg, bounds->north_deg);
+    return fields;
+}
+
+dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) const {
+    dem::LoadOptions options = rest;
+    options.crs = std::string(trimmed(crs));
+    options.unit = unit;
+    options.band = band;
+    options.encoding = static_cast<dem::Encoding>(encoding);
+    const std::string_view value = trimmed(nodata);
+    options.no_nodata = value == "none";
+    options.nodata.reset();
+    if (!value.empty() && !options.no_nodata) {
+        options.nodata = parse_number(value);
+        if (!options.nodata)
+            bad_usage("nodata: expected a number or none, but got " + printable(value));
+    }
+    options.bounds.reset();
+    if (!trimmed(bounds).empty()) options.bounds = dem::parse_bounds(trimmed(bounds), "bounds");
+    return options;
+}
+
+ImportSheet::ImportSheet() : work_(std::make_unique<PreviewWork>(&Window::wake)) {}
+
+void ImportSheet::open(const RecentDem& dem, std::string reason) {
+    dem_ = dem;
+    reason_ = std::move(reason);
+    fields_ = Fields::of(dem.options);
+    error_.clear();
+    previewed_.reset();
+    shown_ = nullptr;
+    work_->forget();
+    is_open_ = true;
+}
+
+void ImportSheet::want_preview() {
+    if (previewed_ == fields_) return;
+    previewed_ = fields_;
+    try {
+        work_->want({dem_.files, fields_.options(dem_.options), kPreview_px});
+        error_.clear();
+    } catch (const Error& error) {
+        error_ = error.what();
+    }
+}
+
+void ImportSheet::crs_field() {
+    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs);
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+        ImGui::SetTooltip(
+            "A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place");
+    found_crs();
+}
+
+void ImportSheet::found_crs() {
+    if (searched_ != fields_.crs) {
+        searched_ = fields_.crs;
+        found_ = geo::search_crs(searched_, kMostFound);
+    }
+    const bool is_chosen = !found_.empty() && found_.front().code == fields_.crs;
+    if (found_.empty() || is_chosen) {
+        ImGui::TextDisabled("%s", is_chosen ? found_.front().name.c_str() : "");
+        return;
+    }
+    if (ImGui::BeginChild("found", {0, 6 * ImGui::GetTextLineHeightWithSpacing()}, true))
+        for (const geo::KnownCrs& crs : found_) {
+            if (ImGui::Selectable((crs.code + "  " + crs.name).c_str())) fields_.crs = crs.code;
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", crs.area.c_str());
+        }
+    ImGui::EndChild();
+}
+
+void ImportSheet::other_fields() {
+    ImGui::InputTextWithHint("Edges", "W,S,E,N in degrees; of a file without them",
+                             &fields_.bounds);
+    int unit = 0;
+    for (std::size_t i = 1; i < kUnits.size(); ++i)
+        if (fields_.unit == kUnits[i]) unit = static_cast<int>(i);
+    if (ImGui::Combo("Unit", &unit, kUnits.data(), static_cast<int>(kUnits.size())))
+        fields_.unit = unit == 0 ? "" : kUnits[static_cast<std::size_t>(unit)];
+    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata);
+    int band = std::max(1, fields_.band);
+    if (ImGui::InputInt("Band", &band)) fields_.band = std::max(1, band);
+    ImGui::Combo("Encoding", &fields_.encoding, kEncodings.data(),
+                 static_cast<int>(kEncodings.size()));
+}
+
+void ImportSheet::preview(float width_px) {
+    if (auto newer = work_->answer(); newer != shown_) {
+        shown_ = std::move(newer);
+        const bool has_picture = shown_ && !shown_->picture.values.empty();
+        texture_ = has_picture ? texture_of(shown_->picture) : gl::Texture();
+    }
+    if (!error_.empty()) return ImGui::TextWrapped("%s", error_.c_str());
+    if (!shown_) return ImGui::TextDisabled("reading ...");
+    if (shown_->error == reason_) return;
+    if (!shown_->error.empty()) return ImGui::TextWrapped("%s", shown_->error.c_str());
+    const gl::Extent extent = texture_.extent();
+    const float scale = std::min(width_px / static_cast<float>(extent.width),
+                                 width_px * 0.7f / static_cast<float>(extent.height));
+    ImGui::Image(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name())),
+        {scale * static_cast<float>(extent.width), scale * static_cast<float>(extent.height)});
+    ImGui::TextWrapped("%s", shown_->text.c_str());
+}
+
+void ImportSheet::draw(glm::vec2 size_px) {
+    if (!is_open_) return;
+    want_preview();
+    const float line = ImGui::GetFrameHeight();
+    ImGui::SetNextWindowPos({size_px.x / 2, size_px.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize(
+        {std::min(size_px.x - 20, 34 * line), std::min(size_px.y - 2 * line, 22 * line)},
+        ImGuiCond_Appearing);
+    if (ImGui::Begin("How the DEM is read", &is_open_, ImGuiWindowFlags_NoCollapse)) {
+        ImGui::TextUnformatted(printable(short_name(dem_.files)).c_str());
+        if (!reason_.empty()) ImGui::TextWrapped("%s", reason_.c_str());
+        ImGui::Separator();
+        const float fields_px = 0.55f * ImGui::GetContentRegionAvail().x;
+        const float height_px = ImGui::GetContentRegionAvail().y - 1.5f * line;
+        if (ImGui::BeginChild("fields", {fields_px, height_px})) {
+            ImGui::PushItemWidth(-5 * line);
+            crs_field();
+            other_fields();
+            ImGui::PopItemWidth();
+        }
+        ImGui::EndChild();
+        ImGui::SameLine();
+        if (ImGui::BeginChild("preview", {0, height_px})) preview(ImGui::GetContentRegionAvail().x);
+        ImGui::EndChild();
+        const bool can_open = error_.empty() && shown_ && shown_->error.empty();
+        if (!can_open) ImGui::BeginDisabled();
+        if (ImGui::Button("Open", {5 * line, 0})) {
+            chosen_ = dem_;
+            chosen_->options = fields_.options(dem_.options);
+            is_open_ = false;
+        }
+        if (!can_open) ImGui::EndDisabled();
+        ImGui::SameLine();
+        if (ImGui::Button("Cancel", {5 * line, 0})) is_open_ = false;
+    }
+    ImGui::End();
+}
+
+}  // namespace relevo::viewer

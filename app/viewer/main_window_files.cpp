@@ -1,0 +1,182 @@
+// Files that are dropped on the window or opened, by their kinds.
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "dem/camera_photo.h"
+#include "scene/job.h"
+#include "session/record.h"
+#include "session/trust.h"
+#include "viewer/file_kind.h"
+#include "viewer/main_window.h"
+
+namespace relevo::viewer {
+namespace {
+
+std::string name_of(const std::string& path) {
+    return printable(std::filesystem::path(path).filename().string());
+}
+
+/// The scene in a picture of relevo. @throws Error (BadInput)
+scene::Scene scene_in_picture(const std::string& path) {
+    const image::Metadata metadata = session::read_record(path);
+    const auto text = metadata.find(session::kSceneKeyword);
+    if (text == metadata.end()) bad_input(printable(path) + ": contains no scene");
+    return scene::read_scene_text(text->second, path, std::filesystem::path(path).parent_path());
+}
+
+/// The scene that the pictures of a job have in common, without a time that needs a date.
+scene::Scene scene_of_job(const std::string& path) {
+    scene::Scene scene = scene::read_job(path).scene;
+    if (scene.time.date.empty() && scene.time.at.find('T') == std::string::npos)
+        scene.time.at.clear();
+    return scene;
+}
+
+}  // namespace
+
+void MainWindow::open_requested_files() {
+    std::vector<std::string> files = window_->take_dropped_files();
+    if (std::vector<std::string> chosen = open_dialog_.take(); !chosen.empty())
+        files = std::move(chosen);
+    const std::vector<std::string> dems = std::exchange(state_.files_to_open, {});
+    std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
+    if (std::optional<RecentDem> imported = import_sheet_.take()) recent = std::move(imported);
+    if (!is_open()) return;
+    if (recent) return open_dem(*recent);
+    if (!dems.empty()) return open_dem({.files = dems});
+    if (!files.empty()) open_files(files);
+}
+
+void MainWindow::open_files(const std::vector<std::string>& files) {
+    RecentDem dem;
+    for (const std::string& file : absolute_names(files)) {
+        const FileKind kind = kind_of_file(file);
+        if (kind == FileKind::Dem)
+            dem.files.push_back(file);
+        else
+            messages_.try_to([&] { open_file(kind, file); });
+    }
+    if (!dem.files.empty()) open_dem(dem);
+}
+
+void MainWindow::open_dem(const RecentDem& dem) {
+    // Options of the last DEM do not apply, except for the window's limit of memory.
+    scene::Scene scene = state_.document.scene;
+    const std::int64_t max_posts = scene.dem.max_posts;
+    scene.dems = dem.files;
+    scene.dem = dem.options;
+    scene.dem.max_posts = max_posts;
+    scene.holes = dem.holes;
+    scene.view = {};
+    scene.overlay.reset();
+    scene.time.at.clear();
+    scene.time.date.clear();
+    open_scene(std::move(scene));
+}
+
+void MainWindow::open_scene(scene::Scene scene) {
+    state_.message.clear();
+    opening_->open(std::move(scene), first_wanted());
+    pacing_.need_frames(3);
+}
+
+void MainWindow::open_file(FileKind kind, const std::string& path) {
+    switch (kind) {
+        case FileKind::Scene:
+            return open_named_scene(scene::read_scene(path), path, session::NamedBy::File);
+        case FileKind::Job:
+            open_named_scene(scene_of_job(path), path, session::NamedBy::File);
+            return messages_.note("the scene of " + name_of(path) +
+                                  "; relevo run draws its pictures");
+        case FileKind::Picture:
+            return open_named_scene(scene_in_picture(path), path, session::NamedBy::Picture);
+        case FileKind::Photograph:
+            return stand_where_taken(path);
+        case FileKind::Places:
+        case FileKind::Lines:
+            return show_features(kind, path);
+        case FileKind::Overlay:
+            return lay_over(path);
+        case FileKind::Dem:
+            return open_dem({.files = {path}});
+    }
+}
+
+void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
+                                  session::NamedBy by) {
+    const scene::Scene& now = state_.document.scene;
+    session::Trust trusted({.plugin_folders = now.effects.plugin_path}, name_of(path), by);
+    trusted.check_names(scene);
+    trusted.keep_folders(scene.effects);
+    if (scene.dems.empty()) {
+        scene.dems = now.dems;
+        scene.dem = now.dem;
+    }
+    open_scene(std::move(scene));
+    if (const std::vector<std::string> warnings = trusted.warnings(); !warnings.empty())
+        messages_.show(fmt::format("{}", fmt::join(warnings, "\n")));
+}
+
+void MainWindow::show_features(FileKind kind, const std::string& path) {
+    const std::string address = file_text_for(kind, state_.effects->registry);
+    if (address.empty()) bad_input("no installed effect shows " + name_of(path));
+    const std::string id = address.substr(0, address.find('.'));
+    state_.set_effects(
+        switched(with_value(state_.document.scene.effects, address, path), id, true));
+    state_.take_effects(/*is_step=*/true);
+    messages_.note(name_of(path) + ": shown by the effect " + id);
+}
+
+void MainWindow::lay_over(const std::string& path) {
+    state_.document.scene.overlay = scene::Overlay{.file = path};
+    state_.document.overlay = {OverlayKind::File, 1};
+    state_.step = true;
+    pacing_.need_frames(3);
+}
+
+void MainWindow::stand_where_taken(const std::string& path) {
+    const dem::CameraPhoto photo = dem::camera_photo(path).value();
+    const geo::Geodetic place{photo.place->lat_rad, photo.place->lon_rad, 0};
+    const double ground_m = state_.land.aim_m(place);
+    if (std::isnan(ground_m))
+        bad_input(fmt::format("{}: taken at {}, where the DEM has no ground", name_of(path),
+                              coordinates_text(place, Coordinates::Degrees)));
+    // Heights of a GPS are off by tens of metres: from higher up it was taken in the air.
+    constexpr double kInTheAir_m = 100;
+    const bool flies = photo.place->height_m > ground_m + kInTheAir_m;
+    scene::View view;
+    view.eye = scene::Standpoint{place, /*above_ground=*/!flies};
+    view.eye->place.height_m = flies ? photo.place->height_m : kWalk_m;
+    view.heading_deg = photo.heading_deg.value_or(state_.document.pose.heading_deg);
+    view.fov_y_rad = state_.document.pose.fov_y_rad;
+    if (photo.focal_length_mm)
+        view.fov_y_rad = scene::fov_y_of_focal_length(
+            *photo.focal_length_mm, static_cast<double>(photo.width_px) / photo.height_px);
+    history_.end_step(state_.document);
+    hand_->rest();
+    state_.document.pose = pose_in(view);
+    if (!photo.time.empty()) state_.set_utc(sun::parse_time(photo.time, state_.document.zone).utc);
+    pacing_.moved();
+    state_.step = true;
+    messages_.note(fmt::format("{}: {}{}{}{}", name_of(path),
+                               flies ? "from the air" : "from eye height at its place",
+                               photo.heading_deg ? "" : ", which way it looks is not known",
+                               photo.is_magnetic ? ", turned from magnetic north" : "",
+                               photo.time.empty() ? ", without a time" : ""));
+}
+
+void MainWindow::ask_how_to_read() {
+    const std::optional<Opening::Failure> failure = opening_->take_failure();
+    if (!failure || !is_raster_file(failure->scene.dems.front())) return;
+    state_.message.clear();
+    const scene::Scene& scene = failure->scene;
+    import_sheet_.open({scene.dems, scene.dem, scene.holes}, failure->reason);
+}
+
+}  // namespace relevo::viewer
