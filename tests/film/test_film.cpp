@@ -197,8 +197,8 @@ TEST_F(Films, RatesAreExact) {
 
 TEST_F(Films, SameBytesAgain) {
     for (const char* const ending : {".mp4", ".webm", ".webp", ".gif"})
-        EXPECT_EQ(bytes_of(make(std::string("a") + ending, 12)),
-                  bytes_of(make(std::string("b") + ending, 12)))
+        EXPECT_TRUE(bytes_of(make(std::string("a") + ending, 12)) ==
+                    bytes_of(make(std::string("b") + ending, 12)))
             << ending;
 }
 
