@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/geometric.hpp>
 
@@ -59,12 +60,12 @@ glm::dvec3 eye_of(const Turn& turn, double azimuth_rad) {
                                               std::sin(turn.elevation_rad) * turn.axes.up);
 }
 
-/// The least distance from which all points are in the picture from every side.
-double distance_to_show(const Turn& turn, const std::vector<glm::dvec3>& points, double fov_y_rad,
-                        double aspect) {
-    constexpr int kSides = 180;
-    const double tan_y = kFill * std::tan(fov_y_rad / 2), tan_x = tan_y * aspect;
-    double most_m = 1;
+/// A point as seen from a side of a turn: right of the target, above it and towards the camera [m].
+using Seen = std::function<void(double right_m, double up_m, double near_m)>;
+
+/// Visits all points from sides all around.
+void from_all_sides(const Turn& turn, const std::vector<glm::dvec3>& points, const Seen& visit) {
+    constexpr int kSides = 72;
     for (int side = 0; side < kSides; ++side) {
         const glm::dvec3 to_camera =
             normalize(eye_of(turn, 2 * kPi * side / kSides) - turn.target_m);
@@ -72,12 +73,47 @@ double distance_to_show(const Turn& turn, const std::vector<glm::dvec3>& points,
         const glm::dvec3 up = cross(to_camera, right);
         for (const glm::dvec3& point : points) {
             const glm::dvec3 from = point - turn.target_m;
-            const double aside =
-                std::max(std::abs(dot(from, right)) / tan_x, std::abs(dot(from, up)) / tan_y);
-            most_m = std::max(most_m, aside + dot(from, to_camera));
+            visit(dot(from, right), dot(from, up), dot(from, to_camera));
         }
     }
+}
+
+/// The least distance from which all points are in the picture from every side.
+double distance_to_show(const Turn& turn, const std::vector<glm::dvec3>& points, double fov_y_rad,
+                        double aspect) {
+    const double tan_y = kFill * std::tan(fov_y_rad / 2), tan_x = tan_y * aspect;
+    double most_m = 1;
+    from_all_sides(turn, points, [&](double right_m, double up_m, double near_m) {
+        const double aside_m = std::max(std::abs(right_m) / tan_x, std::abs(up_m) / tan_y);
+        most_m = std::max(most_m, near_m + aside_m);
+    });
     return most_m;
+}
+
+/// How much farther the ground reaches up in the pictures than down: sum of the tangents of its
+/// highest and its lowest point.
+double excess_above(const Turn& turn, const std::vector<glm::dvec3>& points) {
+    double lowest = 0, highest = 0;
+    from_all_sides(turn, points, [&](double, double up_m, double near_m) {
+        const double tangent = up_m / (turn.distance_m - near_m);
+        lowest = std::min(lowest, tangent);
+        highest = std::max(highest, tangent);
+    });
+    return highest + lowest;
+}
+
+/// Moves the target of a turn along the vertical until the ground reaches as far below the middle
+/// of the pictures as above, and stands as near as shows all of it.
+void centre(Turn& turn, const std::vector<glm::dvec3>& points, double fov_y_rad, double aspect) {
+    const glm::dvec3 middle_m = turn.target_m;
+    double low_m = -turn.distance_m, high_m = turn.distance_m;
+    constexpr int kHalvings = 20;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double shift_m = 0.5 * (low_m + high_m);
+        turn.target_m = middle_m + shift_m * turn.axes.up;
+        turn.distance_m = distance_to_show(turn, points, fov_y_rad, aspect);
+        (excess_above(turn, points) > 0 ? low_m : high_m) = shift_m;
+    }
 }
 
 /// The turn of a view that is an orbit: about the middle of the ground.
@@ -92,8 +128,12 @@ Turn whole_turn(const View& view, const Camera& camera, const MotionGround& grou
     if (!std::isnan(ground_m)) place.height_m = ground_m;
     const glm::dvec3 target_m = ground.frame.to_local(place);
     Turn turn = turn_about(target_m, target_m - camera.forward, ground.frame);
-    turn.distance_m =
-        distance_to_show(turn, ground.points, camera.fov_y_rad, ground.aspect) / view.orbit.zoom;
+    const double fov_y_rad = camera.fov_y_rad, aspect = ground.aspect;
+    turn.distance_m = distance_to_show(turn, ground.points, fov_y_rad, aspect);
+    if (view.orbit.zoom == 1)
+        centre(turn, ground.points, fov_y_rad, aspect);
+    else
+        turn.distance_m /= view.orbit.zoom;  // the ground in the middle stays there
     return turn;
 }
 
