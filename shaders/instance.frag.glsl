@@ -1,14 +1,15 @@
 //! provides  what is where, for pixels that show an instance of a plugin's mesh; terrain.frag.glsl shades them
 //! writes    gbuffer: column and row of the post and height [m] of the ground below the instance's foot, view depth [m];
-//!           instance_colour: square root of the reflectance, 1 in alpha; instance_direction: its normal
+//!           instance_colour: square root of the reflectance, in alpha the share of the sun's light, above 0; instance_direction: its normal
 
 //@ include lib/octahedral.glsl
 
 in vec2 post;
 in float height_m;
 in vec3 instance_normal;
-in vec3 instance_reflectance;
+in vec4 instance_reflectance;
 in vec4 instance_shape;
+flat in float instance_half_width_m;
 
 layout(location = 0) out uvec4 gbuffer_out;
 layout(location = INSTANCE_COLOUR) out vec4 instance_colour_out;
@@ -16,7 +17,8 @@ layout(location = INSTANCE_DIRECTION) out vec2 instance_direction_out;
 
 #ifdef SPRITES
 /// Shapes a point to a crown, which is rounded towards the eye and darker below.
-void instance_shaped(inout vec3 normal, inout vec3 reflectance) {
+/// @returns how far its surface is in front of its middle [m]
+float instance_shaped(inout vec3 normal, inout vec3 reflectance) {
     vec2 at = (2.0 * gl_PointCoord - 1.0) * vec2(1.0, -1.0) * instance_shape.xy;
     float top = 0.5 + 0.5 * at.y;
     float side = mix(sqrt(max(1.0 - at.y * at.y, 0.0)), 1.0 - top, instance_shape.z);
@@ -27,6 +29,7 @@ void instance_shaped(inout vec3 normal, inout vec3 reflectance) {
     vec3 rounded = across * right + rise * up + sqrt(max(1.05 - across * across, 0.05)) * cross(right, up);
     normal = normalize(mix(normalize(rounded), normal, instance_shape.w));
     reflectance *= 0.75 + 0.5 * top;
+    return instance_half_width_m * sqrt(max(side * side - at.x * at.x, 0.0));
 }
 #endif
 
@@ -34,9 +37,10 @@ void main() {
 #ifdef NAN_SLIVERS
     if (isnan(height_m)) discard;  // as in geometry.frag.glsl
 #endif
-    vec3 normal = normalize(instance_normal), reflectance = instance_reflectance;
+    vec3 normal = normalize(instance_normal), reflectance = instance_reflectance.rgb;
+    float depth_m = 1.0 / gl_FragCoord.w;
 #ifdef SPRITES
-    instance_shaped(normal, reflectance);
+    depth_m -= min(instance_shaped(normal, reflectance), 0.5 * depth_m);
 #endif
     vec2 direction = normal_octahedral(normal);
 #ifdef TERRAIN_NORMAL_VERTEX
@@ -44,8 +48,8 @@ void main() {
 #else
     uvec2 ground = floatBitsToUint(post);
 #endif
-    gbuffer_out = uvec4(ground, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
-    instance_colour_out = vec4(sqrt(clamp(reflectance, 0.0, 1.0)), 1.0);
+    gbuffer_out = uvec4(ground, floatBitsToUint(height_m), floatBitsToUint(depth_m));
+    instance_colour_out = vec4(sqrt(clamp(reflectance, 0.0, 1.0)), clamp(instance_reflectance.a, 1.0 / 255.0, 1.0));
     instance_direction_out = 0.5 + 0.5 * direction;
     store_varyings();
 }

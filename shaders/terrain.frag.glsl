@@ -10,6 +10,7 @@
 //@ include lib/filtered.glsl
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
+//@ include lib/instance_shadows.glsl
 //@ include lib/octahedral.glsl
 //@ include lib/moved.glsl
 //@ include lib/pages.glsl
@@ -68,14 +69,16 @@ void overlay_as_reflectance(inout Surface s, in vec4 laid) {
 
 #ifdef INSTANCES
 /// Makes the point that of an instance, which stands on the ground where the light is found.
+/// @param sunlight  share of the sun's light that passes instances
 /// @returns whether the pixel shows one
-bool instance_as_surface(inout Surface s, in ivec2 pixel) {
+bool instance_as_surface(inout Surface s, in ivec2 pixel, inout float sunlight) {
     vec4 colour = texelFetch(instance_colour, pixel, 0);
     if (colour.a == 0.0) return false;
     s.normal = normal_from_octahedral(2.0 * texelFetch(instance_direction, pixel, 0).rg - 1.0);
     s.geometric_normal = s.normal;
     s.diffuse = s.ambient = colour.rgb * colour.rgb;
     s.specular = s.emissive = vec3(0.0);
+    sunlight = colour.a;
     return true;
 }
 #endif
@@ -155,10 +158,14 @@ void main() {
     vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
     if (frame.overlay_shape.w > 0.0) overlay_as_reflectance(s, laid);
 #endif
+    float sunlight = 1.0;
 #ifdef INSTANCES
-    bool is_instance = instance_as_surface(s, pixel);
+    bool is_instance = instance_as_surface(s, pixel, sunlight);
 #else
     const bool is_instance = false;
+#endif
+#ifdef INSTANCE_SHADOWS
+    sunlight *= instance_sunlight(s.position_m, s.distance_m, is_instance);
 #endif
 
     vec3 to_sun;
@@ -171,14 +178,17 @@ void main() {
     hook_visibility(s, to_sun, seen);
     bool faces = dot(s.geometric_normal, to_sun) > 0.0;
     bool is_ground = !is_instance && surface_moved_up_m(s) == 0.0;
-    audit_out = vec4(s.post, is_ground ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
+    // The audit is of the terrain's shadows: not where instances stand or their shadows lie.
+    float audited = !is_ground ? -1.0 : sunlight < 1.0 ? -2.0 : seen;
+    audit_out = vec4(s.post, audited, faces ? s.pixel_posts : -s.pixel_posts);
 #endif
 #ifdef SURFACE_OUTPUT
     float visible = 1.0;
     hook_visibility(s, to_sun, visible);
-    surface_out = vec4(s.normal, visible);
+    surface_out = vec4(s.normal, visible * sunlight);
 #endif
     hook_visibility(s, to_sun, lit);
+    lit *= sunlight;
     // The part of the sky that a slope sees, of the light on level ground.
     vec3 sky = frame.sky_irradiance.rgb * (0.5 + 0.5 * dot(s.normal, s.up));
     hook_ambient(s, sky);

@@ -23,6 +23,7 @@ enum class Command {
     Whole,
     NorthUp,
     FromAbove,
+    Find,  ///< a place
     Walk,
     StandHere,  ///< at the chosen point
     LookThere,  ///< to the chosen point

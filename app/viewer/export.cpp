@@ -126,7 +126,6 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
             "picture: " + session::non_finite_text(pixels, {picture.width_px, picture.height_px}) +
             "; relevo capture names the effect");
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, rgba);
-    add_marks(picture, image);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
     if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.read_depths_m();
@@ -138,8 +137,10 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
     if (scene.stamps.sun)
         stamped.sun =
             overlay_time ? session::sun_text(*overlay_time) : sun_of(picture, scene, opened.ground);
+    std::vector<chart::Rect> taken;
     const std::vector<std::string> notes =
-        session::add_stamps(std::move(stamped), coloured.legends, image);
+        session::add_stamps(std::move(stamped), coloured.legends, image, taken);
+    add_marks(picture, taken, image);
     const image::Metadata metadata{{"Software", "Relevo"},
                                    {"Description", capture_command(scene, "picture.png")},
                                    {session::kSceneKeyword, scene::scene_line(scene)}};

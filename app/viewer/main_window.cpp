@@ -147,6 +147,7 @@ void MainWindow::draw_panels() {
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
     import_sheet_.draw(size());
+    find_sheet_.draw(size(), state_.effects.get());
     status_line(state_, work_in_progress());
     message_box(state_, size(), unit());
     if (shows_keys_) key_sheet();
@@ -161,13 +162,16 @@ std::string MainWindow::work_in_progress() const {
 void MainWindow::draw_over_image() {
     const std::shared_ptr<const Picture>& before = comparison_->image();
     const float line = before ? window_->line() : 0;
-    if (before) marks_before_.draw(before, window_->size_px(), 0, line, size());
-    marks_.draw(picture_, window_->size_px(), line, 1, size());
+    const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
+    legend_.update(overlay_->coloured(*picture_).legends, size(), top, unit());
+    std::vector<chart::Rect> taken = legend_.places();
+    taken.push_back(north_place(size(), top));
+    if (before) marks_before_.draw(before, window_->size_px(), 0, line, size(), taken);
+    marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
     draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
-    const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
     draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
-    legend_.draw(overlay_->coloured(*picture_).legends, size(), top, unit());
+    legend_.draw();
     if (comparison_->thread()) draw_sides(window_->line() * size().x, top);
 }
 
@@ -187,6 +191,11 @@ void MainWindow::hand_over_scene() {
     if (state_.new_effects) thread.want_effects(*state_.new_effects);
     for (const auto& [address, value] : state_.new_values)
         thread.want_value(address, value);
+    if (const double now = state_.document.scene.exaggeration; now != wanted_exaggeration_) {
+        wanted_exaggeration_ = now;
+        thread.want_exaggeration(now);
+        stop_comparison();
+    }
     if (state_.step) {
         history_.add(state_.document);
         pacing_.need_frames(2);

@@ -9,6 +9,7 @@
 #include "viewer/comparison.h"
 #include "viewer/discard.h"
 #include "viewer/file_kind.h"
+#include "viewer/find_sheet.h"
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
 #include "viewer/history.h"
@@ -86,6 +87,8 @@ class MainWindow {
     sun::Instant time_from(const sun::Zone& zone_before);
     /// @param before  the scene with a coarse DEM
     void complete_scene(const Opened& before);
+    /// After the exaggeration has changed.
+    void take_shape();
     void use_dem();
     /// Moves the eye to where the image was drawn from: the thread raises it above drawn ground.
     void raise_eye();
@@ -134,7 +137,9 @@ class MainWindow {
     void save_view();
     void remember_views();
     void go_to_view(std::size_t i);
-    void go_to_place(const std::string& text);
+    void go_to_place(geo::Geodetic place);
+    /// Shows times in another zone. @throws Error (BadInput) for an unknown one
+    void show_zone(const std::string& name);
     /// The scene for export.
     scene::Scene whole_scene() const;
     void copy_command();
@@ -153,6 +158,7 @@ class MainWindow {
     History history_;
     OpenDialog open_dialog_;
     ImportSheet import_sheet_;
+    FindSheet find_sheet_;
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;
@@ -164,6 +170,7 @@ class MainWindow {
     std::unique_ptr<WindowStyle> style_;
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
+    double wanted_exaggeration_ = 1;
     Clock::time_point checked_at_ = Clock::now();  // files
     std::optional<Clock::time_point> first_picture_at_;
     bool sun_moved_ = false;      // in the frame before

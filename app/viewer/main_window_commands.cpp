@@ -1,13 +1,13 @@
 #include <cmath>
 #include <utility>
 
-#include "base/text.h"
 #include "viewer/main_window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "sun/zone_of_place.h"
 #include "viewer/export.h"
 
 namespace relevo::viewer {
@@ -40,8 +40,9 @@ void MainWindow::process_keys() {
         if (!run_program_command(command) && is_open()) run_scene_command(command);
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
-    const std::string place = std::exchange(state_.place_to_go_to, {});
-    if (!place.empty() && is_open()) messages_.try_to([&] { go_to_place(place); });
+    if (const auto place = find_sheet_.take(); place && is_open()) go_to_place(*place);
+    const std::string zone = std::exchange(state_.zone_to_show, {});
+    if (!zone.empty() && is_open()) messages_.try_to([&] { show_zone(zone); });
     if (std::exchange(state_.views_changed, false)) remember_views();
 }
 
@@ -70,6 +71,9 @@ bool MainWindow::run_program_command(Command command) {
             return true;
         case Command::Charts:
             state_.settings.charts = !state_.settings.charts;
+            return true;
+        case Command::Find:
+            find_sheet_.open();
             return true;
         case Command::Keys:
             shows_keys_ = !shows_keys_;
@@ -131,6 +135,7 @@ void MainWindow::close_dialogs() {
     shows_keys_ = state_.measurement.follows_cursor = false;
     open_dialog_.close();
     import_sheet_.close();
+    find_sheet_.close();
     closes_menus_ = true;
     state_.message.clear();
 }
@@ -244,13 +249,19 @@ void MainWindow::go_to_view(std::size_t i) {
     state_.step = true;
 }
 
-void MainWindow::go_to_place(const std::string& text) {
-    std::string bare = text;  // maps add a space after the comma
-    std::erase(bare, ' ');
-    geo::Geodetic place = geo::parse_place(bare, "view").place;
+void MainWindow::show_zone(const std::string& name) {
+    state_.document.zone = sun::choose_zone(name, state_.centre).zone;
+    zone_ = name;
+    state_.day = {};
+    state_.set_utc(state_.document.utc);
+    state_.step = true;
+}
+
+void MainWindow::go_to_place(geo::Geodetic place) {
     place.height_m = state_.land.height_m(place);
     if (std::isnan(place.height_m))
-        return messages_.note("the DEM has no ground at " + printable(text));
+        return messages_.note("the DEM has no ground at " +
+                              coordinates_text(place, Coordinates::Degrees));
     history_.end_step(state_.document);
     hand_->rest();
     geo::Geodetic drawn = place;

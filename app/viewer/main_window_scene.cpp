@@ -15,10 +15,10 @@ sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun:
 }
 
 bool same(const Wanted& a, const Wanted& b) {
-    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.width_px == b.width_px &&
-           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
-           a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
-           a.view->fov_y_rad == b.view->fov_y_rad &&
+    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.exposure_ev == b.exposure_ev &&
+           a.width_px == b.width_px && a.height_px == b.height_px && a.moving == b.moving &&
+           a.sun_moving == b.sun_moving && a.view->heading_deg == b.view->heading_deg &&
+           a.view->pitch_deg == b.view->pitch_deg && a.view->fov_y_rad == b.view->fov_y_rad &&
            a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&
            a.view->eye->place.lon_rad == b.view->eye->place.lon_rad &&
            a.view->eye->place.height_m == b.view->eye->place.height_m;
@@ -49,6 +49,7 @@ Wanted MainWindow::first_wanted() const {
 
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
+    wanted_exaggeration_ = state_.document.scene.exaggeration;
     point_->clear();
     overlay_->clear();
     state_.measurement = {};
@@ -79,6 +80,7 @@ Wanted MainWindow::wanted_now() const {
     wanted.view = view_of(state_.document.pose, state_.land);
     wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
     wanted.utc = state_.document.utc;
+    wanted.exposure_ev = state_.document.scene.exposure_ev;
     wanted.width_px = size.x;
     wanted.height_px = size.y;
     wanted.moving = !pacing_.is_at_rest();
@@ -107,8 +109,8 @@ void MainWindow::poll_opening() {
             return start_scene(/*is_first=*/!before, std::nullopt);
         case Opening::Event::Reloaded:
             return restart_scene(*before);
-        case Opening::Event::Completed:
-            return complete_scene(*before);
+        case Opening::Event::Changed:
+            return before->dem == opening_->opened()->dem ? take_shape() : complete_scene(*before);
         case Opening::Event::Broken:
             return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
@@ -204,6 +206,14 @@ void MainWindow::complete_scene(const Opened& before) {
     state_.set_utc(document.utc);
     point_->invalidate();
     if (SceneThread* const compared = comparison_->thread()) compared->want_dem(opened.dem);
+}
+
+void MainWindow::take_shape() {
+    const double before = state_.land.exaggeration;
+    use_dem();
+    Document& document = state_.document;
+    document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
+    pacing_.moved();
 }
 
 void MainWindow::use_dem() {

@@ -45,26 +45,34 @@ session::MarkView view_of(const Picture& picture, glm::ivec2 size_px) {
 
 }  // namespace
 
-void add_marks(const Picture& picture, image::Image8& image) {
+void add_marks(const Picture& picture, std::span<const chart::Rect> taken, image::Image8& image) {
     if (picture.marks.empty()) return;
     chart::Drawing drawing(image.width, image.height);
     session::draw_marks(picture.marks, view_of(picture, {image.width, image.height}),
-                        {0, 0, drawing.width(), drawing.height()}, drawing);
+                        {0, 0, drawing.width(), drawing.height()}, taken, drawing);
     chart::paint(drawing, 0, 0, 1, image);
 }
 
 void MarkOverlay::draw(const std::shared_ptr<const Picture>& picture, glm::ivec2 size_px,
-                       float from, float to, glm::vec2 size) {
+                       float from, float to, glm::vec2 size, std::span<const chart::Rect> taken) {
     if (picture->marks.empty() || size_px.x <= 0 || size_px.y <= 0) return;
     const glm::vec2 sides(from, to);
-    if (of_.lock() != picture || size_px_ != size_px || sides_ != sides) {
+    if (of_.lock() != picture || size_px_ != size_px || sides_ != sides ||
+        !std::ranges::equal(taken_, taken)) {
+        taken_.assign(taken.begin(), taken.end());
         of_ = picture;
         size_px_ = size_px;
         sides_ = sides;
         chart::Drawing drawing(size_px.x, size_px.y);
+        const double scale = drawing.width() / static_cast<double>(size.x);
+        std::vector<chart::Rect> taken_px;
+        for (const chart::Rect& rect : taken)
+            taken_px.push_back(
+                {scale * rect.x, scale * rect.y, scale * rect.width, scale * rect.height});
         session::draw_marks(
             picture->marks, view_of(*picture, size_px),
-            {from * drawing.width(), 0, (to - from) * drawing.width(), drawing.height()}, drawing);
+            {from * drawing.width(), 0, (to - from) * drawing.width(), drawing.height()}, taken_px,
+            drawing);
         texture_ = texture_of(chart::to_transparent_image(drawing));
     }
     ImGui::GetBackgroundDrawList()->AddImage(

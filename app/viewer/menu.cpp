@@ -20,7 +20,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 28> kKeys = {{
+constexpr std::array<Key, 29> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -32,6 +32,7 @@ constexpr std::array<Key, 28> kKeys = {{
     {GLFW_KEY_Q, true, Command::Quit},
     {GLFW_KEY_Z, true, Command::Undo},
     {GLFW_KEY_Y, true, Command::Redo},
+    {GLFW_KEY_F, true, Command::Find},
     {GLFW_KEY_HOME, false, Command::Whole},
     {GLFW_KEY_N, false, Command::NorthUp},
     {GLFW_KEY_T, false, Command::FromAbove},
@@ -116,23 +117,13 @@ void saved_views(State& state) {
     state.views_changed = true;
 }
 
-void go_to_place(State& state) {
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
-    const bool enter = ImGui::InputTextWithHint("##place", "latitude, longitude", &state.place,
-                                                ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::SameLine();
-    if (!ImGui::SmallButton("go there") && !enter) return;
-    state.place_to_go_to = state.place;
-    ImGui::CloseCurrentPopup();
-}
-
 void view_menu(State& state) {
     if (!ImGui::BeginMenu("View")) return;
     item(state, "Whole DEM", "Home", Command::Whole);
     item(state, "North up", "N", Command::NorthUp);
     item(state, "Top view", "T", Command::FromAbove);
     item(state, "Walk at eye height", "G", Command::Walk);
-    go_to_place(state);
+    item(state, "Go to a place...", "Ctrl+F", Command::Find);
     ImGui::Separator();
     item(state, "Undo", "Ctrl+Z", Command::Undo);
     item(state, "Redo", "Ctrl+Y", Command::Redo);

@@ -83,6 +83,14 @@ scene::View view_of(const Pose& pose, const Land& land) {
     return view;
 }
 
+Pose exaggerated(const Pose& pose, const Land& land, double from, double to) {
+    geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
+    place.height_m *= to / from;
+    Pose moved = pose;
+    moved.eye_m = land.frame->to_local(place);
+    return moved;
+}
+
 glm::dvec3 ray(const scene::Camera& camera, glm::dvec2 at, double aspect) {
     const double tan_y = std::tan(camera.fov_y_rad / 2);
     const glm::dvec3 right = cross(camera.forward, camera.up);

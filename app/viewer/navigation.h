@@ -43,6 +43,9 @@ Pose pose_of(const scene::Camera& camera, const Land& land);
 /// The pose as a view, as on the command line and in scenes.
 scene::View view_of(const Pose& pose, const Land& land);
 
+/// A pose relative to ground that is drawn with another exaggeration.
+Pose exaggerated(const Pose& pose, const Land& land, double from, double to);
+
 /// Unit vector through an image position.
 glm::dvec3 ray(const scene::Camera& camera, glm::dvec2 at, double aspect);
 /// Image position of a point; nullopt behind the camera.

@@ -88,8 +88,8 @@ Opening::Event Opening::poll_open() {
     std::shared_ptr<const Opened> opened = open_.thread->opened();
     if (opened == opened_) return Event::None;
     opened_ = std::move(opened);
-    complete_ = open_.scene;
-    return Event::Completed;
+    if (!is_preview()) complete_ = open_.scene;
+    return Event::Changed;
 }
 
 Opening::Event Opening::accept(std::shared_ptr<const Opened> opened) {

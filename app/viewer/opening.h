@@ -18,11 +18,11 @@ class Opening {
   public:
     enum class Event {
         None,
-        Opened,     ///< opened() is another scene
-        Reloaded,   ///< the same DEM was read again; opened() is another
-        Completed,  ///< all posts of the DEM have replaced coarse ones; opened() is another
-        Failed,     ///< the next scene could not be opened: take_failure()
-        Broken,     ///< the posts of the open scene cannot be read completely
+        Opened,    ///< opened() is another scene
+        Reloaded,  ///< the same DEM was read again; opened() is another
+        Changed,   ///< opened() is the same scene with all posts, or another exaggeration
+        Failed,    ///< the next scene could not be opened: take_failure()
+        Broken,    ///< the posts of the open scene cannot be read completely
     };
 
     /// A scene that could not be opened.

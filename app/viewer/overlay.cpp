@@ -166,6 +166,23 @@ void draw_sides(float line_px, float top_px) {
     label("as it is now", false);
 }
 
+namespace {
+
+constexpr float kNorthRadius_px = 34;
+
+ImVec2 north_middle(glm::vec2 size_px, float top_px) {
+    return {size_px.x - 46, 46 + top_px};
+}
+
+}  // namespace
+
+chart::Rect north_place(glm::vec2 size_px, float top_px) {
+    const ImVec2 middle = north_middle(size_px, top_px);
+    return {static_cast<double>(middle.x - kNorthRadius_px),
+            static_cast<double>(middle.y - kNorthRadius_px), 2 * double{kNorthRadius_px},
+            2 * double{kNorthRadius_px}};
+}
+
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
@@ -175,12 +192,12 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
-    const ImVec2 middle{size_px.x - 46, 46 + top_px};
+    const ImVec2 middle = north_middle(size_px, top_px);
     const auto tip = [&](glm::dvec2 way, double length) {
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
     };
-    list.AddCircleFilled(middle, 34, kShade);
+    list.AddCircleFilled(middle, kNorthRadius_px, kShade);
     list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
     list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
     const ImVec2 letter = tip(north, 26);
@@ -211,7 +228,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 31> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 33> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -221,11 +238,13 @@ void key_sheet() {
         {"Arrows", "turn about the centre"},
         {"Page up, Page down", "zoom in, zoom out"},
         {"W A S D, Q E", "fly, down and up; faster with Shift"},
-        {"G", "walk at eye height, and fly again"},
+        {"G", "walk at the clicked point or in the middle, and fly again"},
+        {"Ctrl + F", "go to coordinates or a name"},
         {"Home, N, T", "whole DEM, north up, top view"},
         {"[ ]", "half an hour earlier, later; with Shift a day"},
         {"Space", "play and pause the time"},
         {"Click", "direct sun of the day at a point, its horizon and year"},
+        {"Right click", "stand there, look there, measure from there, copy its coordinates"},
         {"P", "horizon and year on and off"},
         {"M", "measure from the point to the cursor, until M or a click"},
         {"C", "compare: the left side stays, the right side follows; drag the line"},
@@ -235,7 +254,7 @@ void key_sheet() {
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "export the sun overlay as GeoTIFF"},
         {"Ctrl + J", "save the day's hours as a job"},
-        {"Ctrl + O", "open a DEM; files can be dropped too"},
+        {"Ctrl + O", "open a DEM, scene, photograph, track ...; files can be dropped too"},
         {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
         {"B, then 1 to 9", "save the view; go to a saved view"},
         {"F5", "reload effects (automatic if their files change)"},

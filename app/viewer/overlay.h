@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "chart/drawing.h"
 #include "viewer/navigation.h"
 #include "viewer/scene_thread.h"
 
@@ -48,6 +49,9 @@ std::string slope_text(double slope_deg, double aspect_deg);
 /// Labels for both sides of a comparison's dividing line.
 /// @param line_px  from the left edge
 void draw_sides(float line_px, float top_px);
+
+/// Where the north arrow is in the window.
+chart::Rect north_place(glm::vec2 size_px, float top_px);
 
 /// @param middle_m  ground at the centre of the image; none: no scale bar
 /// @param top_px    height of the menu

@@ -122,8 +122,8 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
     }
 }
 
-void LegendPicture::draw(const std::vector<chart::Legend>& legends, glm::vec2 size_px, float top_px,
-                         double px_a_unit) {
+void LegendPicture::update(const std::vector<chart::Legend>& legends, glm::vec2 size_px,
+                           float top_px, double px_a_unit) {
     if (of_ != legends || px_a_unit_ != px_a_unit) {
         of_ = legends;
         px_a_unit_ = px_a_unit;
@@ -131,16 +131,23 @@ void LegendPicture::draw(const std::vector<chart::Legend>& legends, glm::vec2 si
         for (const chart::Legend& legend : legends)
             textures_.push_back(texture_of(chart::to_image(chart::legend(legend), px_a_unit)));
     }
-    constexpr float kMargin_px = 12, kNorth_px = 92;
-    float y = top_px + kNorth_px;
+    constexpr double kMargin_px = 12, kNorth_px = 92;
+    places_.clear();
+    double y = static_cast<double>(top_px) + kNorth_px;
     for (const gl::Texture& texture : textures_) {
-        const gl::Extent extent = texture.extent();
-        const ImVec2 from{size_px.x - kMargin_px - static_cast<float>(extent.width), y};
+        const double width = texture.extent().width, height = texture.extent().height;
+        places_.push_back({static_cast<double>(size_px.x) - kMargin_px - width, y, width, height});
+        y += height + kMargin_px;
+    }
+}
+
+void LegendPicture::draw() const {
+    for (std::size_t i = 0; i < textures_.size(); ++i) {
+        const chart::Rect& at = places_[i];
+        const ImVec2 from{static_cast<float>(at.x), static_cast<float>(at.y)};
         ImGui::GetBackgroundDrawList()->AddImage(
-            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.name())), from,
-            {from.x + static_cast<float>(extent.width),
-             from.y + static_cast<float>(extent.height)});
-        y += static_cast<float>(extent.height) + kMargin_px;
+            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(textures_[i].name())), from,
+            {from.x + static_cast<float>(at.width), from.y + static_cast<float>(at.height)});
     }
 }
 

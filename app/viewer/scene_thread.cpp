@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <future>
 #include <map>
@@ -20,6 +19,7 @@
 #include "session/active_effects.h"
 #include "viewer/frame_exchange.h"
 #include "viewer/navigation.h"
+#include "viewer/picture_queue.h"
 
 namespace relevo::viewer {
 namespace {
@@ -37,8 +37,6 @@ constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 constexpr auto kNewPages = std::chrono::seconds(2);
 /// Interval between frames with more tile pages when nothing moves.
 constexpr auto kMorePages = std::chrono::milliseconds(400);
-/// Interval of checks for the thread's end while the device draws.
-constexpr auto kFrame = std::chrono::milliseconds(100);
 constexpr auto kLookAgain = std::chrono::milliseconds(10);
 /// Interval between frames of effects that move.
 constexpr auto kMoves = std::chrono::milliseconds(50);
@@ -79,8 +77,8 @@ struct SceneThread::Impl {
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
     std::optional<std::shared_ptr<const render::OverlayRaster>> overlay;  // nullopt: unchanged
-    /// Frames the window has not fetched: the newest finished one, and those the device is drawing.
-    std::deque<std::shared_ptr<const Picture>> pictures;
+    std::optional<double> exaggeration;
+    PictureQueue pictures;
     std::optional<std::string> message;
     std::exception_ptr failure;
     std::shared_ptr<const Opened> opened;
@@ -143,12 +141,9 @@ struct SceneThread::Impl {
         }
         on_change();
         if (!failure) draw_until_end();
-        {
-            // Shared frames must be destroyed in a context.
-            const std::lock_guard lock(mutex);
-            pictures.clear();
-            exchange.reset();
-        }
+        // Shared frames must be destroyed in a context.
+        pictures.clear();
+        exchange.reset();
         session.reset();
     }
 
@@ -209,31 +204,44 @@ struct SceneThread::Impl {
         publish_opened(insets);
     }
 
+    void exaggerate(double by, const scene::Insets& insets) {
+        scene.exaggeration = by;
+        session->set_exaggeration(by);
+        publish_opened(insets);
+    }
+
+    /// Waits until there is something to draw. @param sharp  nothing is left to do for the request
+    void wait_for_requests(std::unique_lock<std::mutex>& lock, bool sharp) {
+        const auto is_asked = [&] {
+            return ends || has_new_wants || effects || !values.empty() || overlay || all_posts ||
+                   exaggeration;
+        };
+        // Drawing sooner would slow down the tile pages that it waits for.
+        const auto drawn_at = Clock::now();
+        while (awaits_pages && !is_asked() && session->is_loading() &&
+               Clock::now() - drawn_at < kMorePages)
+            changed.wait_for(lock, kLookAgain, is_asked);
+        if (!awaits_pages && sharp) {
+            rests = !is_asked();
+            if (moves)
+                changed.wait_until(lock, frame_began + kMoves, is_asked);
+            else
+                changed.wait(lock, is_asked);
+        }
+        rests = false;
+    }
+
     void draw_until_end() {
         bool sharp = false;
         std::unique_lock lock(mutex);
         while (!ends) {
-            const auto is_asked = [&] {
-                return ends || has_new_wants || effects || !values.empty() || overlay || all_posts;
-            };
-            // Drawing sooner would slow down the tile pages that it waits for.
-            const auto drawn_at = Clock::now();
-            while (awaits_pages && !is_asked() && session->is_loading() &&
-                   Clock::now() - drawn_at < kMorePages)
-                changed.wait_for(lock, kLookAgain, is_asked);
-            if (!awaits_pages && sharp) {
-                rests = !is_asked();
-                if (moves)
-                    changed.wait_until(lock, frame_began + kMoves, is_asked);
-                else
-                    changed.wait(lock, is_asked);
-            }
-            rests = false;
+            wait_for_requests(lock, sharp);
             if (ends) return;
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
             const auto new_overlay = std::exchange(overlay, std::nullopt);
+            const auto new_exaggeration = std::exchange(exaggeration, std::nullopt);
             auto new_posts = std::exchange(all_posts, nullptr);
             const std::uint64_t answers = wants;
             has_new_wants = false;
@@ -250,12 +258,15 @@ struct SceneThread::Impl {
             try {
                 attempt([&] { change(new_effects, new_values); });
                 if (new_overlay) attempt([&] { session->set_overlay(*new_overlay); });
+                if (new_exaggeration) exaggerate(*new_exaggeration, now.insets);
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;
                     awaits_pages = moves = false;
                 }
-                finish_pictures(/*all=*/sharp || awaits_pages);
+                // Limits the queue of the device.
+                const std::size_t unfinished = sharp || awaits_pages || !exchange ? 0 : 1;
+                pictures.finish(unfinished, [this] { return has_ended(); });
             } catch (const gl::DeviceLost&) {
                 fail();
                 return;
@@ -324,6 +335,7 @@ struct SceneThread::Impl {
             // Core's lighting is always current.
             shadows_lag = !session->effects().loaded.modules.empty();
         }
+        if (now.exposure_ev) session->set_exposure(*now.exposure_ev);
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
         // Shadow maps depend on the eye.
@@ -373,8 +385,7 @@ struct SceneThread::Impl {
         made->number = ++published;
         frame_began = began;
         frame_px = double{1} * extent.width * extent.height;
-        const std::lock_guard lock(mutex);
-        pictures.push_back(std::move(made));
+        pictures.add(std::move(made));
     }
 
     /// Keeps the frame on the device, where the window reads it.
@@ -390,24 +401,6 @@ struct SceneThread::Impl {
                             static_cast<std::size_t>(picture.height_px));
         session->texture().read(0, std::as_writable_bytes(std::span(picture.rgba)));
         session->read_depths(picture.depths_m);
-    }
-
-    /// Waits for the device to finish frames, which limits its queue, and drops superseded ones.
-    /// @param all  false: all but the last one
-    void finish_pictures(bool all) {
-        std::shared_ptr<const Picture> last;
-        {
-            const std::lock_guard lock(mutex);
-            const std::size_t unfinished = all || !exchange ? 0 : 1;
-            if (pictures.size() > unfinished) last = pictures.rbegin()[unfinished];
-        }
-        if (!last) return;
-        if (last->shared)
-            while (!last->shared->drawn.wait(kFrame) && !has_ended()) {
-            }
-        const std::lock_guard lock(mutex);
-        while (!pictures.empty() && pictures.front()->number < last->number)
-            pictures.pop_front();
     }
 
     bool has_ended() {
@@ -462,6 +455,10 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
     impl_->change([&](Impl& my) { my.values[address] = value; });
 }
 
+void SceneThread::want_exaggeration(double exaggeration) {
+    impl_->change([&](Impl& my) { my.exaggeration = exaggeration; });
+}
+
 void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
     impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
 }
@@ -481,12 +478,7 @@ std::uint64_t SceneThread::wants() const {
 }
 
 std::shared_ptr<const Picture> SceneThread::newer_than(std::uint64_t number) const {
-    const std::lock_guard lock(impl_->mutex);
-    for (auto picture = impl_->pictures.rbegin(); picture != impl_->pictures.rend(); ++picture) {
-        if ((*picture)->number <= number) break;
-        if (!(*picture)->shared || (*picture)->shared->drawn.has_passed()) return *picture;
-    }
-    return nullptr;
+    return impl_->pictures.newer_than(number);
 }
 
 std::optional<std::string> SceneThread::take_message() {

@@ -19,11 +19,12 @@ namespace relevo::viewer {
 
 /// What the window requests. The latest request replaces earlier ones.
 struct Wanted {
-    std::optional<scene::View> view;  ///< nullopt: the scene's
-    double keep_above_m = 0;          ///< least height of the eye above the drawn ground [m]
-    std::optional<sun::Instant> utc;  ///< nullopt: the scene's
-    int width_px = 1, height_px = 1;  ///< of the window
-    scene::Insets insets;             ///< of its panels, for the scene's view
+    std::optional<scene::View> view;    ///< nullopt: the scene's
+    double keep_above_m = 0;            ///< least height of the eye above the drawn ground [m]
+    std::optional<sun::Instant> utc;    ///< nullopt: the scene's
+    std::optional<double> exposure_ev;  ///< nullopt: the scene's
+    int width_px = 1, height_px = 1;    ///< of the window
+    scene::Insets insets;               ///< of its panels, for the scene's view
     bool moving = false;  ///< the user moves the camera: a quick frame is better than a sharp one
     bool sun_moving = false;  ///< the user moves the sun: shadows may lag behind as well
 };
@@ -56,8 +57,8 @@ class SceneThread {
     /// Waits for the current frame, or until the scene is open. Discard does so in the background.
     ~SceneThread();
 
-    /// The open scene, or null. Replaced when the complete DEM replaces a preview; the frame of
-    /// reference stays the same.
+    /// The open scene, or null. Replaced when the complete DEM replaces a preview, and for another
+    /// exaggeration; the frame of reference stays the same.
     std::shared_ptr<const Opened> opened() const;
     /// @throws Error if opening, or reading the complete DEM, has failed
     void check() const;
@@ -68,6 +69,8 @@ class SceneThread {
     /// Sets a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
 
+    /// Sets the vertical exaggeration. opened() is replaced.
+    void want_exaggeration(double exaggeration);
     /// Replaces a preview with the complete DEM.
     void want_dem(std::shared_ptr<const session::LoadedDem> dem);
 

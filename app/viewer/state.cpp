@@ -66,6 +66,9 @@ void State::take_effects(bool is_step) {
 void State::restore(const Document& restored) {
     const bool changes_effects = effects_text(restored) != effects_text(document);
     document = restored;
+    // Until the ground is drawn anew it has the exaggeration that it has now.
+    document.pose =
+        exaggerated(restored.pose, land, restored.scene.exaggeration, land.exaggeration);
     set_utc(restored.utc);
     if (!changes_effects) return;
     set_effects(restored.scene.effects);

@@ -43,7 +43,11 @@ struct State {
     bool time_is_pinned = false;  ///< other DEMs are shown at this time of day even if it is night
     bool playing = false;
     double hours_a_second = 1;
-    std::string search, place;       ///< text in input fields
+    std::string search, zone_text;   ///< text in input fields
+    std::string zone_to_show;        ///< a request: "Europe/Zurich", "auto"; empty: none
+    int sensor = 0;                  ///< of the panel View
+    float dragged_exaggeration = 1;  ///< while its slider is dragged
+    bool drags_exaggeration = false;
     bool compare_is_wanted = false;  ///< with the effects at the time it starts
 
     Settings settings;
@@ -69,7 +73,6 @@ struct State {
     std::vector<std::string> files_to_open;
     std::optional<RecentDem> recent_to_open;
     std::optional<std::size_t> view_to_go_to;  ///< of views
-    std::string place_to_go_to;                ///< "47.4395, 11.8935"; empty: none
     bool views_changed = false;
     /// Left and right edge of the side panel [px]; none: not drawn yet.
     std::optional<glm::vec2> side_panel_px;
@@ -101,6 +104,8 @@ void sun_panel(State& state);
 /// "azimuth 114.27°, height 65.13°": the sun's position at the DEM's centre.
 std::string sun_figures(const State& state);
 
+/// Lens, exposure, exaggeration and time zone. @param aspect  of the window
+void view_panel(State& state, double aspect);
 void effects_panel(State& state);
 void menu_bar(State& state);
 /// The panels of the scene, in one column.

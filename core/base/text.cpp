@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/utf8.h"
 
 namespace relevo {
 namespace {
@@ -74,29 +75,13 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// The length of the UTF-8 sequence at the start of the text; 0 where there is none that is valid
-/// (RFC 3629: no overlong ones, no surrogates) and no control character (C0, DEL, C1).
+/// Length of the character at the start of a text; 0 if it is not UTF-8, a control character (C0,
+/// DEL, C1) or a noncharacter, which XML and Cairo refuse.
 std::size_t printable_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
-    if (first < 0xc2 || first > 0xf4) return 0;
-    // The second byte's range excludes C1 controls, overlong forms, surrogates and what is beyond
-    // U+10FFFF.
-    const unsigned low = first == 0xc2 ? 0xa0 : first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
-    const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
-    if (byte(1) < low || byte(1) > high) return 0;
-    const std::size_t length = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    unsigned code = length == 2 ? first & 0x1f : length == 3 ? first & 0x0f : first & 0x07;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) return 0;
-        code = code << 6 | (byte(i) & 0x3f);
-    }
-    // What Unicode calls noncharacters are for no one's eyes: XML and Cairo refuse them.
-    if ((code & 0xfffe) == 0xfffe || (code >= 0xfdd0 && code <= 0xfdef)) return 0;
-    return length;
+    const auto [length, code] = first_character(text);
+    const bool is_control = code < 0x20 || (code >= 0x7f && code < 0xa0);
+    const bool is_noncharacter = (code & 0xfffe) == 0xfffe || (code >= 0xfdd0 && code <= 0xfdef);
+    return is_control || is_noncharacter ? 0 : length;
 }
 
 std::string printable(std::string_view text, std::string_view kept) {

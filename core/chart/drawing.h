@@ -44,6 +44,8 @@ struct Lettering {
 
 struct Rect {
     double x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(const Rect&) const = default;
 };
 
 /// Of a diagram in a panel of a window: without title, keys and small print, and with letters as

@@ -111,6 +111,7 @@ class Layout {
     }
 
     void take(const Rect& at) { taken_.push_back(at); }
+    const std::vector<Rect>& taken() const { return taken_; }
 
   private:
     image::Image8& picture_;
@@ -164,7 +165,8 @@ double stamp_scale(int width_px, int height_px) {
     return std::clamp(std::min(width_px, height_px) / 900.0, 0.8, 16.0);
 }
 
-std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture) {
+std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
+                               std::vector<Rect>* taken) {
     Layout layout(picture);
     std::vector<std::string> left_out;
     const auto add = [&](const Drawing& drawing, Corner corner, const char* name) {
@@ -189,6 +191,7 @@ std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture) {
     if (labels > 0)
         left_out.push_back(
             fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
+    if (taken) *taken = layout.taken();
     return left_out;
 }
 

@@ -43,9 +43,11 @@ ScaleBar scale_bar(double px_per_m, double most_px);
 double stamp_scale(int width_px, int height_px);
 
 /// Puts them on a picture, RGB, each whole and over none of the others.
+/// @param taken  if not null, receives the rectangles where they stand
 /// @returns what had no room: "title", "legend", "scale", "north", "date and sun", "attribution",
 ///          "2 labels of the graticule"
 /// @throws Error (Failed) as paint()
-std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture);
+std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
+                               std::vector<Rect>* taken = nullptr);
 
 }  // namespace relevo::chart

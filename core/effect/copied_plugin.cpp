@@ -20,6 +20,8 @@ class Renaming {
     Renaming(const Effect& effect, const std::string& id) : from_(effect.id()), to_(id) {
         for (const shader::Snippet& snippet : effect.snippets)
             add_globals(snippet.source);
+        for (const shader::PluginPass& pass : effect.manifest.passes)
+            names_.insert(pass.output_name());
     }
 
     /// haze.glsl -> mist.glsl

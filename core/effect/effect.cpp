@@ -80,7 +80,7 @@ std::vector<Readable> readables(const Manifest& manifest) {
     for (const LinesSpec& lines : manifest.lines)
         all.push_back({lines.name, "lines", "sampler2D", lines.line});
     for (const shader::PluginPass& pass : manifest.passes)
-        all.push_back({pass.name, "pass", "sampler2D", pass.line});
+        all.push_back({pass.name, "pass", shader::sampler_of(pass.output), pass.line});
     return all;
 }
 
@@ -118,27 +118,43 @@ const shader::PluginPass* find_pass(const Effect& effect, std::string_view name)
     return found == effect.manifest.passes.end() ? nullptr : &*found;
 }
 
+/// "vec4 haze_pass_blur(in Texel t)"
+std::string head_of(const shader::PluginPass& pass) {
+    std::string head(shader::signature_of(pass.kind));
+    return head.replace(head.find("pass"), 4, pass.function);
+}
+
+void check_function(const Effect& effect, const shader::PluginPass& pass) {
+    const Manifest& manifest = effect.manifest;
+    int functions = 0;
+    for (const shader::Snippet& snippet : effect.snippets)
+        for (const shader::PassFunction& function : snippet.passes) {
+            if (function.name != pass.name) continue;
+            ++functions;
+            if (function.kind != pass.kind)
+                fail(snippet.file, function.line,
+                     fmt::format("{}: it is the function of a pass of kind {}, but the kind in "
+                                 "{}:{} is {}; expected {}",
+                                 pass.function, word_of(function.kind), manifest.file.string(),
+                                 pass.line, word_of(pass.kind), head_of(pass)));
+        }
+    if (functions != 1)
+        fail(manifest.file.string(), pass.line,
+             fmt::format("passes.{}: expected one function {} in the plugin's GLSL but got {}",
+                         pass.name, head_of(pass), functions));
+}
+
 /// Each pass has one function, and each function of a pass its pass.
 void check_passes(const Effect& effect) {
     const Manifest& manifest = effect.manifest;
+    const std::vector<shader::Param> params = effect.params();
     for (const shader::PluginPass& pass : manifest.passes) {
         const std::string key = "passes." + pass.name;
         if (std::ranges::find(manifest.textures, pass.name, &TextureSpec::name) !=
             manifest.textures.end())
             fail(manifest.file.string(), pass.line,
                  fmt::format("{}: a texture of \"textures\" has this name too; rename one", key));
-        const auto defines = [&](const shader::Snippet& snippet) {
-            return std::ranges::count(snippet.passes, pass.name, &shader::PassFunction::name);
-        };
-        std::ptrdiff_t functions = 0;
-        for (const shader::Snippet& snippet : effect.snippets)
-            functions += defines(snippet);
-        if (functions != 1)
-            fail(manifest.file.string(), pass.line,
-                 fmt::format("{}: expected one function vec4 {}(in Texel t) in the plugin's GLSL "
-                             "but got {}",
-                             key, pass.function, functions));
-        const std::vector<shader::Param> params = effect.params();
+        check_function(effect, pass);
         for (const std::string& address : pass.parameters)
             if (std::ranges::find(params, address, &shader::Param::address) == params.end())
                 fail(manifest.file.string(), pass.line,
@@ -161,7 +177,7 @@ void check_instances(const Effect& effect) {
         names.push_back(set.name);
         std::ptrdiff_t functions = 0;
         for (const shader::Snippet& snippet : effect.snippets)
-            functions += std::ranges::count(snippet.places, set.name, &shader::PassFunction::name);
+            functions += std::ranges::count(snippet.places, set.name, &shader::PlaceFunction::name);
         if (functions != 1)
             fail(
                 file, set.line,
@@ -173,7 +189,7 @@ void check_instances(const Effect& effect) {
                  fmt::format("instances.{}: a pass has this name too; rename one", set.name));
     }
     for (const shader::Snippet& snippet : effect.snippets)
-        for (const shader::PassFunction& function : snippet.places)
+        for (const shader::PlaceFunction& function : snippet.places)
             if (!contains(names, function.name))
                 fail(snippet.file, function.line,
                      fmt::format("{0}_place_{1}: {2} has no instances {1}; add \"instances\": "
@@ -214,7 +230,8 @@ void check_texts(const Effect& effect) {
 
 void check_marks(const Effect& effect) {
     for (const MarksSpec& marks : effect.manifest.marks)
-        if (const std::string fault = fault_of(marks, effect.params(), effect.manifest.texts);
+        if (const std::string fault = fault_of(marks, effect.params(), effect.manifest.texts,
+                                               !effect.manifest.module.empty());
             !fault.empty())
             fail(effect.manifest.file.string(), marks.line, fault);
 }

@@ -51,6 +51,11 @@ shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::str
     object.need("height_m");
     set.spacing_m = object.number("spacing_m", 0, kMinSpacing_m, kMaxSpacing_m, false);
     set.height_m = object.number("height_m", 0, kMinHeight_m, kMaxHeight_m, false);
+    set.casts_shadow = object.boolean("casts_shadow", true);
+    set.light_through = object.number("light_through", 0, 0, 1, false);
+    if (!set.casts_shadow && object.has("light_through"))
+        object.fail(object.line_of("light_through"), "light_through",
+                    "expected none where casts_shadow is false");
     const json::Value& levels = object.need("levels");
     if (levels.kind != json::Value::Kind::Array || levels.items.empty() ||
         levels.items.size() > kMaxLevels)

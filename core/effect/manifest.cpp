@@ -11,6 +11,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "effect/instance_reader.h"
+#include "effect/pass_reader.h"
 #include "json/object_reader.h"
 
 namespace relevo::effect {
@@ -30,18 +31,7 @@ constexpr std::array<std::string_view, 54> kReserved = {
     "side",      "slope",     "srgb",     "steps",      "store",  "stored",  "sun",    "surface",
     "tangent",   "terrain",   "up",       "varyings",   "vertex", "water"};
 
-constexpr int kMaxPassSide = 4096;
-constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
 constexpr std::size_t kMaxInstanceSets = 16;
-constexpr double kMinPassScale = 1.0 / 64;
-constexpr std::array<std::pair<PixelFormat, std::string_view>, 7> kPassFormats = {
-    std::pair(PixelFormat::RGBA16F, "rgba16f"),
-    {PixelFormat::RGBA32F, "rgba32f"},
-    {PixelFormat::RG16F, "rg16f"},
-    {PixelFormat::RG32F, "rg32f"},
-    {PixelFormat::R16F, "r16f"},
-    {PixelFormat::R32F, "r32f"},
-    {PixelFormat::RGBA8, "rgba8"}};
 
 // Capabilities that core provides itself: render/core_passes.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
@@ -59,13 +49,6 @@ bool is_digit(char c) {
 bool is_id(std::string_view text) {
     return !text.empty() && is_lower(text[0]) &&
            std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c); });
-}
-
-/// A word, which becomes part of a GLSL name.
-bool is_word(std::string_view text) {
-    return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
-           text.find("__") == std::string_view::npos &&
-           std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
 }
 
 bool is_resource(std::string_view text) {
@@ -267,18 +250,10 @@ class ManifestReader {
 
     void passes(json::ObjectReader& object) {
         named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
-            manifest_.passes.push_back(pass(name, value));
+            json::ObjectReader entry(kWho, manifest_.file.string(), "passes." + name, value);
+            manifest_.passes.push_back(read_pass(entry, manifest_.id, name));
         });
-        std::size_t bytes = 0;
-        for (const shader::PluginPass& pass : manifest_.passes)
-            bytes += static_cast<std::size_t>(pass.width) * static_cast<std::size_t>(pass.height) *
-                     static_cast<std::size_t>(layout_of(pass.format).bytes());
-        if (manifest_.passes.size() > kMaxPasses || bytes > kMaxPassBytes)
-            object.fail(object.line_of("passes"), "passes",
-                        fmt::format("expected at most {} passes and {} MiB of fixed size but got "
-                                    "{} and {}",
-                                    kMaxPasses, kMaxPassBytes >> 20, manifest_.passes.size(),
-                                    (bytes + (1 << 20) - 1) >> 20));
+        complete_passes(object, manifest_.passes);
     }
 
     void instances(json::ObjectReader& object) {
@@ -294,53 +269,6 @@ class ManifestReader {
             object.fail(object.line_of("instances"), "instances",
                         fmt::format("expected at most {} but got {}", kMaxInstanceSets,
                                     manifest_.instances.size()));
-    }
-
-    /// A fraction of the frame's size, or a fixed size.
-    void pass_size(json::ObjectReader& object, shader::PluginPass& pass) {
-        if (object.has("width") || object.has("height")) {
-            if (object.has("scale"))
-                object.fail(object.line_of("scale"), "scale",
-                            "expected a scale of the frame's size, or width and height, not both");
-            object.need("width");
-            object.need("height");
-            pass.scale = 0;
-            pass.width = static_cast<int>(object.number("width", 1, 1, kMaxPassSide, true));
-            pass.height = static_cast<int>(object.number("height", 1, 1, kMaxPassSide, true));
-            return;
-        }
-        pass.scale = object.number("scale", 1, kMinPassScale, 1, false);
-        int exponent = 0;
-        if (std::frexp(pass.scale, &exponent) != 0.5)
-            object.fail(object.line_of("scale"), "scale",
-                        fmt::format("expected 1, 0.5, 0.25 or another half of these down to {} but "
-                                    "got {}",
-                                    kMinPassScale, pass.scale));
-    }
-
-    shader::PluginPass pass(const std::string& name, const json::Value& value) {
-        using When = shader::PluginPass::When;
-        json::ObjectReader object(kWho, manifest_.file.string(), "passes." + name, value);
-        shader::PluginPass pass{.name = name,
-                                .resource = manifest_.id + '.' + name,
-                                .function = manifest_.id + "_pass_" + name,
-                                .line = value.line};
-        std::vector<std::string> formats;
-        for (const auto& [format, word] : kPassFormats)
-            formats.emplace_back(word);
-        pass.format =
-            kPassFormats[static_cast<std::size_t>(object.choice("format", formats, 0))].first;
-        pass.linear = object.choice("filter", {"linear", "nearest"}, 0) == 0;
-        pass_size(object, pass);
-        pass.when = static_cast<When>(object.choice("when", {"frame", "sun", "changed", "dem"}, 0));
-        for (const std::string& word : words(object, "parameters"))
-            pass.parameters.push_back(manifest_.id + '.' + word);
-        if ((pass.when == When::Changed) == pass.parameters.empty())
-            object.fail(object.line_of("parameters"), "parameters",
-                        "expected the parameters that change it with \"when\": \"changed\", "
-                        "and only then");
-        object.finish();
-        return pass;
     }
 
     std::filesystem::path data_file(const json::ObjectReader& object, const std::string& key,
@@ -462,6 +390,12 @@ class ManifestReader {
 };
 
 }  // namespace
+
+bool is_word(std::string_view text) {
+    return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
+           text.find("__") == std::string_view::npos &&
+           std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
+}
 
 std::span<const std::string_view> ground_words() {
     return kGroundWords;

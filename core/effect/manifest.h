@@ -106,6 +106,10 @@ std::span<const std::string_view> ground_words();
 /// Whether core itself provides a capability word, for some of its programs.
 bool is_core_word(std::string_view word);
 
+/// Whether a text can be part of a GLSL name, `[a-z][a-z0-9_]*` without __ or a _ at the end: a
+/// capability word, or the name of a texture.
+bool is_word(std::string_view text);
+
 /// Why a text cannot be the id of a plugin; empty if it can.
 std::string fault_of_id(std::string_view text);
 

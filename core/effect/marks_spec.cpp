@@ -91,6 +91,7 @@ const std::vector<MarkKey>& mark_keys() {
         {"leader", &MarksSpec::leader_px, Kind::Number, 0, 0, 1000},
         {"above", &MarksSpec::above_m, Kind::Number, 0, 0, 10000},
         {"distance", &MarksSpec::distance_px, Kind::Number, 4, 0, 1000},
+        {"repeat", &MarksSpec::repeat_px, Kind::Number, 0, 0, 10000},
         {"order", &MarksSpec::order, Kind::Word, 0, 0, 0, "", {"rank", "nearest", "highest"}},
         {"most", &MarksSpec::most, Kind::Number, 200, 0, 2000}};
     return keys;
@@ -100,7 +101,8 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
     MarksSpec marks;
     marks.name = name;
     marks.line = object.line();
-    marks.from = id + '.' + object.string("from");
+    if (const std::string from = object.string("from", ""); !from.empty())
+        marks.from = id + '.' + from;
     for (const MarkKey& key : mark_keys())
         marks.*key.member = read_value(object, key, id);
     object.finish();
@@ -108,9 +110,14 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
 }
 
 std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& params,
-                     const std::vector<shader::TextParam>& texts) {
+                     const std::vector<shader::TextParam>& texts, bool has_module) {
+    if (marks.from.empty() && !has_module)
+        return fmt::format(
+            "marks.{}: expected a member \"from\", or a \"module\" of the plugin that sets the "
+            "marks",
+            marks.name);
     const auto text = std::ranges::find(texts, marks.from, &shader::TextParam::address);
-    if (text == texts.end() || !text->is_file)
+    if (!marks.from.empty() && (text == texts.end() || !text->is_file))
         return fmt::format(
             "marks.{0}.from: expected a text of kind file but got \"{1}\"; add \"texts\": "
             "{{\"{1}\": {{\"kind\": \"file\"}}}}",

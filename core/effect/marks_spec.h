@@ -19,13 +19,13 @@ struct MarkValue {
     }
 };
 
-/// Texts and symbols at places of a file, which core draws over the picture.
+/// Texts and symbols at places of a file or of a native module, which core draws over the picture.
 struct MarksSpec {
     enum class Symbol { None, Dot, Triangle };
     enum class Order { Rank, Nearest, Highest };
 
     std::string name;       ///< "places"
-    std::string from;       ///< "labels.file": a text of kind file
+    std::string from;       ///< "labels.file": a text of kind file; empty: the module sets them
     MarkValue size_px;      ///< height of the letters, in pixels of the picture
     MarkValue colour;       ///< sRGB, 0 to 1
     MarkValue halo;         ///< the same, around letters and symbols
@@ -33,6 +33,7 @@ struct MarksSpec {
     MarkValue leader_px;    ///< least length of the line up to the letters; 0: letters beside
     MarkValue above_m;      ///< height of the marks above the ground, in the DEM's heights
     MarkValue distance_px;  ///< least distance between letters or symbols of two marks
+    MarkValue repeat_px;    ///< least distance between two marks with the same text
     MarkValue order;        ///< index of an Order: which marks are drawn where room is short
     MarkValue most;         ///< at most so many are drawn
     int line = 0;           ///< in plugin.json
@@ -59,7 +60,8 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
 
 /// The first mistake in what an entry refers to, such as a parameter that the plugin lacks; empty
 /// without one.
+/// @param has_module  the plugin has one, which sets marks without `from`
 std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& params,
-                     const std::vector<shader::TextParam>& texts);
+                     const std::vector<shader::TextParam>& texts, bool has_module);
 
 }  // namespace relevo::effect

@@ -34,6 +34,8 @@ template <>
 constexpr std::uint32_t kLeastSize<relevo_heights> = 16;
 template <>
 constexpr std::uint32_t kLeastSize<relevo_nodes> = 24;
+template <>
+constexpr std::uint32_t kLeastSize<relevo_mark> = 64;  // in version 2.1, which brought it
 
 /// What a service needs.
 constexpr int kNothing = 0, kDevice = 1, kFrame = 2, kBoth = kDevice | kFrame;
@@ -108,6 +110,7 @@ ModuleServices::ModuleServices() {
     fill_data_tables();
     fill_device_tables();
     fill_ground_tables();
+    fill_mark_table();
 }
 
 const void* ModuleServices::service(const relevo_host* host, const char* name,
@@ -118,7 +121,8 @@ const void* ModuleServices::service(const relevo_host* host, const char* name,
         {"relevo.log", &self.log_},         {"relevo.params", &self.params_},
         {"relevo.frame", &self.frame_},     {"relevo.texture", &self.texture_},
         {"relevo.draw", &self.draw_},       {"relevo.terrain", &self.terrain_},
-        {"relevo.heights", &self.heights_}, {"relevo.geo", &self.geo_}};
+        {"relevo.heights", &self.heights_}, {"relevo.geo", &self.geo_},
+        {"relevo.marks", &self.marks_}};
     for (const auto& [known, table] : tables)
         if (std::strcmp(known, name) == 0 && (self.offers_all_ || table == &self.log_))
             return table;
@@ -376,6 +380,16 @@ void ModuleServices::fill_device_tables() {
                      host.draw(draw);
                  });
              }};
+}
+
+void ModuleServices::fill_mark_table() {
+    marks_ = {sizeof marks_, 0, this,
+              [](void* self, const char* list, const relevo_mark* marks, std::uint64_t count) {
+                  return serve<kNothing>(self, "relevo.marks: set", [&](auto& host) {
+                      host.set_marks(not_null(list, "list"),
+                                     read_marks(marks, count, kLeastSize<relevo_mark>));
+                  });
+              }};
 }
 
 void ModuleServices::fill_ground_tables() {

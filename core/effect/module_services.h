@@ -11,6 +11,7 @@
 #include <relevo/plugin.h>
 
 #include "base/pixel_format.h"
+#include "effect/module_marks.h"
 
 namespace relevo::effect {
 
@@ -54,6 +55,8 @@ class ModuleServices {
     virtual Value parameter(const char* address) = 0;
     virtual void set_parameter(const char* address, const Value& value) = 0;
     virtual std::string text(const char* address) = 0;
+    /// @param list  as the module names it; throws if the plugin has no such list of its module
+    virtual void set_marks(const char* list, ModuleMarks marks) = 0;
 
     virtual int max_texture_side() const = 0;
     virtual int max_texture_layers() const = 0;
@@ -94,6 +97,7 @@ class ModuleServices {
     void fill_data_tables();
     void fill_device_tables();
     void fill_ground_tables();
+    void fill_mark_table();
 
     const ModuleTexture& known(relevo_texture texture) const;
     void check_program(relevo_program program) const;
@@ -111,6 +115,7 @@ class ModuleServices {
     relevo_terrain_1 terrain_{};
     relevo_heights_1 heights_{};
     relevo_geo_1 geo_{};
+    relevo_marks_1 marks_{};
     std::map<relevo_texture, ModuleTexture> textures_;
     std::set<relevo_program> programs_;
     relevo_texture last_texture_ = 0;

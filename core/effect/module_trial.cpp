@@ -93,7 +93,8 @@ std::string text_of(const std::array<char, N>& bytes) {
 }  // namespace
 
 std::string try_module(const std::filesystem::path& library, const std::string& id,
-                       const std::filesystem::path& folder, const shader::ParamStore& values) {
+                       const std::filesystem::path& folder, const shader::ParamStore& values,
+                       const std::vector<std::string>& marks) {
     std::vector<std::string> command{(module_dir() / "try_module").string(), library.string(), id,
                                      folder.string()};
     for (const shader::Param* param : values.params()) {
@@ -103,6 +104,8 @@ std::string try_module(const std::filesystem::path& library, const std::string& 
     }
     for (const shader::TextParam* param : values.texts())
         command.push_back("text " + param->address);
+    for (const std::string& list : marks)
+        command.push_back("marks " + list);
 
     const std::chrono::milliseconds limit = patience() / 2;
     const Clock::time_point deadline = Clock::now() + limit;

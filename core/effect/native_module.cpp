@@ -96,10 +96,13 @@ std::filesystem::path module_file(const Manifest& manifest) {
 
 NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamStore& values) {
     const std::filesystem::path library = module_file(manifest);
-    const std::string fault = try_module(library, manifest.id, manifest.folder, values);
+    NativeModule module;
+    for (const MarksSpec& marks : manifest.marks)
+        if (marks.from.empty()) module.mark_lists_.push_back(marks.name);
+    const std::string fault =
+        try_module(library, manifest.id, manifest.folder, values, module.mark_lists_);
     if (!fault.empty()) fail(library, fault);
 
-    NativeModule module;
     module.folder_ = manifest.folder;
     module.process_ = std::make_unique<ModuleInProcess>(manifest.id, library);
     const ModuleCall call(*module.process_, "registration");

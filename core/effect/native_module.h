@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <relevo/plugin.h>
 
@@ -28,6 +29,8 @@ class NativeModule {
     const std::string& id() const { return process_->id(); }         ///< of its plugin
     const std::filesystem::path& folder() const { return folder_; }  ///< its plugin's
     const std::filesystem::path& library() const { return process_->library(); }
+    /// Names of the lists of marks that the module sets.
+    const std::vector<std::string>& mark_lists() const { return mark_lists_; }
     /// To be called while a ModuleCall of process() lives.
     const relevo_module& functions() const { return functions_; }
     ModuleInProcess& process() const { return *process_; }
@@ -40,6 +43,7 @@ class NativeModule {
     NativeModule() = default;
 
     std::filesystem::path folder_;
+    std::vector<std::string> mark_lists_;
     std::unique_ptr<ModuleInProcess> process_;
     std::unique_ptr<void, Close> handle_;  // destroyed before process_
     relevo_module functions_{};

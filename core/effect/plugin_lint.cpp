@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +29,9 @@ class Linter {
         check_words();
         check_loops();
         check_parameters();
+        check_passes();
         check_derivatives();
+        check_ambient();
         return std::move(findings_);
     }
 
@@ -146,6 +149,26 @@ class Linter {
                                 param.name));
     }
 
+    /// What nothing reads is never computed. Other plugins may read it.
+    void check_passes() {
+        const std::vector<shader::Sampler> samplers = [&] {
+            std::vector<shader::Sampler> all;
+            for (const effect::Effect& effect : registry_.effects())
+                for (const shader::Snippet& snippet : effect.snippets)
+                    all.insert(all.end(), snippet.source.samplers.begin(),
+                               snippet.source.samplers.end());
+            return all;
+        }();
+        for (const shader::PluginPass& pass : effect_.manifest.passes)
+            if (std::ranges::find(samplers, pass.resource, &shader::Sampler::resource) ==
+                samplers.end())
+                add(false, effect_.manifest.file.string(), pass.line,
+                    fmt::format("passes.{}: nothing reads it, so it is never computed; add uniform "
+                                "{} {}_{}, or remove it",
+                                pass.name, shader::sampler_of(pass.output), effect_.id(),
+                                pass.name));
+    }
+
     void check_derivatives() {
         const std::set<std::string> reached =
             reached_from(hook_functions([](const shader::HookFunction& function) {
@@ -169,6 +192,45 @@ class Linter {
                                 ? "use textureGrad with s.ground_dx_m and s.ground_dy_m"
                                 : "use s.height_dx_m, s.height_dy_m, s.ground_dx_m or "
                                   "s.ground_dy_m"));
+        }
+    }
+
+    /// Where functions assign a member of Surface: "s.diffuse =" or "s.diffuse.r =".
+    /// @param within  names of the functions
+    /// @returns files and lines
+    std::vector<std::pair<std::string, int>> assignments(
+        std::string_view member, const std::set<std::string>& within) const {
+        std::vector<std::pair<std::string, int>> found;
+        for (const shader::Snippet& snippet : effect_.snippets) {
+            const shader::Source& source = snippet.source;
+            const auto word = [&](std::size_t i) {
+                return i < source.tokens.size() ? source.str(source.tokens[i]) : "";
+            };
+            for (const shader::Item& item : source.items) {
+                if (item.kind != shader::Item::Kind::Function || !within.contains(item.names[0]))
+                    continue;
+                for (std::size_t i = item.first; i + 2 < item.last; ++i) {
+                    if (word(i) != "." || word(i + 1) != member) continue;
+                    const std::size_t after = word(i + 2) == "." ? i + 4 : i + 2;
+                    if (word(after) == "=") found.emplace_back(snippet.file, source.tokens[i].line);
+                }
+            }
+        }
+        return found;
+    }
+
+    /// Ground that is painted in direct light alone keeps its earlier colour in shade.
+    void check_ambient() {
+        for (const std::string& hook : hook_functions([](const shader::HookFunction& function) {
+                 return function.hook->signature.find("inout Surface") != std::string_view::npos;
+             })) {
+            const std::set<std::string> reached = reached_from({hook});
+            const auto painted = assignments("diffuse", reached);
+            if (painted.empty() || !assignments("ambient", reached).empty()) continue;
+            add(false, painted[0].first, painted[0].second,
+                fmt::format("{} sets diffuse without ambient, so the ground keeps its earlier "
+                            "colour in the sky's light and in shade; set s.ambient, too",
+                            hook));
         }
     }
 

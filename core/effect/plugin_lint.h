@@ -16,7 +16,7 @@ struct Finding {
 
 /// Mistakes that the files of a loaded plugin show: loops that may never end, parameters that no
 /// hook reads, capability words that no installed plugin provides, and texture reads with
-/// derivatives that are not there.
+/// derivatives that are not there, and hooks that paint the ground in direct light alone.
 /// @param registry  the installed plugins, and this one
 std::vector<Finding> lint(const Effect& effect, const Registry& registry);
 

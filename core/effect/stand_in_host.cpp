@@ -63,6 +63,10 @@ std::string StandInHost::text(const char* address) {
     return found->second;
 }
 
+void StandInHost::set_marks(const char* list, ModuleMarks) {
+    if (!marks_.contains(list)) throw std::invalid_argument(no_list_text(list));
+}
+
 void StandInHost::write_texture(const relevo_texels& texels) {
     touch(static_cast<const unsigned char*>(texels.texels), texels.bytes);
 }

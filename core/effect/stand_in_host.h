@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 
 #include "effect/module_services.h"
@@ -16,6 +17,8 @@ class StandInHost : public ModuleServices {
 
     void add_parameter(const std::string& address, bool is_host, const Value& value);
     void add_text(const std::string& address) { texts_[address]; }
+    /// A list of marks that the module sets.
+    void add_marks(const std::string& list) { marks_.insert(list); }
 
     /// The sun is high, low and below the horizon in frames 0, 1 and 2.
     void begin_frame(int number) { frame_ = number; }
@@ -26,6 +29,7 @@ class StandInHost : public ModuleServices {
     Value parameter(const char* address) override;
     void set_parameter(const char* address, const Value& value) override;
     std::string text(const char* address) override;
+    void set_marks(const char* list, ModuleMarks marks) override;
 
     int max_texture_side() const override { return 16384; }
     int max_texture_layers() const override { return 2048; }
@@ -59,6 +63,7 @@ class StandInHost : public ModuleServices {
     std::filesystem::path folder_;
     std::map<std::string, Parameter> parameters_;
     std::map<std::string, std::string> texts_;
+    std::set<std::string> marks_;
     int frame_ = -1;
 };
 

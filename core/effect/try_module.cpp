@@ -65,6 +65,7 @@ void read_parameter(const char* argument, StandInHost& host) {
     StandInHost::Value value{};
     words >> kind >> address;
     if (kind == "text") return host.add_text(address);
+    if (kind == "marks") return host.add_marks(address);
     for (double& v : value)
         words >> v;
     host.add_parameter(address, kind == "host", value);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "geo/geodetic.h"
 
@@ -26,5 +28,13 @@ std::string degrees_text(const Geodetic& place);
 /// The nearest of 16 compass points: `SSW` for 200.
 /// @param azimuth_deg  0 or more, clockwise from north
 const char* compass_point(double azimuth_deg);
+
+/// A place in any of the forms that maps and GPS receivers have: degrees ("47.4395, 11.8935",
+/// "47 26 22 N 11 53 37 E"), UTM or UPS ("32N 683473 E 5255234 N", "32T 683473 5255234") or MGRS
+/// ("32TPT8347355234"); height 0.
+/// Of two plain numbers the first is the latitude; N and S behind a zone are hemispheres.
+/// @returns none: it is no such text
+/// Source: GeographicLib::GeoCoords.
+std::optional<Geodetic> find_coordinates(std::string_view text);
 
 }  // namespace relevo::geo

@@ -64,4 +64,21 @@ void Buffer::fill(float value) {
     glClearNamedBufferData(name(), GL_R32F, GL_RED, GL_FLOAT, &value);
 }
 
+void BufferTexture::destroy(unsigned name) {
+    glDeleteTextures(1, &name);
+}
+
+BufferTexture::BufferTexture(const Buffer& buffer, PixelFormat format, std::string_view label) {
+    assert(format == PixelFormat::R32F || format == PixelFormat::R32UI);
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+    handle_ = Handle<&BufferTexture::destroy>(name);
+    set_label(GL_TEXTURE, name, label);
+    glTextureBuffer(name, format == PixelFormat::R32F ? GL_R32F : GL_R32UI, buffer.name());
+}
+
+void BufferTexture::bind(unsigned unit) const {
+    glBindTextureUnit(unit, name());
+}
+
 }  // namespace relevo::gl

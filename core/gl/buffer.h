@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "base/pixel_format.h"
 #include "gl/handle.h"
 
 namespace relevo::gl {
@@ -39,6 +40,22 @@ class Buffer {
     static void destroy(unsigned name);
     Handle<&Buffer::destroy> handle_;
     std::size_t size_ = 0;
+};
+
+/// A view of a buffer by which samplerBuffer or usamplerBuffer reads it.
+class BufferTexture {
+  public:
+    BufferTexture() = default;
+    /// @param format  of its elements: R32F or R32UI
+    /// @pre the buffer outlives this, and has at most 65536 elements, which every device takes
+    BufferTexture(const Buffer& buffer, PixelFormat format, std::string_view label);
+
+    void bind(unsigned unit) const;
+    unsigned name() const { return handle_.name(); }
+
+  private:
+    static void destroy(unsigned name);
+    Handle<&BufferTexture::destroy> handle_;
 };
 
 }  // namespace relevo::gl

@@ -117,31 +117,45 @@ Program::Pending Program::begin(std::string_view vertex, std::string_view fragme
     pending.fragment_ = Pending::Shader(glCreateShader(GL_FRAGMENT_SHADER));
     compile(pending.vertex_.name(), vertex);
     compile(pending.fragment_.name(), fragment);
-    const GLuint name = glCreateProgram();
-    pending.program_ = Handle<&Program::destroy>(name);
-    set_label(GL_PROGRAM, name, label);
-    glAttachShader(name, pending.vertex_.name());
-    glAttachShader(name, pending.fragment_.name());
-    glLinkProgram(name);
+    pending.begin_link(label);
     return pending;
 }
 
+Program::Pending Program::begin_compute(std::string_view text, std::string_view label) {
+    Pending pending;
+    pending.compute_ = Pending::Shader(glCreateShader(GL_COMPUTE_SHADER));
+    compile(pending.compute_.name(), text);
+    pending.begin_link(label);
+    return pending;
+}
+
+void Program::Pending::begin_link(std::string_view label) {
+    const GLuint name = glCreateProgram();
+    program_ = Handle<&Program::destroy>(name);
+    set_label(GL_PROGRAM, name, label);
+    for (const Shader* shader : {&vertex_, &fragment_, &compute_})
+        if (shader->name() != 0) glAttachShader(name, shader->name());
+    glLinkProgram(name);
+}
+
 std::optional<Program> Program::finish(Pending pending, Failure& failure) {
-    if (auto log = compile_error(pending.vertex_.name())) {
-        failure = {Failure::Stage::Vertex, *log};
-        return std::nullopt;
-    }
-    if (auto log = compile_error(pending.fragment_.name())) {
-        failure = {Failure::Stage::Fragment, *log};
-        return std::nullopt;
+    using Stage = Failure::Stage;
+    for (const auto& [shader, stage] : {std::pair(&pending.vertex_, Stage::Vertex),
+                                        std::pair(&pending.fragment_, Stage::Fragment),
+                                        std::pair(&pending.compute_, Stage::Compute)}) {
+        if (shader->name() == 0) continue;
+        if (auto log = compile_error(shader->name())) {
+            failure = {stage, *log};
+            return std::nullopt;
+        }
     }
     Program program;
     program.handle_ = std::move(pending.program_);
     const GLuint name = program.name();
-    glDetachShader(name, pending.vertex_.name());
-    glDetachShader(name, pending.fragment_.name());
+    for (const auto* shader : {&pending.vertex_, &pending.fragment_, &pending.compute_})
+        if (shader->name() != 0) glDetachShader(name, shader->name());
     if (auto log = link_error(name)) {
-        failure = {Failure::Stage::Link, *log};
+        failure = {Stage::Link, *log};
         return std::nullopt;
     }
     return program;

@@ -10,7 +10,7 @@
 
 namespace relevo::gl {
 
-/// A linked vertex and fragment program.
+/// A linked program: vertex and fragment, or compute.
 class Program {
     static void destroy(unsigned name);
 
@@ -19,7 +19,7 @@ class Program {
 
     /// What the driver said of a text it refused.
     struct Failure {
-        enum class Stage { Vertex, Fragment, Link } stage;
+        enum class Stage { Vertex, Fragment, Compute, Link } stage;
         std::string
             log;  ///< as the driver wrote it; shader::driver_log turns it into the author's lines
     };
@@ -30,12 +30,15 @@ class Program {
         friend class Program;
         static void destroy_shader(unsigned name);
         using Shader = Handle<&Pending::destroy_shader>;
-        Shader vertex_, fragment_;
+        void begin_link(std::string_view label);
+        Shader vertex_, fragment_;  // or
+        Shader compute_;
         Handle<&Program::destroy> program_;
     };
     /// Begins to compile and link.
     static Pending begin(std::string_view vertex, std::string_view fragment,
                          std::string_view label);
+    static Pending begin_compute(std::string_view text, std::string_view label);
     /// Waits for it. @returns nothing and fills `failure` where the driver refuses the text.
     static std::optional<Program> finish(Pending pending, Failure& failure);
     static std::optional<Program> build(std::string_view vertex, std::string_view fragment,

@@ -58,6 +58,8 @@ GLenum storage(Format format) {
             return GL_RG32F;
         case Format::RGBA32F:
             return GL_RGBA32F;
+        case Format::R32UI:
+            return GL_R32UI;
         case Format::RGBA32UI:
             return GL_RGBA32UI;
         case Format::Depth32F:
@@ -280,7 +282,8 @@ void Texture::bind(unsigned unit) const {
 }
 
 void Texture::bind_image(unsigned unit, int level, Format as) const {
-    glBindImageTexture(unit, name(), level, GL_FALSE, 0, GL_READ_WRITE, storage(as));
+    const GLboolean all_layers = kind_ == TextureKind::D2 ? GL_FALSE : GL_TRUE;
+    glBindImageTexture(unit, name(), level, all_layers, 0, GL_READ_WRITE, storage(as));
 }
 
 }  // namespace relevo::gl

@@ -54,7 +54,7 @@ class Texture {
     /// Sets every byte of level 0. 0xff is NaN in formats of floats.
     void fill(std::byte value);
     void bind(unsigned unit) const;
-    /// One level for compute programs to read and write.
+    /// One level, with all its layers, for compute programs to read and write.
     /// @param as  a format of texels of the same size, by which the program has them
     void bind_image(unsigned unit, int level, Format as) const;
     /// Names it in debuggers and messages of the driver.

@@ -1,8 +1,12 @@
 #include "render/core_passes.h"
 
+#include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
+#include "render/instances.h"
 #include "render/pass_context.h"
 #include "render/pass_texts.h"
 #include "shader/stored_varyings.h"
@@ -52,6 +56,28 @@ When when_of(shader::PluginPass::When when) {
     }
 }
 
+ResourceSize size_of(const shader::PassSize& size) {
+    return {.share = size.scale, .width = size.width, .height = size.height, .depth = size.depth};
+}
+
+/// What a pass of a plugin writes.
+Resource resource_of(const shader::PluginPass& pass, When when) {
+    using Output = shader::PluginPass::Output;
+    Resource resource{.name = pass.resource,
+                      .format = pass.format,
+                      .size = size_of(pass.size),
+                      // What is not computed in every frame has to last.
+                      .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
+                      .linear = pass.linear};
+    if (pass.output == Output::Texture3D) resource.kind = ResourceKind::Texture3D;
+    if (pass.is_buffer()) {
+        resource.kind = ResourceKind::Buffer;
+        resource.format = pass.output == Output::Floats ? PixelFormat::R32F : PixelFormat::R32UI;
+        resource.size.bytes = sizeof(float) * static_cast<std::size_t>(pass.size.width);
+    }
+    return resource;
+}
+
 class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
@@ -74,6 +100,7 @@ class Declaration {
             instances(set, false);
             if (set.has_sprites()) instances(set, true);
         }
+        if (casts_shadows()) instance_shadows();
         for (const shader::PluginPass& pass : facts_.plugin_passes)
             plugin_pass(pass);
         terrain();
@@ -159,7 +186,7 @@ class Declaration {
         add(Pass{.name = "frame",
                  .kind = PassKind::Host,
                  .writes = {"frame"},
-                 .after = {"select", "light"},
+                 .after = {"select", "light", "instance_shadows"},
                  .body = [](PassContext& frame) { frame.services.upload_blocks(frame.block); }});
     }
 
@@ -223,7 +250,10 @@ class Declaration {
             .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
         stored_defines(recipe);
-        if (sprites) recipe.defines.push_back({"SPRITES", ""});
+        if (sprites)
+            recipe.defines.push_back({"SPRITES", ""});
+        else if (set.has_sprites() && set.casts_shadow)
+            recipe.defines.push_back({"SPRITES_FOLLOW", ""});
         const bool first = covering_ == "geometry";
         Pass pass{.name = name,
                   .kind = PassKind::Geometry,
@@ -233,7 +263,7 @@ class Declaration {
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
                   .after = {covering_},
                   .body = [resource = set.resource, sprites](PassContext& frame) {
-                      frame.services.draw_instances(resource, sprites, frame);
+                      frame.services.instances().draw(resource, sprites, frame);
                   }};
         if (facts_.varying_targets > 0)
             pass.colours.push_back({.resource = shader::StoredVaryings::kTexture, .updates = true});
@@ -248,21 +278,65 @@ class Declaration {
         add(std::move(pass));
     }
 
-    void plugin_pass(const shader::PluginPass& pass) {
-        const When when = when_of(pass.when);
-        add(Resource{.name = pass.resource,
-                     .format = pass.format,
-                     .size = {.share = pass.scale, .width = pass.width, .height = pass.height},
-                     // A texture that is not computed in every frame has to last.
-                     .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
-                     .linear = pass.linear});
+    bool casts_shadows() const {
+        return std::ranges::any_of(facts_.instances, &shader::InstanceSet::casts_shadow);
+    }
+
+    /// Shadow maps of instances, which are kept until the sun or the eye have moved.
+    void instance_shadows() {
+        using Shadows = InstanceShadows;
+        constexpr const char* kMaps = "instance_shadows";
+        add(Resource{.name = kMaps,
+                     .format = PixelFormat::Depth32F,
+                     .size = {.share = 0,
+                              .width = Shadows::kSide_px,
+                              .height = Shadows::kMaps * Shadows::kSide_px},
+                     .lifetime = Lifetime::Kept});
         add(Pass{
-            .name = pass.resource,
-            .when = when,
-            .parameters = pass.parameters,
-            .program = program(pass.resource.c_str(), {.vertex_main = kFullscreen,
-                                                       .fragment_main = PassTexts::name_of(pass)}),
-            .colours = {{pass.resource}}});
+            .name = kMaps,
+            .kind = PassKind::Host,
+            .reads = {"tiles"},
+            .writes = {kMaps},
+            .body = [](PassContext& frame) { frame.services.instances().place_shadows(frame); }});
+        std::string before = kMaps;
+        for (const shader::InstanceSet& set : facts_.instances) {
+            if (!set.casts_shadow) continue;
+            const std::string name = set.resource + ".shadow";
+            const shader::ProgramRecipe recipe{
+                .vertex_main = PassTexts::name_of(set),
+                .fragment_main = "instance_shadow.frag.glsl",
+                .defines = {{"SHADOW_MAP", ""},
+                            {"INSTANCE_LIGHT", fmt::format("{:.6f}", set.light_through)}}};
+            add(Pass{.name = name,
+                     .kind = PassKind::Geometry,
+                     .program = program(name.c_str(), recipe),
+                     .reads = {"tiles"},
+                     .depth = Depth{kMaps, DepthTest::Nearer, /*writes=*/true},
+                     .after = {before},
+                     .body = [resource = set.resource](PassContext& frame) {
+                         frame.services.instances().draw_shadows(resource, frame);
+                     }});
+            before = name;
+        }
+    }
+
+    void plugin_pass(const shader::PluginPass& written) {
+        const When when = when_of(written.when);
+        add(resource_of(written, when));
+        Pass pass{.name = written.resource,
+                  .when = when,
+                  .parameters = written.parameters,
+                  .program = program(written.resource.c_str(), PassTexts::recipe_of(written))};
+        if (written.kind == shader::PluginPass::Kind::Full) {
+            pass.colours = {{written.resource}};
+        } else {
+            pass.kind = PassKind::Compute;
+            pass.writes = {written.resource};
+            pass.dispatch = Dispatch{.over = size_of(written.over),
+                                     .local_size = written.local_size,
+                                     .work_groups = written.work_groups};
+        }
+        add(std::move(pass));
     }
 
     /// Of programs that fill the G-buffer.
@@ -294,6 +368,7 @@ class Declaration {
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
         if (!facts_.instances.empty()) recipe.defines.push_back({"INSTANCES", ""});
+        if (casts_shadows()) recipe.defines.push_back({"INSTANCE_SHADOWS", ""});
         if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited)

@@ -23,10 +23,7 @@ std::string disable(const std::set<std::string>& ids) {
 
 /// Ids of the effects whose GLSL is in a program.
 std::set<std::string> present_in(const shader::Stitched& stitched) {
-    std::set<std::string> ids;
-    for (const shader::HookUse& use : stitched.hooks)
-        ids.insert(use.providers.begin(), use.providers.end());
-    return ids;
+    return {stitched.plugins.begin(), stitched.plugins.end()};
 }
 
 }  // namespace

@@ -110,9 +110,10 @@ void FrameRunner::run_step(std::size_t step, PassContext& frame, bool night, Pas
     const Plan::Step& planned = plan_.steps[step];
     const Pass& pass = graph().passes[static_cast<std::size_t>(planned.pass)];
     const bool rare = pass.when != When::Frame;
+    // Later passes rely on it, too, whether this one runs or not.
+    if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     if (rare && !is_due(pass, frame)) return;
     if (timers) timers->begin(pass.name, pass.kind == PassKind::Host);
-    if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     if (poisons_) targets_.poison(graph(), planned);
     const DebugGroup group(pass.name);
     frame.pass = &pass;
@@ -137,7 +138,7 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
     const std::string& program =
         night && !pass.program_at_night.empty() ? pass.program_at_night : pass.program;
     use(program, frame.terrain);
-    if (pass.kind == PassKind::Compute) return pass.body(frame);
+    if (pass.kind == PassKind::Compute) return dispatch(pass, program, frame);
     const gl::Framebuffer* const target = targets_.framebuffer(step);
     assert(target);
     for (std::size_t i = 0; i < pass.colours.size(); ++i)
@@ -190,11 +191,35 @@ void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target
     }
 }
 
+/// Runs a compute pass. An unproven program with many invocations first runs one work group, to
+/// detect endless ones as soon as with few.
+void FrameRunner::dispatch(const Pass& pass, const std::string& program, const PassContext& frame) {
+    const std::array<int, 3> groups = pass.dispatch->groups(frame.width_px, frame.height_px);
+    const std::array<int, 3>& local = pass.dispatch->local_size;
+    double invocations = 1;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        invocations *= double{1} * groups[i] * local[i];
+    const auto run = [&](const std::array<int, 3>& count, double parts) {
+        targets_.begin_output(pass.writes[0]);
+        programs_.draw(program, parts, [&] {
+            glDispatchCompute(static_cast<GLuint>(count[0]), static_cast<GLuint>(count[1]),
+                              static_cast<GLuint>(count[2]));
+        });
+    };
+    const bool watched = programs_.needs_watch(program);
+    if (watched && invocations > kMaxWatched_px) {
+        run({1, 1, 1}, 0);
+        glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    }
+    run(groups, invocations);
+    if (watched) programs_.set_proven(program);
+}
+
 namespace {
 
 /// "plugins/dust/dust.glsl:3", where a sampler is declared.
 std::string place_of(const shader::TextureUnit& unit, const shader::Stitched& stitched) {
-    for (const shader::StageText* stage : {&stitched.fragment, &stitched.vertex}) {
+    for (const shader::StageText* stage : stitched.stages()) {
         const std::vector<std::string> lines = split(stage->text, '\n');
         for (std::size_t i = 0; i < std::min(lines.size(), stage->lines.size()); ++i)
             if (lines[i].starts_with("layout(binding") && lines[i].ends_with(unit.name + ";"))
@@ -215,10 +240,11 @@ std::string place_of(const shader::TextureUnit& unit, const shader::Stitched& st
 void FrameRunner::use(const std::string& program, const Terrain& terrain) {
     programs_.link(program).use();
     for (const shader::TextureUnit& unit : programs_.text(program).stitched.textures) {
-        const gl::Texture* texture = targets_.texture(Version::of(unit.resource).resource);
-        if (!texture) texture = provider_(unit, terrain);
+        const auto number = static_cast<unsigned>(unit.unit);
+        if (targets_.bind(Version::of(unit.resource).resource, number)) continue;
+        const gl::Texture* const texture = provider_(unit, terrain);
         if (!texture) fail_missing(unit, programs_.text(program).stitched);
-        texture->bind(static_cast<unsigned>(unit.unit));
+        texture->bind(number);
     }
 }
 

@@ -18,7 +18,7 @@
 namespace relevo::render {
 
 /// Executes frame graphs: for each step of the plan binds program, textures and targets, sets the
-/// state, and draws.
+/// state, and draws or dispatches.
 class FrameRunner {
   public:
     /// Finds a texture that is not produced in the graph, by the name of its resource; null if
@@ -74,6 +74,7 @@ class FrameRunner {
     void draw_geometry(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
                        PassContext& frame);
     void fill(const std::string& program, const gl::Framebuffer& target);
+    void dispatch(const Pass& pass, const std::string& program, const PassContext& frame);
 
     gl::Context& context_;
     const StitchedFrames& frames_;

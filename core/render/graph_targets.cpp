@@ -25,7 +25,7 @@ gl::Extent extent_of(const ResourceSize& size, int width_px, int height_px) {
 
 GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px,
                            TexturePool& pool)
-    : textures_(plan.memory.size()), buffers_(plan.memory.size()) {
+    : textures_(plan.memory.size()), buffers_(plan.memory.size()), views_(plan.memory.size()) {
     for (std::size_t m = 0; m < plan.memory.size(); ++m) {
         std::string label;
         for (const int r : plan.memory[m].resources) {
@@ -37,6 +37,7 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
             graph.resources[static_cast<std::size_t>(plan.memory[m].resources.front())];
         if (first.kind == ResourceKind::Buffer) {
             buffers_[m] = gl::Buffer(std::vector<std::byte>(first.size.bytes), label);
+            views_[m] = gl::BufferTexture(buffers_[m], first.format, label);
             continue;
         }
         textures_[m] = pool.take(kind_of(first.kind), first.format,
@@ -79,6 +80,28 @@ const gl::Buffer* GraphTargets::buffer(std::string_view resource) const {
     if (memory < 0) return nullptr;
     const gl::Buffer& found = buffers_[static_cast<std::size_t>(memory)];
     return found.name() != 0 ? &found : nullptr;
+}
+
+bool GraphTargets::bind(std::string_view resource, unsigned unit) {
+    const int memory = memory_of(resource);
+    if (memory < 0) return false;
+    const auto m = static_cast<std::size_t>(memory);
+    if (const gl::Texture* const found = textures_[m].get())
+        found->bind(unit);
+    else
+        views_[m].bind(unit);
+    return true;
+}
+
+void GraphTargets::begin_output(std::string_view resource) {
+    const auto m = static_cast<std::size_t>(memory_of(resource));
+    if (gl::Texture* const found = textures_[m].get()) {
+        found->fill(std::byte{0});
+        found->bind_image(0, 0, found->format());
+    } else {
+        buffers_[m].fill(0);
+        buffers_[m].bind_storage(0);
+    }
 }
 
 const gl::Framebuffer* GraphTargets::framebuffer(std::size_t step) const {

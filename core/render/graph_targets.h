@@ -26,6 +26,10 @@ class GraphTargets {
     gl::Texture* texture(std::string_view resource);
     /// An allocated buffer, or null.
     const gl::Buffer* buffer(std::string_view resource) const;
+    /// Binds an allocated texture or buffer for samplers. @returns false if there is none
+    bool bind(std::string_view resource, unsigned unit);
+    /// Sets a texture or buffer to zero, and binds it as image or storage block 0.
+    void begin_output(std::string_view resource);
     /// The framebuffer of a plan's step, or null.
     const gl::Framebuffer* framebuffer(std::size_t step) const;
 
@@ -44,6 +48,7 @@ class GraphTargets {
     std::vector<Named> names_;
     std::vector<TexturePool::Lease> textures_;
     std::vector<gl::Buffer> buffers_;
+    std::vector<gl::BufferTexture> views_;  // of buffers_
     std::vector<gl::Framebuffer> framebuffers_;
 };
 

@@ -63,10 +63,10 @@ class Finder {
             add(middle, high);
             return;
         }
-        emit(low, high, nearest_m, nearest_m + diagonal_m);
+        emit(low, high, *box, nearest_m);
     }
 
-    void emit(const glm::dvec2& low, const glm::dvec2& high, double nearest_m, double farthest_m) {
+    void emit(const glm::dvec2& low, const glm::dvec2& high, const Box& box, double nearest_m) {
         const glm::dvec2 all = (high - low) * view_.cells_per_post;
         if ((cells_ += all.x * all.y) > kMostCellsInAll) return report_crowded();
         // As in the program, whose numbers are floats.
@@ -76,7 +76,8 @@ class Finder {
                             .cells = glm::vec4(first, 0, view_.range_m),
                             .count = count,
                             .nearest_m = nearest_m,
-                            .farthest_m = farthest_m};
+                            .farthest_m = nearest_m + length(box.high - box.low),
+                            .box = box};
         block.tile[8].w = static_cast<float>(low.x);
         block.tile[9].w = static_cast<float>(low.y);
         block.tile[10].w = static_cast<float>(high.x);
@@ -103,11 +104,15 @@ class Finder {
 
 }  // namespace
 
+double instance_range_m(const shader::InstanceSet& set, double pixel_rad) {
+    return std::min(set.height_m / (kLowest_px * pixel_rad), kMostCells * set.spacing_m);
+}
+
 InstanceView::InstanceView(const shader::InstanceSet& set, const Terrain& terrain, LodView of,
                            double pixel)
     : view(std::move(of)),
       pixel_rad(pixel),
-      range_m(std::min(set.height_m / (kLowest_px * pixel), kMostCells * set.spacing_m)),
+      range_m(instance_range_m(set, pixel)),
       cells_per_post(terrain.grid().post_spacing_m() / set.spacing_m) {}
 
 std::vector<InstanceBlock> instance_blocks(const shader::InstanceSet& set, Terrain& terrain,

@@ -23,7 +23,12 @@ struct InstanceBlock {
     glm::vec4 cells{0};                    ///< first column and row; w: range [m]
     glm::ivec2 count{0};                   ///< of columns and rows
     double nearest_m = 0, farthest_m = 0;  ///< from the eye
+    Box box{};                             ///< of all that may stand in it
 };
+
+/// Distance up to which instances are drawn [m]: instances_range_m() of
+/// shaders/lib/instances.glsl. @param pixel_rad  a pixel at the frame's centre
+double instance_range_m(const shader::InstanceSet& set, double pixel_rad);
 
 /// Where the instances of a set may stand in a view.
 struct InstanceView {

@@ -43,7 +43,7 @@ glm::vec3 mean_colour(const mesh::Mesh& mesh) {
     return area > 0 ? max(sum / area, 1e-3F) : glm::vec3(1);
 }
 
-mesh::Mesh point() {
+mesh::Mesh point_mesh() {
     mesh::Mesh mesh;
     mesh.vertices.push_back({.position_m = {0, 0, 1}});
     mesh.indices.push_back(0);
@@ -81,9 +81,10 @@ struct Arrays {
 
 InstanceMesh::InstanceMesh(const shader::InstanceSet& set) {
     Arrays arrays;
+    point = arrays.add(point_mesh());
     for (const shader::InstanceSet::Level& level : set.levels) {
         std::vector<Part>& parts = levels.emplace_back();
-        if (level.is_sprite()) parts.push_back(arrays.add(point()));
+        if (level.is_sprite()) parts.push_back(point);
         for (const std::filesystem::path& file : level.meshes)
             parts.push_back(arrays.add(mesh::read(file)));
     }

@@ -23,7 +23,8 @@ struct InstanceMesh {
     };
     gl::Buffer positions, normals;  ///< one vector a vertex
     gl::Buffer indices;
-    std::vector<std::vector<Part>> levels;  ///< by level and kind; a point has no kind
+    std::vector<std::vector<Part>> levels;  ///< by level and kind; sprites have no kind
+    Part point;                             ///< of sprites and of shadows
 
     /// @throws Error (BadInput) as mesh::read()
     explicit InstanceMesh(const shader::InstanceSet& set);

@@ -8,8 +8,10 @@
 #include "gl/vertex_array.h"
 #include "render/instance_blocks.h"
 #include "render/instance_mesh.h"
-#include "render/terrain.h"
+#include "render/instance_shadows.h"
+#include "render/pass_context.h"
 #include "shader/instance_set.h"
+#include "shader/param_store.h"
 
 namespace relevo::render {
 
@@ -17,16 +19,21 @@ namespace relevo::render {
 /// processor: a vertex program places them.
 class Instances {
   public:
+    /// @param values  of the parameters; must outlive this
     /// @throws Error (BadInput) as mesh::read()
-    explicit Instances(const std::vector<shader::InstanceSet>& sets);
+    Instances(const std::vector<shader::InstanceSet>& sets, const shader::ParamStore& values);
 
     /// Draws a set with the bound program, framebuffer and textures.
-    /// @param resource   names the set
-    /// @param sprites    draws the level of sprites instead of meshes
-    /// @param view       of the frame; its eye is the origin of positions
-    /// @param pixel_rad  a pixel at the frame's centre
-    void draw(std::string_view resource, bool sprites, Terrain& terrain,
-              const TileSelection& selection, const LodView& view, double pixel_rad);
+    /// @param resource  names the set
+    /// @param sprites   draws the level of sprites instead of meshes
+    void draw(std::string_view resource, bool sprites, PassContext& frame);
+
+    /// Decides which shadow maps the frame must draw, and writes their places into its block.
+    void place_shadows(PassContext& frame);
+    /// Draws a set into the shadow maps that are due. They are the bound framebuffer's depth.
+    void draw_shadows(std::string_view resource, PassContext& frame);
+    /// The contents of the shadow maps are lost.
+    void forget_shadows() { shadows_.forget(); }
 
   private:
     struct Set {
@@ -36,8 +43,12 @@ class Instances {
         gl::VertexArray array;
         gl::RingBuffer blocks{"instance blocks"}, draws{"instance draws"};
     };
+    struct Batch;
     Set& find(std::string_view resource);
+    static void draw(Set& set, const Batch& batch, bool points);
     std::vector<std::unique_ptr<Set>> sets_;
+    const shader::ParamStore& values_;
+    InstanceShadows shadows_;
 };
 
 }  // namespace relevo::render

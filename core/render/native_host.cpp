@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <stdexcept>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -76,6 +77,7 @@ struct NativeHost::Impl : effect::ModuleServices {
     std::map<relevo_program, OwnProgram> programs;
     gl::VertexArray no_inputs;
     gl::Buffer frame_block{sizeof(FrameBlock), "sun frame block"};
+    std::map<std::string, std::shared_ptr<const effect::ModuleMarks>> marks;
     std::optional<FrameState> state;
     bool changed = true;
     void* instance = nullptr;
@@ -124,6 +126,12 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     std::string text(const char* address) override { return values.text(address); }
+
+    void set_marks(const char* list, effect::ModuleMarks given) override {
+        if (std::ranges::count(module.mark_lists(), list) == 0)
+            throw std::invalid_argument(effect::no_list_text(list));
+        marks[list] = std::make_shared<const effect::ModuleMarks>(std::move(given));
+    }
 
     // ---- textures
 
@@ -405,6 +413,11 @@ void NativeHost::resize(int width_px, int height_px) {
 
 const gl::Texture* NativeHost::find(std::string_view resource) const {
     return impl_->textures.find(resource);
+}
+
+std::shared_ptr<const effect::ModuleMarks> NativeHost::marks(const std::string& list) const {
+    const auto found = impl_->marks.find(list);
+    return found == impl_->marks.end() ? nullptr : found->second;
 }
 
 const std::string& NativeHost::id() const {

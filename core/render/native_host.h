@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "effect/module_marks.h"
 #include "effect/native_module.h"
 #include "gl/context.h"
 #include "gl/texture.h"
@@ -46,6 +47,9 @@ class NativeHost {
 
     /// The module's texture with a name such as "vsm.moments", or null.
     const gl::Texture* find(std::string_view resource) const;
+
+    /// The marks that the module has set for a list of its plugin.json; null before it has.
+    std::shared_ptr<const effect::ModuleMarks> marks(const std::string& list) const;
 
     const std::string& id() const;
     /// True if a host parameter was written since the last call.

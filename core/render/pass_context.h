@@ -10,6 +10,8 @@
 
 namespace relevo::render {
 
+class Instances;
+
 /// Services of a renderer for the bodies of core's passes.
 class FrameServices {
   public:
@@ -18,8 +20,8 @@ class FrameServices {
     virtual void upload_blocks(const FrameBlock& block) = 0;
     /// Creates the texture `floor_ground`.
     virtual void make_footprint(const Footprint& footprint) = 0;
-    /// Draws a set of instances: its meshes, or its sprites.
-    virtual void draw_instances(const std::string& resource, bool sprites, PassContext& frame) = 0;
+    /// Draws the instances of plugins.
+    virtual Instances& instances() = 0;
     /// Calls a native effect's prepare().
     virtual void prepare_native(const std::string& id, PassContext& frame) = 0;
 };

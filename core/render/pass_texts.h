@@ -8,6 +8,7 @@
 #include "shader/core_texts.h"
 #include "shader/instance_set.h"
 #include "shader/plugin_pass.h"
+#include "shader/stitch.h"
 
 namespace relevo::render {
 
@@ -21,6 +22,8 @@ class PassTexts : public shader::CoreTexts {
 
     /// Name of the file with a pass's main function.
     static std::string name_of(const shader::PluginPass& pass);
+    /// The program of a pass.
+    static shader::ProgramRecipe recipe_of(const shader::PluginPass& pass);
     static std::string name_of(const shader::InstanceSet& set);
 
     std::optional<std::string> text(std::string_view name) const override;

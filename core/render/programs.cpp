@@ -201,8 +201,7 @@ std::string remedy(const shader::Stitched& stitched, const std::string& blamed) 
     if (blamed == "core") return "";
     std::set<std::string> ids;
     if (blamed.empty())
-        for (const shader::HookUse& use : stitched.hooks)
-            ids.insert(use.providers.begin(), use.providers.end());
+        ids.insert(stitched.plugins.begin(), stitched.plugins.end());
     else
         ids.insert(blamed);
     if (ids.empty()) return "";
@@ -213,7 +212,10 @@ std::string remedy(const shader::Stitched& stitched, const std::string& blamed) 
 }  // namespace
 
 ProgramText ProgramText::of(std::string name, shader::Stitched stitched) {
-    std::string hash = sha256_of_text(stitched.vertex.text + '\0' + stitched.fragment.text);
+    std::string texts;
+    for (const shader::StageText* stage : stitched.stages())
+        texts += stage->text + '\0';
+    std::string hash = sha256_of_text(texts);
     return {std::move(name), std::move(stitched), std::move(hash)};
 }
 
@@ -276,11 +278,13 @@ void dump_programs(const StitchedFrames& frames, const std::filesystem::path& fo
                               printable(folder.string())));
     write_text(folder / "frame.dot", graph_text(frames), overwrite, kWho);
     for (const ProgramText& program : frames.programs) {
-        const auto dump = [&](const char* ending, const std::string& text) {
-            write_text(folder / (program.name + ending), text, overwrite, kWho);
+        const auto dump = [&](const char* ending, const shader::StageText& stage) {
+            if (!stage.text.empty())
+                write_text(folder / (program.name + ending), stage.text, overwrite, kWho);
         };
-        dump(".vert.glsl", program.stitched.vertex.text);
-        dump(".frag.glsl", program.stitched.fragment.text);
+        dump(".vert.glsl", program.stitched.vertex);
+        dump(".frag.glsl", program.stitched.fragment);
+        dump(".comp.glsl", program.stitched.compute);
     }
 }
 
@@ -289,22 +293,40 @@ gl::Program link_program(const ProgramText& text) {
 }
 
 gl::Program::Pending begin_program(const ProgramText& text) {
+    if (!text.stitched.compute.text.empty())
+        return gl::Program::begin_compute(text.stitched.compute.text, text.name);
     return gl::Program::begin(text.stitched.vertex.text, text.stitched.fragment.text, text.name);
 }
+
+namespace {
+
+/// Name and text of the stage that a driver refuses.
+std::pair<const char*, const shader::StageText*> failed_stage(const gl::Program::Failure& failure,
+                                                              const shader::Stitched& stitched) {
+    using Stage = gl::Program::Failure::Stage;
+    switch (failure.stage) {
+        case Stage::Vertex:
+            return {"vertex side", &stitched.vertex};
+        case Stage::Fragment:
+            return {"fragment side", &stitched.fragment};
+        case Stage::Compute:
+            return {"compute program", &stitched.compute};
+        default:
+            return {"link", stitched.compute.text.empty() ? &stitched.fragment : &stitched.compute};
+    }
+}
+
+}  // namespace
 
 gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text) {
     gl::Program::Failure failure;
     auto program = gl::Program::finish(std::move(pending), failure);
     if (program) return std::move(*program);
-    const bool vertex = failure.stage == gl::Program::Failure::Stage::Vertex;
-    const shader::StageText& stage = vertex ? text.stitched.vertex : text.stitched.fragment;
-    const char* where = vertex                                                   ? "vertex side"
-                        : failure.stage == gl::Program::Failure::Stage::Fragment ? "fragment side"
-                                                                                 : "link";
-    const shader::DriverLog log = shader::parse_driver_log(failure.log, stage.lines);
+    const auto [where, stage] = failed_stage(failure, text.stitched);
+    const shader::DriverLog log = shader::parse_driver_log(failure.log, stage->lines);
     failed(fmt::format(
         "render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
-        shader::brief_text(log, {stage.text, text.stitched.names, text.stitched.values}),
+        shader::brief_text(log, {stage->text, text.stitched.names, text.stitched.values}),
         remedy(text.stitched, log.blamed())));
 }
 

@@ -16,7 +16,7 @@ namespace relevo::render {
 struct ProgramText {
     std::string name;  ///< as in core_frame(): "terrain", "background_night"
     shader::Stitched stitched;
-    std::string hash;  ///< SHA-256 of the source of both stages
+    std::string hash;  ///< SHA-256 of the sources of its stages
 
     static ProgramText of(std::string name, shader::Stitched stitched);
 };
@@ -63,7 +63,8 @@ StitchedFrames stitch_frames(const shader::CoreTexts& core, const shader::Stitch
 /// The frame graphs in Graphviz's DOT language.
 std::string graph_text(const StitchedFrames& frames);
 
-/// Writes the sources as `<name>.vert.glsl` and `<name>.frag.glsl`, and the graphs as `frame.dot`.
+/// Writes the sources as `<name>.vert.glsl` and `<name>.frag.glsl` or `<name>.comp.glsl`, and the
+/// graphs as `frame.dot`.
 /// @throws Error (BadInput) for Relevo's own shader folder, and as write_text
 void dump_programs(const StitchedFrames& frames, const std::filesystem::path& folder,
                    bool overwrite);

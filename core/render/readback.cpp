@@ -99,7 +99,8 @@ std::vector<SunSeen> read_sun_seen(const gl::Texture& sun_seen, const gl::Textur
                           .share = v.z,
                           .pixel_posts = std::abs(double{v.w}),
                           .faces = v.w > 0,
-                          .moved = v.z < 0});
+                          .moved = v.z == -1,
+                          .shaded_by_instance = v.z == -2});
     }
     return result;
 }

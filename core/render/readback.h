@@ -16,9 +16,10 @@ namespace relevo::render {
 struct SunSeen {
     glm::dvec2 post{0};  ///< column and row in the DEM
     double share = 0;  ///< visibility of the sun by all effects with the hook `visibility`, 0 to 1
-    double pixel_posts = 0;  ///< side of the pixel on the ground in posts
-    bool faces = false;      ///< the ground faces the sun
-    bool moved = false;      ///< an effect has displaced the ground
+    double pixel_posts = 0;           ///< side of the pixel on the ground in posts
+    bool faces = false;               ///< the ground faces the sun
+    bool moved = false;               ///< an effect has displaced the ground
+    bool shaded_by_instance = false;  ///< the shadow of a plugin's instance lies here
 };
 
 /// Number of RGBA8 pixels that were NaN or infinite before clamping. Shaders mark them with an

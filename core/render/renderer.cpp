@@ -121,10 +121,10 @@ struct Renderer::Impl : FrameServices {
     gl::RingBuffer::Place frame_block;  // last upload
     gl::Buffer params_block;
     std::vector<effect::DisplaceSpec> displaces;
-    Instances instances;
     shader::ParamStore values;  // as given; native modules also write host parameters
-    double exposure = 1;        // of the last frame
-    TileSelection tiles;        // of the last frame
+    Instances plugin_instances;
+    double exposure = 1;  // of the last frame
+    TileSelection tiles;  // of the last frame
     GroundProbe probe;
     gl::Texture footprint;  // of the last ground that was seen from outside
     std::vector<NativeHost> natives;
@@ -147,7 +147,7 @@ struct Renderer::Impl : FrameServices {
           effect_textures(effects.textures, anisotropy, shared.textures),
           line_textures(effects.lines),
           displaces(effects.displaces),
-          instances(effects.stitch.instances),
+          plugin_instances(effects.stitch.instances, values),
           outside(o.outside && shows_block()),
           runner(
               c, frames, programs, shared.targets,
@@ -207,6 +207,7 @@ struct Renderer::Impl : FrameServices {
         const bool wanted = is_outside && shows_block();
         if (outside == wanted && runner.is_arranged()) return;
         runner.arrange(wanted, options.width_px, options.height_px);
+        plugin_instances.forget_shadows();
         outside = wanted;
     }
 
@@ -219,12 +220,7 @@ struct Renderer::Impl : FrameServices {
 
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
 
-    void draw_instances(const std::string& resource, bool sprites, PassContext& frame) override {
-        const LodView view = LodView::of_camera(frame.inputs.camera, frame.width_px,
-                                                frame.height_px, 1, frame.inputs.exaggeration);
-        instances.draw(resource, sprites, frame.terrain, frame.tiles, view,
-                       length(glm::vec3(frame.block.pixel_ray_dx)));
-    }
+    Instances& instances() override { return plugin_instances; }
 
     void prepare_native(const std::string& id, PassContext& frame) override {
         if (frame.inputs.freeze_native && native_is_current) return;
@@ -423,10 +419,17 @@ void Renderer::resize(int width_px, int height_px) {
     if (same && impl_->runner.is_arranged()) return;
     check_size(impl_->context, width_px, height_px);
     impl_->runner.arrange(impl_->outside, width_px, height_px);
+    impl_->plugin_instances.forget_shadows();
     impl_->options.width_px = width_px;
     impl_->options.height_px = height_px;
     for (NativeHost& native : impl_->natives)
         native.resize(width_px, height_px);
+}
+
+std::shared_ptr<const effect::ModuleMarks> Renderer::module_marks(const std::string& id,
+                                                                  const std::string& list) const {
+    const auto native = std::ranges::find(impl_->natives, id, &NativeHost::id);
+    return native == impl_->natives.end() ? nullptr : native->marks(list);
 }
 
 const gl::Texture& Renderer::output() const {
@@ -450,8 +453,9 @@ std::vector<SunSeen> Renderer::read_sun_seen() const {
 bool Renderer::is_animated() const {
     static constexpr std::string_view kSeconds = "frame.seconds";
     return std::ranges::any_of(impl_->frames.programs, [](const ProgramText& text) {
-        return text.stitched.vertex.text.find(kSeconds) != std::string::npos ||
-               text.stitched.fragment.text.find(kSeconds) != std::string::npos;
+        return std::ranges::any_of(text.stitched.stages(), [](const shader::StageText* stage) {
+            return stage->text.find(kSeconds) != std::string::npos;
+        });
     });
 }
 

@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "effect/module_marks.h"
 #include "effect/native_module.h"
 #include "gl/context.h"
 #include "image/image.h"
@@ -116,6 +117,10 @@ class Renderer {
     bool is_animated() const;
     /// True if frames depend on climate (lib/climate.glsl).
     bool reads_climate() const;
+
+    /// Marks that a native module has set for a list of its plugin's; null without any.
+    std::shared_ptr<const effect::ModuleMarks> module_marks(const std::string& id,
+                                                            const std::string& list) const;
 
     /// Bounds of displacement by its effects.
     Displacement displacement() const;

@@ -109,6 +109,7 @@ void compare(const render::SunSeen& pixel, const Array2d<float>& shares, double 
              ShadowAudit& audit) {
     if (!pixel.faces) return void(++audit.excluded.faces_away);
     if (pixel.moved) return void(++audit.excluded.moved);
+    if (pixel.shaded_by_instance) return void(++audit.excluded.instances);
     const glm::dvec2 at = (pixel.post + 0.5) / reduction - 0.5;
     const double side = pixel.pixel_posts / reduction;
     const Span x = Span::of(at.x, side, shares.width()), y = Span::of(at.y, side, shares.height());
@@ -185,7 +186,8 @@ std::string ShadowAudit::json_text() const {
                         {"mixed", excluded.mixed},
                         {"faces_away", excluded.faces_away},
                         {"holes", excluded.voids},
-                        {"moved", excluded.moved}};
+                        {"moved", excluded.moved},
+                        {"instances", excluded.instances}};
     return json.dump();
 }
 

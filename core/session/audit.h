@@ -23,8 +23,9 @@ struct ShadowAudit {
         std::int64_t mixed = 0;
         /// Ground turned away from the sun, dark without cast shadows.
         std::int64_t faces_away = 0;
-        std::int64_t voids = 0;  ///< pixels in voids of the DEM
-        std::int64_t moved = 0;  ///< surfaces displaced by an effect, such as a sea's
+        std::int64_t voids = 0;      ///< pixels in voids of the DEM
+        std::int64_t moved = 0;      ///< surfaces displaced by an effect, such as a sea's
+        std::int64_t instances = 0;  ///< ground that instances of plugins shade
     } excluded;
 
     std::int64_t lit = 0, shaded = 0;  ///< pixels compared, as swept

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "base/units.h"
 
 namespace relevo::session {
 namespace {
@@ -62,6 +63,20 @@ double ground_m(const LoadedDem& dem, const geo::Geodetic& at, bool exact) {
     return std::isnan(height_m) ? drawn_m : height_m;
 }
 
+/// Height of the ground at place `i` [m]; NaN without ground, and 0 where it does not matter.
+double ground_m(const MarkPlaces& of, std::size_t i, const LoadedDem& dem) {
+    const geo::PlaceText& at = of.places[i].at;
+    if (at.has_height && !at.above_ground) return 0;
+    if (!of.looks.empty() && of.looks[i].known_ground_m)
+        return static_cast<double>(*of.looks[i].known_ground_m);
+    return ground_m(dem, at.place, i < kMostFromFile);
+}
+
+glm::vec3 along(const geo::Geodetic& at, double azimuth_rad, const geo::LocalFrame& frame) {
+    const geo::Axes axes = frame.axes(at.lat_rad, at.lon_rad);
+    return std::sin(azimuth_rad) * axes.east + std::cos(azimuth_rad) * axes.north;
+}
+
 StandingMarks::Mark standing_at(const geo::PlaceText& at, double ground_m,
                                 const geo::LocalFrame& frame, double exaggeration) {
     const bool absolute = at.has_height && !at.above_ground;
@@ -84,6 +99,32 @@ chart::Color color_of(const shader::ParamValue& value, double opacity) {
 
 }  // namespace
 
+std::shared_ptr<const MarkPlaces> places_of(const effect::ModuleMarks& marks) {
+    std::vector<const effect::ModuleMark*> ranked;
+    ranked.reserve(marks.size());
+    for (const effect::ModuleMark& mark : marks)
+        ranked.push_back(&mark);
+    std::ranges::stable_sort(ranked, {}, &effect::ModuleMark::rank);
+    auto result = std::make_shared<MarkPlaces>();
+    result->places.reserve(marks.size());
+    result->looks.reserve(marks.size());
+    for (const effect::ModuleMark* const mark : ranked) {
+        const bool is_above = mark->height_of == RELEVO_ABOVE_GROUND;
+        const bool is_known = mark->height_of == RELEVO_ON_KNOWN_GROUND;
+        dem::NamedPlace place{.name = printable(mark->text)};
+        place.at = {geo::geodetic_deg(mark->lat_deg, mark->lon_deg, is_known ? 0 : mark->height_m),
+                    is_above || mark->height_of == RELEVO_ABOVE_ZERO, is_above};
+        result->places.push_back(std::move(place));
+        MarkLook look;
+        if (mark->symbol != RELEVO_SYMBOL_OF_LIST)
+            look.symbol = static_cast<chart::Symbol>(mark->symbol - RELEVO_SYMBOL_NONE);
+        if (mark->azimuth_deg) look.azimuth_rad = radians(*mark->azimuth_deg);
+        if (is_known) look.known_ground_m = static_cast<float>(mark->height_m);
+        result->looks.push_back(look);
+    }
+    return result;
+}
+
 std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
                                     const shader::ParamStore& values,
                                     const std::vector<LoadedMarks>& earlier, bool report) {
@@ -96,9 +137,14 @@ std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
     std::vector<LoadedMarks> result;
     for (const effect::Effect* effect : selection.effects)
         for (const effect::MarksSpec& spec : effect->manifest.marks) {
+            if (spec.from.empty()) {  // its module sets them
+                result.push_back({&spec, effect->id(), nullptr});
+                continue;
+            }
             const std::string path = values.text(spec.from);
             if (path.empty() && report) log::info(effect::no_file_text(spec.from));
-            result.push_back({&spec, path.empty() ? nullptr : places_of(path, spec.from)});
+            result.push_back(
+                {&spec, effect->id(), path.empty() ? nullptr : places_of(path, spec.from)});
         }
     return result;
 }
@@ -112,18 +158,31 @@ std::shared_ptr<const StandingMarks> stand(std::shared_ptr<const MarkPlaces> pla
     parallel_for(0, static_cast<int>(all.size()), 1024, [&](int first, int end) {
         for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
             const geo::PlaceText& at = all[i].at;
-            marks[i] =
-                standing_at(at, ground_m(dem, at.place, i < kMostFromFile), frame, exaggeration);
+            marks[i] = standing_at(at, ground_m(*places, i, dem), frame, exaggeration);
             marks[i].index = static_cast<std::uint32_t>(i);
+            if (places->looks.empty()) continue;
+            marks[i].on_crests = !places->looks[i].known_ground_m;
+            if (places->looks[i].azimuth_rad)
+                marks[i].along = along(at.place, *places->looks[i].azimuth_rad, frame);
         }
     });
     std::erase_if(marks, [](const StandingMarks::Mark& mark) { return std::isnan(mark.height_m); });
-    if (marks.empty())
+    if (marks.empty() && !places->path.empty())
         log::info(
             fmt::format("marks: {}: none of its places is on the DEM", printable(places->path)));
     result->marks = std::move(marks);
     result->places = std::move(places);
     return result;
+}
+
+std::shared_ptr<const MarkPlaces> MarksOnGround::places(
+    const std::shared_ptr<const effect::ModuleMarks>& marks) {
+    const auto known =
+        std::ranges::find(places_, marks, [](const auto& entry) { return entry.first; });
+    if (known != places_.end()) return known->second;
+    if (places_.size() >= kMostKept) places_.erase(places_.begin());
+    places_.emplace_back(marks, places_of(*marks));
+    return places_.back().second;
 }
 
 std::shared_ptr<const StandingMarks> MarksOnGround::of(
@@ -153,6 +212,7 @@ Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> s
                       .symbol = static_cast<chart::Symbol>(number(spec.symbol)),
                       .leader = number(spec.leader_px),
                       .distance = number(spec.distance_px),
+                      .repeat = number(spec.repeat_px),
                       .most = static_cast<std::size_t>(number(spec.most))},
             .order = static_cast<effect::MarksSpec::Order>(number(spec.order)),
             .above_m = number(spec.above_m),

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -13,24 +15,38 @@
 #include "base/file_stamps.h"
 #include "chart/marks.h"
 #include "dem/places.h"
+#include "effect/module_marks.h"
 #include "effect/selection.h"
 #include "render/displacement.h"
 #include "scene/camera.h"
 #include "session/session.h"
 
-/// Marks of plugins: from their files to places on the ground to the picture.
+/// Marks of plugins: from their files and native modules to places on the ground to the picture.
 namespace relevo::session {
 
-/// The places of a file, the first by rank first.
+/// What a module gives for a mark, and files do not.
+struct MarkLook {
+    std::optional<chart::Symbol> symbol;  ///< nullopt: that of the list
+    std::optional<double> azimuth_rad;    ///< of the text; nullopt: upright
+    std::optional<float> known_ground_m;  ///< height of the ground; nullopt: to be looked up
+};
+
+/// The places of a list, the first by rank first.
 struct MarkPlaces {
-    std::string path;
+    std::string path;                     ///< of the file; empty if a module has set them
     std::vector<dem::NamedPlace> places;  ///< names are printable()
+    std::vector<MarkLook> looks;          ///< of the places; empty: those of a file
     FileStamps read;                      ///< of the file
 };
 
-/// An active effect's list of marks. `places` is null if no file is set.
+/// Places of a native module's marks.
+std::shared_ptr<const MarkPlaces> places_of(const effect::ModuleMarks& marks);
+
+/// An active effect's list of marks. `places` is null if no file is set, and if its module sets
+/// them, which the renderer has then.
 struct LoadedMarks {
     const effect::MarksSpec* spec = nullptr;  ///< in the registry
+    std::string plugin;                       ///< its id
     std::shared_ptr<const MarkPlaces> places;
 };
 
@@ -42,13 +58,15 @@ std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
                                     const shader::ParamStore& values,
                                     const std::vector<LoadedMarks>& earlier, bool report);
 
-/// Places of a file in the DEM's local frame. Those without ground are excluded.
+/// Places of a list in the DEM's local frame. Those without ground are excluded.
 struct StandingMarks {
     struct Mark {
         glm::dvec3 at_m{0};       ///< exaggerated, before displacement by effects
         glm::vec3 up{0, 0, 1};    ///< the vertical there
         float height_m = 0;       ///< of the mark, in the DEM's heights
-        bool on_ground = true;    ///< false if the file gives a height
+        bool on_ground = true;    ///< false if the list gives a height
+        bool on_crests = true;    ///< behind a crest by kHidden_px it is on the crest
+        glm::vec3 along{0};       ///< unit vector along the text; 0: it is upright
         std::uint32_t index = 0;  ///< in MarkPlaces::places
     };
     std::shared_ptr<const MarkPlaces> places;
@@ -65,6 +83,9 @@ inline constexpr std::size_t kMostFromFile = 10'000;
 /// Keeps where marks stand until file, DEM or exaggeration change.
 class MarksOnGround {
   public:
+    /// Places of a module's marks. Keeps those of the latest lists.
+    std::shared_ptr<const MarkPlaces> places(
+        const std::shared_ptr<const effect::ModuleMarks>& marks);
     std::shared_ptr<const StandingMarks> of(const std::shared_ptr<const MarkPlaces>& places,
                                             const std::shared_ptr<const LoadedDem>& dem,
                                             const geo::LocalFrame& frame, double exaggeration);
@@ -76,6 +97,9 @@ class MarksOnGround {
         std::shared_ptr<const StandingMarks> standing;
     };
     std::vector<Entry> known_;  // the latest last
+    std::vector<std::pair<std::shared_ptr<const effect::ModuleMarks>,
+                          std::shared_ptr<const MarkPlaces>>>
+        places_;  // the latest last
 };
 
 /// A list of marks as a frame shows it.
@@ -111,14 +135,16 @@ MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
 /// the ground stands where the frame shows ground at its place: displaced by effects, and coarser
 /// than the posts by up to `pixel_error`. So much, and at least kHidden_px, may hide of a mark
 /// whose place is just behind a crest: it stands on the crest then. Ground that is before a mark by
-/// less than kNear of its depth does not hide it.
+/// less than kNear of its depth does not hide it. A mark whose ground the module knows is on no
+/// crest.
 std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& view);
 inline constexpr double kHidden_px = 3;
 inline constexpr double kNear = 0.005;
 
 /// Draws the visible marks of all lists without overlap.
 /// @param within  where they may stand; all of the picture or a half
+/// @param taken   where they may not: legends and other stamps
 void draw_marks(std::span<const Marks> lists, const MarkView& view, const chart::Rect& within,
-                chart::Drawing& drawing);
+                std::span<const chart::Rect> taken, chart::Drawing& drawing);
 
 }  // namespace relevo::session

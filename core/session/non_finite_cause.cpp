@@ -109,6 +109,38 @@ int line_of_write(const Place& place, const std::string& variable, const std::st
     return 0;
 }
 
+/// The file with a pass whose texels are 0 where they would be NaN or infinite.
+Snippet cleaned(const Snippet& snippet, const shader::PassFunction& pass) {
+    const shader::Source& source = snippet.source;
+    const std::string function = fmt::format("{}_pass_{}", snippet.id, pass.name);
+    const std::string inner = fmt::format("{}_cleaned_{}", snippet.id, pass.name);
+    std::string text = source.text;
+    for (std::size_t i = source.tokens.size(); i-- > 0;)
+        if (source.str(source.tokens[i]) == function)
+            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
+    // By bits: compilers may fold comparisons with NaN.
+    text += fmt::format(
+        "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
+        "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
+        function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner);
+    return shader::parse_snippet(snippet.id, snippet.file, text);
+}
+
+/// A pass of a plugin without whose NaN and infinite texels fewer pixels are so.
+/// @param fewest  such pixels without any one hook; a pass that a hook reads has as few
+std::optional<NonFiniteCause> pass_at_fault(const FaultyPicture& picture, const Snippet& snippet,
+                                            int& fewest) {
+    std::optional<NonFiniteCause> cause;
+    for (const shader::PassFunction& pass : snippet.passes) {
+        if (pass.kind == shader::PluginPass::Kind::Compute) continue;  // its stores are not seen
+        const int without = pixels_with(picture, &snippet, cleaned(snippet, pass));
+        if (without > fewest || without >= picture.pixels || (cause && without == fewest)) continue;
+        fewest = without;
+        cause = {snippet.file, pass.line, fmt::format("{}_pass_{}", snippet.id, pass.name), {}};
+    }
+    return cause;
+}
+
 NonFiniteCause cause_at(const FaultyPicture& picture, const Place& place, int without) {
     NonFiniteCause cause{place.snippet->file, place.hook->line, place.hook->name, {}};
     const std::string surface = surface_of(place);
@@ -149,6 +181,11 @@ std::optional<NonFiniteCause> find_cause(const FaultyPicture& picture, const std
             worst = place;
         }
     }
+    std::optional<NonFiniteCause> pass;
+    for (const Snippet* snippet : picture.effects.loaded.selection.snippets())
+        if (snippet->id == id)
+            if (auto found = pass_at_fault(picture, *snippet, fewest)) pass = found;
+    if (pass) return pass;
     if (!worst) return std::nullopt;
     return cause_at(picture, *worst, fewest);
 }

@@ -141,6 +141,14 @@ bool Session::is_animated() const {
     return impl_->drawn->renderer().is_animated() || (without && without->is_animated());
 }
 
+void Session::set_exposure(double exposure_ev) {
+    impl_->state.scene.exposure_ev = exposure_ev;
+    impl_->state.inputs.exposure_ev = exposure_ev;
+}
+void Session::set_exaggeration(double exaggeration) {
+    impl_->state.scene.exaggeration = exaggeration;
+    impl_->state.take_shape(/*other=*/true);
+}
 void Session::set_seconds(double seconds) {
     impl_->state.scene.seconds = seconds;
     impl_->state.inputs.seconds = seconds;
@@ -169,8 +177,9 @@ image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_output(count); },
         std::uint8_t{255});
-    impl_->draw_marks_on(picture);
-    impl_->stamp_notes = add_stamps(*this, legends(), picture);
+    std::vector<chart::Rect> taken;
+    impl_->stamp_notes = add_stamps(*this, legends(), picture, taken);
+    impl_->draw_marks_on(picture, taken);
     return picture;
 }
 

@@ -148,6 +148,10 @@ class Session {
     /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
     /// sun is dragged. Lighting by core is always current.
     void freeze_native(bool freeze);
+    /// Sets the exposure [EV] of subsequent frames.
+    void set_exposure(double exposure_ev);
+    /// Sets the vertical exaggeration of subsequent frames. heights_to_aim_at() stay unexaggerated.
+    void set_exaggeration(double exaggeration);
     /// True if an active effect reads frame.seconds.
     bool is_animated() const;
     /// Sets the moment of effects that move, for subsequent frames.

@@ -279,17 +279,20 @@ std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
                                         const ActiveEffects& effects,
                                         const render::Renderer& renderer) {
     std::vector<Marks> result;
-    for (const LoadedMarks& list : loaded)
-        if (list.places)
-            result.push_back(
-                marks_of(list,
-                         marks_on_ground.of(list.places, state.dem(), state.ground().frame,
-                                            state.scene.exaggeration),
-                         effects.values, renderer.displacement(), state.scene));
+    for (const LoadedMarks& list : loaded) {
+        std::shared_ptr<const MarkPlaces> places = list.places;
+        if (const auto set = renderer.module_marks(list.plugin, list.spec->name))
+            places = marks_on_ground.places(set);
+        if (!places || places->places.empty()) continue;
+        result.push_back(marks_of(
+            list,
+            marks_on_ground.of(places, state.dem(), state.ground().frame, state.scene.exaggeration),
+            effects.values, renderer.displacement(), state.scene));
+    }
     return result;
 }
 
-void Session::Impl::draw_marks_on(image::Image8& picture) {
+void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken) {
     const double width = picture.width, height = picture.height;
     const auto draw = [&](const std::vector<Marks>& lists, const render::Renderer& renderer,
                           const chart::Rect& within) {
@@ -298,7 +301,7 @@ void Session::Impl::draw_marks_on(image::Image8& picture) {
         renderer.read_depths(depths_m);
         chart::Drawing drawing(width, height);
         draw_marks(lists, view_of(state.inputs.camera, picture.width, picture.height, depths_m),
-                   within, drawing);
+                   within, taken, drawing);
         chart::paint(drawing, 0, 0, 1, picture);
     };
     const render::Renderer* const without = drawn->without();

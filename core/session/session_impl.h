@@ -90,8 +90,8 @@ struct Session::Impl {
     /// Marks of the effects of a half.
     std::vector<Marks> marks(const std::vector<LoadedMarks>& loaded, const ActiveEffects& effects,
                              const render::Renderer& renderer);
-    /// Draws the marks of both halves on the frame's picture.
-    void draw_marks_on(image::Image8& picture);
+    /// Draws the marks of both halves on the frame's picture. @param taken  has none of them
+    void draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken);
     FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);

@@ -154,7 +154,7 @@ std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geo
 
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture) {
+                                    image::Image8& picture, std::vector<chart::Rect>& taken) {
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
     if (needs_depths(wanted)) session.read_depths(stamped.depths_m);
@@ -164,15 +164,15 @@ std::vector<std::string> add_stamps(const Session& session,
             laid ? clock_text(*laid, session.scene().time.zone, session.ground().frame.origin())
                  : session.clock_text();
     if (wanted.sun) stamped.sun = laid ? sun_text(*laid) : session.sun_text();
-    return add_stamps(std::move(stamped), legends, picture);
+    return add_stamps(std::move(stamped), legends, picture, taken);
 }
 
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture) {
+                                    image::Image8& picture, std::vector<chart::Rect>& taken) {
     Stamper stamper(stamped, picture);
     chart::Stamps stamps = stamper.stamps(legends);
     stamper.add_graticule(picture, stamps);
-    for (const std::string& name : chart::stamp(stamps, picture))
+    for (const std::string& name : chart::stamp(stamps, picture, &taken))
         stamper.notes_.push_back(
             fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
                         picture.width, picture.height));

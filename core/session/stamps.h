@@ -26,12 +26,13 @@ bool needs_depths(const scene::Stamps& wanted);
 
 /// Draws a scene's stamps on its picture.
 /// @param legends  of the colours in it
+/// @param taken    receives where stamps stand in the picture, without lines of the graticule
 /// @returns sentences on stamps that were omitted
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture);
+                                    image::Image8& picture, std::vector<chart::Rect>& taken);
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture);
+                                    image::Image8& picture, std::vector<chart::Rect>& taken);
 
 /// The eye's position if the sun is described as seen from there, with its height not exaggerated.
 /// nullopt above 100 km, where sun::position() is undefined.

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/units.h"
 #include "session/marks.h"
 #include "session/seen_ground.h"
 
@@ -19,6 +21,9 @@ using Order = effect::MarksSpec::Order;
 constexpr double kMostSamples = 48;
 /// Ground that is nearer than a mark by this fraction of its depth is not the crest that it is on.
 constexpr double kCrest = 0.05;
+
+/// The same of a mark that is on no crest. The ground's depth changes by less from pixel to pixel.
+constexpr double kCrossed = 0.01;
 
 /// A mark in the picture.
 struct Candidate {
@@ -50,12 +55,23 @@ class Finder {
         std::vector<chart::MarkPoint> points;
         for (const Candidate& candidate : candidates_)
             if (const std::optional<glm::dvec2> at = find(candidate))
-                points.push_back(
-                    {*at, marks_.standing->places->places[candidate.mark->index].name});
+                points.push_back(point(*candidate.mark, *at));
         return points;
     }
 
   private:
+    chart::MarkPoint point(const StandingMarks::Mark& mark, const glm::dvec2& at) const {
+        const MarkPlaces& places = *marks_.standing->places;
+        chart::MarkPoint result{at, places.places[mark.index].name};
+        if (!places.looks.empty()) result.symbol = places.looks[mark.index].symbol;
+        if (mark.along == glm::vec3(0)) return result;
+        const glm::dvec2 along = projection_.moved(mark.at_m, glm::dvec3(mark.along));
+        // Never upside down.
+        const double turn = std::atan2(along.y, along.x);
+        result.turn_deg = degrees(std::remainder(turn, std::numbers::pi));
+        return result;
+    }
+
     bool is_inside(const glm::dvec2& at) const {
         return at.x >= 0 && at.y >= 0 && at.x < view_.width_px && at.y < view_.height_px;
     }
@@ -127,7 +143,7 @@ class Finder {
             before = behind;
             behind = behind_m(candidate, ++k);
         }
-        const double crest_m = kCrest * candidate.top_m;
+        const double crest_m = (candidate.mark->on_crests ? kCrest : kCrossed) * candidate.top_m;
         if (k == 0 && behind < -kNear * candidate.top_m) return std::nullopt;
         // Level ground far away comes nearer by as much from pixel to pixel, but not across a
         // crest.
@@ -170,8 +186,10 @@ std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& 
 }
 
 void draw_marks(std::span<const Marks> lists, const MarkView& view, const chart::Rect& within,
-                chart::Drawing& drawing) {
+                std::span<const chart::Rect> taken, chart::Drawing& drawing) {
     chart::FreeRoom room(within);
+    for (const chart::Rect& rect : taken)
+        room.take(rect);
     for (const Marks& marks : lists) {
         const std::vector<chart::MarkPoint> points = visible_marks(marks, view);
         chart::draw_marks(chart::place_marks(points, marks.style, room), marks.style, drawing);

@@ -21,6 +21,8 @@ struct InstanceSet {
     std::string function;       ///< "trees_place_tree"
     double spacing_m = 10;      ///< side of a cell of the grid of sites, at the DEM's centre
     double height_m = 1;        ///< of the highest instance
+    bool casts_shadow = true;   ///< on the ground and on other instances
+    double light_through = 0;   ///< share of the sun's light that passes an instance, 0 to 1
     std::vector<Level> levels;  ///< finest first; the first has meshes, the last may be sprites
     int line = 0;               ///< in plugin.json
     bool has_sprites() const { return levels.back().is_sprite(); }

@@ -19,15 +19,24 @@ std::vector<std::string> hook_names() {
     return names;
 }
 
-/// @param head  of the expected function, apart from its name
+[[noreturn]] void fail_signature(const Snippet& snippet, const Item& item,
+                                 std::string_view expected) {
+    source_error(snippet.file, item.name_line,
+                 fmt::format("{}: wrong signature, expected {} but got {}", item.names[0], expected,
+                             snippet.source.signature(item).text()));
+}
+
+/// @param head  of a function, apart from its name
+Signature named(std::string_view head, const Item& item) {
+    Signature signature = parse_signature(head);
+    signature.name = item.names[0];
+    return signature;
+}
+
 void check_signature(const Snippet& snippet, const Item& item, std::string_view head) {
-    Signature expected = parse_signature(head);
-    expected.name = item.names[0];
-    const Signature found = snippet.source.signature(item);
-    if (!found.matches(expected))
-        source_error(snippet.file, item.name_line,
-                     fmt::format("{}: wrong signature, expected {} but got {}", item.names[0],
-                                 expected.text(), found.text()));
+    const Signature expected = named(head, item);
+    if (!snippet.source.signature(item).matches(expected))
+        fail_signature(snippet, item, expected.text());
 }
 
 void read_hook(Snippet& snippet, const Item& item) {
@@ -52,15 +61,39 @@ void read_hook(Snippet& snippet, const Item& item) {
     snippet.hooks.push_back({hook, function, item.name_line});
 }
 
-/// @param found  receives a function `<id>_<word>_<name>`
-void read_named(Snippet& snippet, const Item& item, const std::string& word,
-                std::string_view signature, std::vector<PassFunction>& found) {
+/// The name of a function `<id>_<word>_<name>`; none of another function.
+std::optional<std::string> name_after(const Snippet& snippet, const Item& item,
+                                      std::string_view word) {
     const std::string& function = item.names[0];
-    const std::string prefix = snippet.id + '_' + word + '_';
-    if (function.substr(0, prefix.size()) != prefix) return;
-    check_signature(snippet, item, signature);
-    if (item.kind == Item::Kind::Function)
-        found.push_back({function.substr(prefix.size()), item.name_line});
+    const std::string prefix = fmt::format("{}_{}_", snippet.id, word);
+    if (!function.starts_with(prefix)) return std::nullopt;
+    return function.substr(prefix.size());
+}
+
+void read_pass(Snippet& snippet, const Item& item) {
+    using Kind = PluginPass::Kind;
+    const std::optional<std::string> name = name_after(snippet, item, "pass");
+    if (!name) return;
+    const Signature found = snippet.source.signature(item);
+    std::vector<std::string> expected;
+    for (const Kind kind : {Kind::Full, Kind::Volume, Kind::Compute}) {
+        const Signature signature = named(signature_of(kind), item);
+        expected.push_back(signature.text());
+        if (!found.matches(signature)) continue;
+        if (item.kind == Item::Kind::Function)
+            snippet.passes.push_back({*name, item.name_line, kind});
+        return;
+    }
+    fail_signature(snippet, item,
+                   fmt::format("{}, or of kind 3d {}, or of kind compute {}", expected[0],
+                               expected[1], expected[2]));
+}
+
+void read_place(Snippet& snippet, const Item& item) {
+    const std::optional<std::string> name = name_after(snippet, item, "place");
+    if (!name) return;
+    check_signature(snippet, item, "void place(in InstanceSite at, inout Instance it)");
+    if (item.kind == Item::Kind::Function) snippet.places.push_back({*name, item.name_line});
 }
 
 void read_wanted(Snippet& snippet, const Token& word) {
@@ -119,9 +152,8 @@ Snippet parse_snippet(std::string_view id, std::string_view file, std::string_vi
     for (const Item& item : snippet.source.items)
         if (item.kind == Item::Kind::Function || item.kind == Item::Kind::Prototype) {
             read_hook(snippet, item);
-            read_named(snippet, item, "pass", "vec4 pass(in Texel t)", snippet.passes);
-            read_named(snippet, item, "place", "void place(in InstanceSite at, inout Instance it)",
-                       snippet.places);
+            read_pass(snippet, item);
+            read_place(snippet, item);
         }
     for (const Token& token : snippet.source.tokens) {
         if (token.kind != TokenKind::Directive) {

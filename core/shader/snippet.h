@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shader/hooks.h"
+#include "shader/plugin_pass.h"
 #include "shader/source.h"
 
 namespace relevo::shader {
@@ -19,6 +20,13 @@ struct HookFunction {
 /// A function `<id>_pass_<name>` that a snippet defines, for PluginPass.
 struct PassFunction {
     std::string name;  ///< "blur"
+    int line = 0;
+    PluginPass::Kind kind = PluginPass::Kind::Full;  ///< that has its signature
+};
+
+/// A function `<id>_place_<name>` that a snippet defines, for InstanceSet.
+struct PlaceFunction {
+    std::string name;  ///< "stone"
     int line = 0;
 };
 
@@ -36,9 +44,9 @@ struct Snippet {
     std::string file;
     std::vector<HookFunction> hooks;  ///< in the order of the file
     std::vector<PassFunction> passes;
-    std::vector<PassFunction> places;  ///< `<id>_place_<name>`, for InstanceSet
-    std::vector<Wanted> wanted;        ///< each word once
-    Source source;                     ///< text, parameters, samplers, varyings, includes
+    std::vector<PlaceFunction> places;
+    std::vector<Wanted> wanted;  ///< each word once
+    Source source;               ///< text, parameters, samplers, varyings, includes
 
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };
@@ -46,7 +54,9 @@ struct Snippet {
 /// Reads a plugin's GLSL. The rules are docs/plugin-guide.md's; in short:
 /// - every global (function, constant, struct, macro, variable) begins with `<id>_`;
 /// - `<id>_on_<hook>` with the hook's exact types is the registration;
-/// - `vec4 <id>_pass_<name>(in Texel t)` computes the texture of the pass `name`;
+/// - `vec4 <id>_pass_<name>(in Texel t)`, `(in Voxel v)` or `void ...(in Invocation i)` computes
+/// the
+///   pass `name`;
 /// - `void <id>_place_<name>(in InstanceSite at, inout Instance it)` places the instances `name`;
 /// - `uniform` is a parameter (`= default; //@ annotation`) or a sampler, `out` a varying: one a
 ///   line, never under #if;

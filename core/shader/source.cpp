@@ -17,8 +17,8 @@ constexpr std::array<std::string_view, 21> kQualifiers = {
     "const",    "uniform",   "in",      "out",    "inout",     "flat",       "smooth",
     "centroid", "sample",    "patch",   "layout", "buffer",    "shared",     "precise",
     "highp",    "invariant", "mediump", "lowp",   "attribute", "subroutine", "noperspective"};
-constexpr std::array<std::string_view, 8> kNotForPlugins = {
-    "layout", "buffer", "shared", "subroutine", "patch", "sample", "centroid", "invariant"};
+constexpr std::array<std::string_view, 7> kNotForPlugins = {
+    "layout", "buffer", "subroutine", "patch", "sample", "centroid", "invariant"};
 constexpr std::array<std::string_view, 8> kDirectives = {"define", "undef", "if",   "ifdef",
                                                          "ifndef", "elif",  "else", "endif"};
 

@@ -12,14 +12,6 @@ namespace {
 constexpr std::array<std::string_view, 10> kOwnedByCore = {
     "gl_Position",   "gl_PointSize", "gl_ClipDistance",  "gl_CullDistance", "gl_FragDepth",
     "gl_SampleMask", "gl_Layer",     "gl_ViewportIndex", "gl_FragColor",    "gl_FragData"};
-constexpr std::array<std::string_view, 7> kBarriers = {"barrier",
-                                                       "memoryBarrier",
-                                                       "memoryBarrierAtomicCounter",
-                                                       "memoryBarrierBuffer",
-                                                       "memoryBarrierImage",
-                                                       "memoryBarrierShared",
-                                                       "groupMemoryBarrier"};
-
 struct Open {
     char bracket;
     int line;
@@ -111,8 +103,6 @@ void check_word(const Source& source, const Token& token) {
         fail(
             "discard: every pixel must be written, or it shows an earlier frame; leave the "
             "arguments unchanged instead");
-    if (contains(kBarriers, word))
-        fail(fmt::format("{}: plugins have no shared memory, so barriers are not allowed", word));
     if (word.substr(0, 5) == "hook_")
         fail(fmt::format("{}: only core's main programs call hooks", word));
 }

@@ -53,9 +53,11 @@ std::optional<std::string> CoreLibrary::nearest_library(const std::string& name)
 
 Stage::Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInput& input,
              StageKind kind)
-    : library_(library), input_(input), kind_(kind) {
+    : library_(library), input_(input), kind_(kind), output_(program.output) {
     const bool vertex = kind == StageKind::Vertex;
-    const std::string& main = vertex ? program.vertex_main : program.fragment_main;
+    const std::string& main = vertex                       ? program.vertex_main
+                              : kind == StageKind::Compute ? program.compute_main
+                                                           : program.fragment_main;
     const SourceKind main_kind = vertex ? SourceKind::VertexMain : SourceKind::FragmentMain;
 
     add_core(UnitRole::Types, SourceKind::Lib, "lib/types.glsl");
@@ -319,6 +321,7 @@ void Stage::reach(std::vector<const Stage*> readers) {
     }
     check_recursion();
     if (kind_ == StageKind::Vertex) check_displace();
+    if (kind_ == StageKind::Compute) check_shared_size();
 }
 
 void Stage::need(const std::string& name, const std::string& by) {
@@ -375,6 +378,7 @@ void Stage::read(const Place& place) {
         const auto [known, fresh] = functions_.try_emplace(by, uses);
         if (!fresh) known->second.calls.clear();
     }
+    if (it.kind == Item::Kind::Declaration) check_shared(place);
     for (const std::string& name : uses.names) {
         const bool called = uses.calls.count(name) > 0;
         check_name(place, name, called);
@@ -391,11 +395,12 @@ void Stage::read(const Place& place) {
 }
 
 void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by) {
+    // What shades a pixel may be computed too.
     const HookStage wanted = kind_ == StageKind::Vertex ? HookStage::Vertex : HookStage::Fragment;
     const HookStage stage = hook.stage == HookStage::Post ? HookStage::Fragment : hook.stage;
     if (stage != wanted && stage != HookStage::Any)
         fail(from, fmt::format("hook_{} is called from the {} stage, which does not have it",
-                               hook.name, wanted == HookStage::Vertex ? "vertex" : "fragment"));
+                               hook.name, word_of(kind_)));
     if (unit_of(from).role != UnitRole::Main) early_hooks_.insert(hook.name);
     if (!hooks_.insert(hook.name).second) return;
     const std::string name = is_service(hook) ? std::string(hook.name)

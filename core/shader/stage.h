@@ -18,7 +18,10 @@
 /// One stage of a program during stitching: its files, and the items that `main` reaches.
 namespace relevo::shader {
 
-enum class StageKind { Vertex, Fragment };
+enum class StageKind { Vertex, Fragment, Compute };
+
+/// "vertex"
+std::string_view word_of(StageKind kind);
 
 /// The kinds of files, in their order in the text.
 enum class UnitRole { Types, Frame, Lib, Defaults, Snippet, Main };
@@ -121,6 +124,9 @@ class Stage {
     void check_name(const Place& place, const std::string& name, bool called) const;
     void check_library(const Place& place, const std::string& name) const;
     void check_stage(const Place& place, const Uses& uses) const;
+    void check_output(const Place& place, const std::string& name) const;
+    void check_shared(const Place& place) const;
+    void check_shared_size() const;
     void check_recursion() const;
     void check_displace() const;
     void check_default(const std::string& function, const Hook& hook) const;
@@ -128,6 +134,7 @@ class Stage {
     CoreLibrary& library_;
     const StitchInput& input_;
     StageKind kind_;
+    std::string output_;  // of a compute program
     std::vector<const Stage*> readers_;
     std::vector<Unit> units_;
     std::set<std::string, std::less<>> libs_;                        // already in units_

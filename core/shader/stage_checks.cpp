@@ -2,18 +2,20 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "shader/shared_memory.h"
 #include "shader/stage.h"
 
 namespace relevo::shader {
 namespace {
 
-// GLSL 4.50, 7.1 and 8: names that only one of the two stages has.
+// GLSL 4.50, 7.1 and 8: names that only one of the stages has, or that only compute passes need.
 constexpr std::array<std::string_view, 18> kFragmentOnly = {"dFdx",
                                                             "dFdy",
                                                             "fwidth",
@@ -33,8 +35,39 @@ constexpr std::array<std::string_view, 18> kFragmentOnly = {"dFdx",
                                                             "interpolateAtSample",
                                                             "interpolateAtOffset"};
 constexpr std::array<std::string_view, 2> kVertexOnly = {"gl_VertexID", "gl_InstanceID"};
+constexpr std::array<std::string_view, 12> kComputeOnly = {"barrier",
+                                                           "memoryBarrier",
+                                                           "memoryBarrierBuffer",
+                                                           "memoryBarrierImage",
+                                                           "memoryBarrierShared",
+                                                           "groupMemoryBarrier",
+                                                           "gl_GlobalInvocationID",
+                                                           "gl_LocalInvocationID",
+                                                           "gl_LocalInvocationIndex",
+                                                           "gl_NumWorkGroups",
+                                                           "gl_WorkGroupID",
+                                                           "gl_WorkGroupSize"};
+
+/// The only stage that has a name of GLSL's; none of a name that several have.
+std::optional<StageKind> only_stage_of(std::string_view name) {
+    if (contains(kFragmentOnly, name)) return StageKind::Fragment;
+    if (contains(kVertexOnly, name)) return StageKind::Vertex;
+    if (contains(kComputeOnly, name)) return StageKind::Compute;
+    return std::nullopt;
+}
 
 }  // namespace
+
+std::string_view word_of(StageKind kind) {
+    switch (kind) {
+        case StageKind::Vertex:
+            return "vertex";
+        case StageKind::Compute:
+            return "compute";
+        default:
+            return "fragment";
+    }
+}
 
 void Stage::check_default(const std::string& function, const Hook& hook) const {
     const std::string& file = unit(UnitRole::Defaults).source->file;
@@ -62,6 +95,7 @@ void Stage::check_name(const Place& place, const std::string& name, bool called)
     }
     const auto places = places_.find(name);
     if (places == places_.end()) {
+        check_output(place, name);
         if (called) check_library(place, name);
         return;
     }
@@ -98,16 +132,50 @@ void Stage::check_library(const Place& place, const std::string& name) const {
 }
 
 void Stage::check_stage(const Place& place, const Uses& uses) const {
-    const bool vertex = kind_ == StageKind::Vertex;
+    const std::string& function = item(place).names[0];
     for (const std::string& name : uses.names) {
-        const bool foreign = vertex ? contains(kFragmentOnly, name) : contains(kVertexOnly, name);
-        if (foreign)
+        const std::optional<StageKind> only = only_stage_of(name);
+        if (only && *only != kind_)
             fail(place,
-                 fmt::format("{} uses {}, which only the {} stage has, but the {} stage reaches it "
-                             "({})",
-                             item(place).names[0], name, vertex ? "fragment" : "vertex",
-                             vertex ? "vertex" : "fragment", trail(item(place).names[0])));
+                 fmt::format("{} uses {}, which only the {} stage has, but the {} stage "
+                             "reaches it ({})",
+                             function, name, word_of(*only), word_of(kind_), trail(function)));
     }
+}
+
+// Core declares what the compute pass of this program writes, and nothing else.
+void Stage::check_output(const Place& place, const std::string& name) const {
+    if (name == output_) return;
+    const std::string& owner = unit_of(place).source->owner;
+    for (const PluginPass& pass : input_.passes)
+        if (pass.kind == PluginPass::Kind::Compute && pass.output_name() == name &&
+            pass.resource.starts_with(owner + '.'))
+            fail(place, fmt::format("{} uses {}, which only the pass {} writes; others read it by "
+                                    "uniform {} {}",
+                                    item(place).names[0], name, pass.name, sampler_of(pass.output),
+                                    name.substr(0, name.size() - 4)));
+}
+
+void Stage::check_shared(const Place& place) const {
+    if (kind_ == StageKind::Compute || !is_shared(*unit_of(place).source, item(place))) return;
+    const std::string& name = item(place).names[0];
+    fail(place, fmt::format("{} is shared memory, which only compute passes have, but the {} stage "
+                            "reaches it ({})",
+                            name, word_of(kind_), trail(name)));
+}
+
+void Stage::check_shared_size() const {
+    std::size_t total = 0;
+    for (std::size_t u = 0; u < units_.size(); ++u)
+        for (std::size_t i = 0; i < units_[u].source->items.size(); ++i) {
+            if (!units_[u].kept[i]) continue;
+            total += shared_bytes(*units_[u].source, item({u, i}));
+            if (total > kMaxSharedBytes)
+                fail({u, i},
+                     fmt::format("{}: expected at most {} bytes of shared memory in a pass, "
+                                 "which every device has, but got {} up to here",
+                                 item({u, i}).names[0], kMaxSharedBytes, total));
+        }
 }
 
 void Stage::check_recursion() const {

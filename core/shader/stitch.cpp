@@ -33,11 +33,13 @@ std::string define_text(const Define& define) {
 class Stitcher {
   public:
     Stitcher(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input)
-        : program_(program),
-          input_(input),
-          library_(core),
-          vertex_(library_, program, input, StageKind::Vertex),
-          fragment_(library_, program, input, StageKind::Fragment) {
+        : program_(program), input_(input), library_(core) {
+        if (!program.compute_main.empty()) {
+            compute_.emplace(library_, program, input, StageKind::Compute);
+            return;
+        }
+        vertex_.emplace(library_, program, input, StageKind::Vertex);
+        fragment_.emplace(library_, program, input, StageKind::Fragment);
         if (!program.shaded_by.empty()) {
             shading_recipe_ = program;
             shading_recipe_.fragment_main = program.shaded_by;
@@ -46,44 +48,69 @@ class Stitcher {
     }
 
     Stitched run() {
-        // The fragment stage first: the varyings that it reads decide which vertex hooks are
-        // called.
-        fragment_.reach({});
-        std::vector<const Stage*> readers{&fragment_};
-        if (shading_) {
-            shading_->reach({});
-            readers.push_back(&*shading_);
-        }
-        vertex_.reach(readers);
-        for (const Stage* reader : readers)
-            check_varyings(*reader);
-        if (shading_) stored_ = StoredVaryings(*shading_, program_name());
-        if (loads()) stored_ = StoredVaryings(fragment_, program_name());
-        result_.varying_targets = stored_.targets();
-
-        std::vector<Param> params;
-        for (const Snippet* snippet : input_.snippets)
-            params.insert(params.end(), snippet->source.params.begin(),
-                          snippet->source.params.end());
-        result_.params = block_layout(params);
-        units_ = TextureUnits(vertex_, fragment_, input_);
-        if (loads() && stored_.targets() > 0)
-            units_.add_core(StoredVaryings::kTexture, "sampler2DArray");
-        units_.check(program_name(), input_.max_texture_units);
-        result_.textures = units_.units();
-
-        result_.vertex = write(vertex_);
-        result_.fragment = write(fragment_);
-        for (const Stage* stage : {&vertex_, &fragment_})
+        if (compute_)
+            compute_->reach({});
+        else
+            reach_drawn();
+        read_params();
+        assign_units();
+        if (compute_) result_.compute = write(*compute_);
+        if (vertex_) result_.vertex = write(*vertex_);
+        if (fragment_) result_.fragment = write(*fragment_);
+        for (const Stage* stage : stages()) {
             for (const Hook& hook : hooks())
                 note_use(*stage, hook);
+            note_plugins(*stage);
+        }
         add_names();
         return std::move(result_);
     }
 
   private:
+    std::vector<const Stage*> stages() const {
+        std::vector<const Stage*> all;
+        for (const std::optional<Stage>* stage : {&vertex_, &fragment_, &compute_})
+            if (*stage) all.push_back(&**stage);
+        return all;
+    }
+
+    /// Finds what the stages of a program that draws need.
+    void reach_drawn() {
+        // The fragment stage first: the varyings that it reads decide which vertex hooks are
+        // called.
+        fragment_->reach({});
+        std::vector<const Stage*> readers{&*fragment_};
+        if (shading_) {
+            shading_->reach({});
+            readers.push_back(&*shading_);
+        }
+        vertex_->reach(readers);
+        for (const Stage* reader : readers)
+            check_varyings(*reader);
+        if (shading_) stored_ = StoredVaryings(*shading_, program_name());
+        if (loads()) stored_ = StoredVaryings(*fragment_, program_name());
+        result_.varying_targets = stored_.targets();
+    }
+
+    void read_params() {
+        std::vector<Param> params;
+        for (const Snippet* snippet : input_.snippets)
+            params.insert(params.end(), snippet->source.params.begin(),
+                          snippet->source.params.end());
+        result_.params = block_layout(params);
+    }
+
+    void assign_units() {
+        units_ = TextureUnits(stages(), input_);
+        if (loads() && stored_.targets() > 0)
+            units_.add_core(StoredVaryings::kTexture, "sampler2DArray");
+        units_.check(program_name(), input_.max_texture_units);
+        result_.textures = units_.units();
+    }
+
     std::string program_name() const {
-        return program_.vertex_main + " + " + program_.fragment_main;
+        return compute_ ? program_.compute_main
+                        : program_.vertex_main + " + " + program_.fragment_main;
     }
 
     /// Whether this is a shading program, which loads the varyings of a geometry program.
@@ -95,10 +122,10 @@ class Stitcher {
         for (const Varying* read : reader.varyings()) {
             // The shading program loads them from textures. The geometry program checks them.
             if (loads() && reader.owner_of(read->name) != "core") continue;
-            const Varying* const written = vertex_.find_varying(read->name);
+            const Varying* const written = vertex_->find_varying(read->name);
             const std::string where =
                 fmt::format("shader: {}:{}: {}", read->file, read->line, read->name);
-            if (!written || !vertex_.reaches(read->name))
+            if (!written || !vertex_->reaches(read->name))
                 throw AuthorError(
                     reader.owner_of(read->name),
                     fmt::format("{}: the fragment stage reads it ({}), but nothing that {} "
@@ -134,6 +161,7 @@ class Stitcher {
         // Before its readers: Mesa warns if a global is read above the line that sets it.
         if (stage.kind() == StageKind::Fragment && loads()) stored_.write_load(out);
         write_prototypes(out, stage);
+        write_declarations(out);
         for (const Unit& unit : stage.units())
             if (unit.role == UnitRole::Lib) write_unit(out, unit);
         write_unit(out, stage.unit(UnitRole::Defaults));
@@ -188,7 +216,7 @@ class Stitcher {
 
     /// Whether a fragment stage reads a varying of the vertex stage.
     bool is_handed_on(const Varying& varying) const {
-        return fragment_.reaches(varying.name) || stored_.holds(varying);
+        return fragment_->reaches(varying.name) || stored_.holds(varying);
     }
 
     void write_varyings(TextBuilder& out, const Stage& stage) {
@@ -221,6 +249,13 @@ class Stitcher {
         out.heading("prototypes");
         for (const Hook& hook : hooks())
             if (stage.needs_prototype(hook)) out.line(stage.head(hook) + ';');
+        out.heading("");
+    }
+
+    void write_declarations(TextBuilder& out) {
+        out.heading("work group and output");
+        for (const std::string& line : program_.declarations)
+            out.line(line);
         out.heading("");
     }
 
@@ -285,11 +320,18 @@ class Stitcher {
             result_.hooks.push_back({find_hook(hook.name), stage.providers(hook)});
     }
 
+    void note_plugins(const Stage& stage) {
+        for (const Unit& unit : stage.units())
+            if (unit.role == UnitRole::Snippet && contains(unit.kept, true) &&
+                !contains(result_.plugins, unit.source->owner))
+                result_.plugins.push_back(unit.source->owner);
+    }
+
     const ProgramRecipe& program_;
     const StitchInput& input_;
     CoreLibrary library_;
-    Stage vertex_;
-    Stage fragment_;
+    std::optional<Stage> vertex_, fragment_;  // of a program that draws
+    std::optional<Stage> compute_;            // of a compute program
     ProgramRecipe shading_recipe_;
     std::optional<Stage> shading_;
     StoredVaryings stored_;

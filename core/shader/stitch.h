@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -20,7 +21,8 @@ struct Define {
     std::string value;
 };
 
-/// One of core's programs: two mains and the macros that they are compiled with.
+/// One of core's programs: two mains, or that of a compute program, and the macros that they are
+/// compiled with.
 struct ProgramRecipe {
     std::string vertex_main;    ///< "terrain.vert.glsl"
     std::string fragment_main;  ///< "depth.frag.glsl"
@@ -34,6 +36,12 @@ struct ProgramRecipe {
     /// Set on the shading program: the vertex main of the geometry program. Its fragment main then
     /// calls `load_varyings(pixel)` before any hook.
     std::string geometry_of{};
+
+    /// Main of a compute program, which has no other stage: "bloom.blur.comp.glsl".
+    std::string compute_main{};
+    /// Its work group and what it writes, lines before the plugins' text.
+    std::vector<std::string> declarations{};
+    std::string output{};  ///< name among these that the plugin uses; empty: none
 };
 
 struct StitchInput {
@@ -72,17 +80,22 @@ struct HookUse {
 };
 
 struct Stitched {
+    // Either the first two, or the last.
     StageText vertex;
     StageText fragment;
+    StageText compute;
     std::vector<TextureUnit> textures;
     BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
     bool uses_params = false;  ///< whether this program has the block
     std::vector<HookUse> hooks;
-    std::vector<std::string> names;   ///< of all globals of the plugins, for suggestions
-    std::vector<std::string> values;  ///< of their parameters that are not static
+    std::vector<std::string> plugins;  ///< ids of those whose text it has, each once
+    std::vector<std::string> names;    ///< of all globals of the plugins, for suggestions
+    std::vector<std::string> values;   ///< of their parameters that are not static
     /// Number of RGBA32F targets with the stored varyings of a geometry or shading program. The
     /// shading program reads them as the layers of `varyings`.
     int varying_targets = 0;
+
+    std::array<const StageText*, 3> stages() const { return {&vertex, &fragment, &compute}; }
 };
 
 /// An error in a plugin. The frame could be drawn without that plugin.
@@ -97,13 +110,14 @@ class AuthorError : public Error {
     std::string owner_;
 };
 
-/// Stitches a program. Reads from `core` the two mains, lib/types.glsl, lib/frame.glsl,
+/// Stitches a program. Reads from `core` the mains, lib/types.glsl, lib/frame.glsl,
 /// defaults.glsl and included files. The texts have only those items of core and snippets that the
-/// two `main` functions reach. Equal input gives equal bytes. The texts have no file paths.
+/// `main` functions reach. Equal input gives equal bytes. The texts have no file paths.
 ///
 /// A text is laid out as: version, a define for each capability and each word of `wants`,
 /// lib/types.glsl, the frame block, the block of parameters, samplers, varyings, prototypes of
-/// services, included files, defaults, snippets, the functions `hook_<name>` that call them, main.
+/// services, the declarations of a compute program, included files, defaults, snippets, the
+/// functions `hook_<name>` that call them, main.
 /// @throws AuthorError (BadInput) `shader: file:line: ...`
 /// @throws Error (BadInput) for two providers of an exclusive hook
 /// @throws Error (Failed) for core's own texts, and for more textures than units

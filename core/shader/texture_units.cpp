@@ -29,9 +29,9 @@ std::pair<std::size_t, std::size_t> place_of(const Sampler& sampler, const Stitc
 
 }  // namespace
 
-TextureUnits::TextureUnits(const Stage& vertex, const Stage& fragment, const StitchInput& input) {
+TextureUnits::TextureUnits(const std::vector<const Stage*>& stages, const StitchInput& input) {
     std::vector<Read> reads;
-    for (const Stage* stage : {&vertex, &fragment})
+    for (const Stage* stage : stages)
         for (const auto& [sampler, owner] : stage->samplers())
             reads.push_back({sampler, owner, same_as(sampler->resource, input), false});
     for (Read& read : reads)

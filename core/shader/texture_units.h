@@ -18,7 +18,7 @@ class TextureUnits {
   public:
     TextureUnits() = default;
     /// @throws AuthorError (BadInput) for samplers of one texture that differ in type
-    TextureUnits(const Stage& vertex, const Stage& fragment, const StitchInput& input);
+    TextureUnits(const std::vector<const Stage*>& stages, const StitchInput& input);
 
     /// Adds a sampler of core that no file declares.
     void add_core(const std::string& name, const std::string& type);

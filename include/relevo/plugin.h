@@ -28,7 +28,7 @@
 #include <stdint.h>
 
 #define RELEVO_ABI_MAJOR 2u
-#define RELEVO_ABI_MINOR 0u
+#define RELEVO_ABI_MINOR 1u
 #define RELEVO_ABI_VERSION (RELEVO_ABI_MAJOR << 16 | RELEVO_ABI_MINOR)
 
 #if defined(_WIN32)
@@ -292,6 +292,47 @@ typedef struct relevo_geo_1 {
     relevo_status (*to_post)(void* self, const double lat_lon[2], double column_row[2]);
     relevo_status (*from_post)(void* self, const double column_row[2], double lat_lon[2]);
 } relevo_geo_1;
+
+/* "relevo.marks", 1, since 2.1: names and symbols at places, which the host draws over the picture.
+ * The lists are those of plugin.json's "marks" that have no "from"; their looks are there. */
+#define RELEVO_ON_GROUND 0    /* height_m is not read */
+#define RELEVO_ABOVE_GROUND 1 /* height_m is above the ground */
+#define RELEVO_ABOVE_ZERO 2   /* height_m is above the zero of the DEM's heights */
+#define RELEVO_ON_KNOWN_GROUND                                                             \
+    3                           /* on the ground, whose height the module knows: height_m; \
+                                   hidden also just behind a crest */
+#define RELEVO_SYMBOL_OF_LIST 0 /* the "symbol" in plugin.json */
+#define RELEVO_SYMBOL_NONE 1
+#define RELEVO_SYMBOL_DOT 2
+#define RELEVO_SYMBOL_TRIANGLE 3
+#define RELEVO_UPRIGHT 0
+#define RELEVO_ALONG_AZIMUTH 1
+#define RELEVO_MAX_MARKS 1000000u  /* of a list */
+#define RELEVO_MAX_MARK_TEXT 1024u /* of a mark [bytes] */
+typedef struct relevo_mark {
+    uint32_t size;
+    int32_t height_of;       /* RELEVO_ON_GROUND, ... */
+    double lat_deg, lon_deg; /* WGS 84 */
+    double height_m;         /* not exaggerated */
+    double rank;             /* marks of a lower rank have room first; 1 where all are equal */
+    int32_t symbol;          /* RELEVO_SYMBOL_... */
+    /* RELEVO_ALONG_AZIMUTH: the text is centred on the place, without a symbol and a leader, and
+     * runs along azimuth_deg or against it, so that it is never upside down. */
+    int32_t direction;
+    double azimuth_deg; /* clockwise from north, on level ground; not read for RELEVO_UPRIGHT */
+    const char* text;   /* may be empty, for a symbol alone */
+} relevo_mark;
+typedef struct relevo_marks_1 {
+    uint32_t size;
+    uint32_t reserved;
+    void* self;
+    /* Sets all marks of a list, which replace those before. They are copied. Inside prepare() they
+     * are those of that frame and of later ones.
+     * @param list   its name in plugin.json, "buoys"
+     * @param marks  one after the other, each of the size in its `size`; may be null if there are
+     *               none */
+    relevo_status (*set)(void* self, const char* list, const relevo_mark* marks, uint64_t count);
+} relevo_marks_1;
 
 #ifdef __cplusplus
 }

@@ -328,6 +328,48 @@ class Geo {
     const relevo_geo_1& table_;
 };
 
+/// A name or symbol at a place. relevo_mark describes the members.
+struct Mark {
+    double lat_deg = 0, lon_deg = 0;
+    std::string text = {};
+    std::int32_t height_of = RELEVO_ON_GROUND;
+    double height_m = 0;
+    double rank = 1;
+    std::int32_t symbol = RELEVO_SYMBOL_OF_LIST;
+    std::optional<double> azimuth_deg = {};  ///< of the text; nothing: it is upright
+
+    bool operator==(const Mark&) const = default;
+};
+
+/// Marks that the host draws over the picture. Hosts of version 2.0 lack this service.
+class Marks {
+  public:
+    explicit Marks(const Host& host) : table_(host.service<relevo_marks_1>("relevo.marks", 1)) {}
+
+    /// Replaces all marks of a list of plugin.json.
+    void set(const char* list, std::span<const Mark> marks) const {
+        std::vector<relevo_mark> given;
+        given.reserve(marks.size());
+        for (const Mark& mark : marks) {
+            relevo_mark& to = given.emplace_back();
+            to.size = sizeof to;
+            to.height_of = mark.height_of;
+            to.lat_deg = mark.lat_deg;
+            to.lon_deg = mark.lon_deg;
+            to.height_m = mark.height_m;
+            to.rank = mark.rank;
+            to.symbol = mark.symbol;
+            to.direction = mark.azimuth_deg ? RELEVO_ALONG_AZIMUTH : RELEVO_UPRIGHT;
+            to.azimuth_deg = mark.azimuth_deg.value_or(0);
+            to.text = mark.text.c_str();
+        }
+        check(table_.set(table_.self, list, given.data(), given.size()));
+    }
+
+  private:
+    const relevo_marks_1& table_;
+};
+
 /// Runs `body` and turns what it throws into a status.
 template <typename Body>
 relevo_status guarded(const relevo_host* host, const Body& body) noexcept {

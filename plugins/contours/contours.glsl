@@ -1,13 +1,16 @@
 //! provides  contour lines of constant width in the picture
 //! hook      display
 //! reads     height and how it changes from pixel to pixel [m]
-//! writes    overlay, premultiplied sRGB
+//! writes    overlay, premultiplied sRGB; the module and core place the heights on index lines
 
 uniform float contours_interval_m = 0.0; //@ range(0, 2000) unit(m) label("Interval") description("Height between two lines; 0: by the DEM's relief, about 25 lines")
 uniform int contours_index = 5; //@ range(1, 20) label("Index lines") description("Every so many lines one is bolder")
 uniform float contours_width_px = 1.2; //@ range(0.5, 10) unit(px) label("Width")
 uniform vec3 contours_colour = vec3(0.35, 0.20, 0.08); //@ colour(srgb) label("Colour")
 uniform float contours_opacity = 0.75; //@ range(0, 1) label("Opacity")
+uniform bool contours_labels = true; //@ label("Heights") description("Heights on the index lines")
+uniform float contours_label_px = 12.0; //@ range(6, 100) unit(px) label("Letters")
+uniform float contours_label_apart_px = 300.0; //@ range(50, 5000) unit(px) label("Apart") description("Least distance between two heights on lines of one height")
 
 const float contours_lines = 25.0;     // over the DEM's relief, about
 const float contours_bold = 1.8;       // width of index lines, in those of the others

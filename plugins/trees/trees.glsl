@@ -14,7 +14,6 @@ uniform float trees_density = 0.85; //@ range(0, 1) label("Density") description
 uniform float trees_size = 1.0; //@ range(0.3, 1.3) label("Size") description("Factor on the height and width of trees")
 uniform float trees_line_m = 0.0; //@ range(-3000, 3000) unit(m) label("Tree line shift") description("Added to the climate's tree line")
 uniform float trees_clearings = 0.6; //@ range(0, 1) label("Clearings") description("How much thinner forest is in its clearings")
-uniform float trees_light = 0.2; //@ range(0, 1) label("Light") description("Share of the light that passes through a crown")
 uniform vec2 trees_slope_deg = vec2(38.0, 52.0); //@ range(0, 90) unit(deg) label("Slopes from, to") description("Slopes between which trees become rare")
 uniform vec3 trees_needles = vec3(0.030, 0.048, 0.024); //@ colour label("Needles")
 uniform vec3 trees_leaves = vec3(0.055, 0.088, 0.026); //@ colour label("Leaves")
@@ -22,6 +21,7 @@ uniform vec3 trees_autumn = vec3(0.125, 0.082, 0.034); //@ colour label("Leaves 
 
 const float trees_spacing_m = 10.0;   // plugin.json
 const float trees_highest_m = 28.0;  // plugin.json
+const float trees_light = 0.2;       // plugin.json: light_through
 
 /// What stands at a place.
 struct trees_Stand {
@@ -75,6 +75,44 @@ Crown trees_crown(in trees_Stand stand, in bool conifer) {
     return Crown(height_m, height_m * (conifer ? trees_conifer_width : trees_broadleaf_width), trees_light);
 }
 
+float trees_range_m() {
+    return instances_range_m(trees_highest_m, trees_spacing_m);
+}
+
+/// Trees on a square metre.
+float trees_per_m2(in trees_Stand stand) {
+    return stand.density / (trees_spacing_m * trees_spacing_m);
+}
+
+/// What crowns of both kinds hide from a direction. @param per_m2  trees on a square metre
+vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
+    const float unequal = 1.05;  // mean area of crowns of trees_place_tree() over that of the mean crown
+    return unequal * per_m2 * vec2(stand.conifers * crown_cone_area_m2(trees_crown(stand, true), cosine),
+                         (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
+}
+
+/// Share of a direction's light that reaches the ground, through gaps and through crowns.
+/// @param apart  0..1: 1 where the eye looks through other gaps
+float trees_lit(in trees_Stand stand, in float per_m2, in float cosine, in float apart) {
+    vec2 filled = trees_filled(stand, per_m2, cosine);
+    float both = filled.x + filled.y, cells = both / max(per_m2 * trees_spacing_m * trees_spacing_m, 1e-6);
+    return mix(trees_light, 1.0, crown_gap(both, cells, apart));
+}
+
+/// How far the ground that crowns hide from the sun is other ground than what they hide from the eye, 0..1: middles of
+/// both over a crown's width. Ground that is seen between crowns is lit where both are the same.
+float trees_apart(in trees_Stand stand, in vec3 to_eye, in vec3 up) {
+    vec3 to_sun = frame.sun_direction.xyz;
+    float apart = length(to_sun / max(dot(to_sun, up), 0.05) - to_eye / max(dot(to_eye, up), 0.05));
+    return min(apart / mix(trees_broadleaf_width, trees_conifer_width, stand.conifers), 1.0);
+}
+
+/// Share of the sun's light that reaches the sunny side of crowns past others.
+float trees_crown_sunlight(in trees_Stand stand, in float per_m2) {
+    vec2 slant = trees_filled(stand, per_m2, dot(frame.sun_direction.xyz, frame.eye_up.xyz)) - trees_filled(stand, per_m2, 1.0);
+    return mix(trees_light, 1.0, crown_sunlight(slant.x + slant.y, slant.x / max(slant.x + slant.y, 1e-6)));
+}
+
 void trees_place_tree(in InstanceSite at, inout Instance it) {
     trees_Stand stand = trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
                                     water_at(at.ground.post, 1.0).x);
@@ -85,38 +123,31 @@ void trees_place_tree(in InstanceSite at, inout Instance it) {
     it.density = stand.density;
     it.height_m = crown.height_m * (0.65 + 0.7 * at.random.z);
     it.width_m = crown.width_m * (0.65 + 0.7 * at.random.z) * (0.85 + 0.3 * at.random.w);
+    it.sun = trees_crown_sunlight(stand, trees_per_m2(stand) * (1.0 - instances_shadow_share(at.ground.position_m, trees_range_m())));
     it.colour = (conifer ? trees_needles : stand.leaves) * (0.8 + 0.4 * at.random.w);
-}
-
-/// What crowns of both kinds hide from a direction. @param per_m2  trees on a square metre
-vec2 trees_filled(in trees_Stand stand, in float per_m2, in float cosine) {
-    const float unequal = 1.05;  // mean area of crowns of trees_place_tree() over that of the mean crown
-    return unequal * per_m2 * vec2(stand.conifers * crown_area_m2(trees_crown(stand, true), cosine),
-                         (1.0 - stand.conifers) * crown_area_m2(trees_crown(stand, false), cosine));
-}
-
-/// Share of a direction's light that reaches the ground, through gaps and through crowns.
-float trees_lit(in trees_Stand stand, in float per_m2, in float cosine) {
-    vec2 filled = trees_filled(stand, per_m2, cosine);
-    return mix(trees_light, 1.0, crown_gap(filled.x + filled.y));
 }
 
 void trees_on_material(inout Surface s) {
     trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x);
-    float per_m2 = stand.density / (trees_spacing_m * trees_spacing_m);
+    float per_m2 = trees_per_m2(stand), range_m = trees_range_m();
+    float shaded = per_m2 * instances_shadow_share(s.position_m, range_m);  // by shadows that are drawn
+    float to_sun = dot(frame.sun_direction.xyz, s.up), apart = trees_apart(stand, -s.position_m / s.distance_m, s.up);
 
-    // The ground between the trees.
-    float sun = trees_lit(stand, per_m2, dot(frame.sun_direction.xyz, s.up));
+    // The ground between the trees. Shadows that are drawn darken it later.
+    float share = instances_share(s.distance_m, range_m);  // of the trees that are drawn, and hide ground
+    float drawn = trees_lit(stand, shaded, to_sun, mix(1.0, apart, share));
+    float sun = trees_lit(stand, per_m2, to_sun, apart) / drawn;
     s.diffuse *= sun;
     s.specular *= sun;
-    s.ambient *= trees_lit(stand, per_m2, 0.6);  // the sky's light comes from 53 degrees off the vertical in the mean
+    s.ambient *= trees_lit(stand, per_m2, 0.6, 1.0);  // the sky's light comes from 53 degrees off the vertical in the mean
 
     // The cover stands for the trees that are not drawn.
-    float left = 1.0 - instances_share(s.distance_m, instances_range_m(trees_highest_m, trees_spacing_m));
-    vec2 filled = trees_filled(stand, left * per_m2, dot(-s.position_m, s.up) / s.distance_m);
-    float both = filled.x + filled.y, cover = 1.0 - crown_gap(both);
-    vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(both, 1e-6));
-    s.diffuse = mix(s.diffuse, colour, cover);
+    float left = per_m2 * (1.0 - share);
+    vec2 filled = trees_filled(stand, left, dot(-s.position_m, s.up) / s.distance_m);
+    // Sprites are at least a pixel wide: they hide more than crowns, as if these stood more evenly.
+    float cover = 1.0 - crown_gap(filled.x + filled.y, 0.15);
+    vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(filled.x + filled.y, 1e-6));
+    s.diffuse = mix(s.diffuse, colour * trees_crown_sunlight(stand, per_m2) / drawn, cover);
     s.ambient = mix(s.ambient, colour, cover);
     s.specular *= 1.0 - cover;
 }

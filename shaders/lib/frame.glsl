@@ -54,4 +54,10 @@ layout(std140, binding = 0) uniform Frame {
     vec4 eye_axes;            // xy: columns and rows to a metre east, zw: north, there; 0 where that is unknown
     float seconds;            // of effects that move [s]: --seconds, or the time that the window has been open
     float time_of_year;       // 0 at the beginning of January, 1 at the end of December, UTC
+    float instance_shadow_px;     // side of a shadow map of instances
+    float instance_shadow_weight; // 1 where there are such maps, else 0
+    vec4 instance_shadow_axes[3];  // of the shadow maps; xyz: across the light, upwards across it, towards the sun
+    vec4 instance_shadow_maps[3];  // finest first; xyz: from a map's centre to the eye along these axes [m], w: 1 / half of
+                              // its side [1/m]
+    vec4 instance_shadow_eye;  // xyz: from the eye to where it was when the last map was drawn [m]
 } frame;

@@ -16,6 +16,37 @@ float instances_share(in float distance_m, in float range_m) {
     return clamp((1.0 - distance_m / range_m) / (1.0 - kInstanceFade), 0.0, 1.0);
 }
 
+const int kInstanceMaps = 3;               // render/instance_shadows.h: kMaps
+const float kInstanceMapEdge = 0.88;       // share of a map's half side up to which it is read
+
+/// A point along the axes of the shadow maps, from the eye [m].
+vec3 instances_shadow_along(in vec3 position_m) {
+    return vec3(dot(frame.instance_shadow_axes[0].xyz, position_m), dot(frame.instance_shadow_axes[1].xyz, position_m),
+                dot(frame.instance_shadow_axes[2].xyz, position_m));
+}
+
+/// A place in a shadow map: -1..1 over its sides, and 0..1 its depth. Receivers have all of that; what casts shadows may
+/// lie beyond.
+/// @param along  of instances_shadow_along()
+/// @param map    of frame.instance_shadow_maps
+vec3 instances_shadow_place(in vec3 along, in vec4 map) {
+    vec3 at = (along + map.xyz) * map.w;
+    return vec3(at.xy, 0.5 + 0.3 * at.z);
+}
+
+/// Weight of the drawn shadows towards the edge of the last map, 0..1.
+float instances_shadow_weight(in vec3 position_m) {
+    vec2 at = abs(instances_shadow_place(instances_shadow_along(position_m), frame.instance_shadow_maps[kInstanceMaps - 1]).xy);
+    return frame.instance_shadow_weight * (1.0 - smoothstep(0.7, kInstanceMapEdge, max(at.x, at.y)));
+}
+
+/// Share of the instances whose shadows are drawn, 0..1. The plugin darkens ground and cover by the others in the mean.
+/// @param position_m  relative to the eye
+float instances_shadow_share(in vec3 position_m, in float range_m) {
+    float distance_m = length(position_m - frame.instance_shadow_eye.xyz);
+    return instances_shadow_weight(position_m) * instances_share(distance_m, range_m);
+}
+
 /// Four numbers of a cell of the grid of sites, 0..1. @param stream  other numbers of the same cell
 vec4 instances_random(in ivec2 cell, in uint stream) {
     uvec4 v = uvec4(uvec2(cell), stream, 0x9e3779b9u) * 1664525u + 1013904223u;

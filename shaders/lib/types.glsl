@@ -1,4 +1,4 @@
-//! provides  VertexFrame, Surface, Pixel, Texel, InstanceSite, Instance: what hooks and passes get. Append-only: plugins rely on every member.
+//! provides  VertexFrame, Surface, Pixel, Texel, Voxel, Invocation, InstanceSite, Instance: what hooks and passes get. Append-only: plugins rely on every member.
 //!
 //! What tells the ground's kind is the DEM's own, whatever --exaggerate: height_m, height_unit,
 //! ground_m, ground_normal and the steps of these. What light needs is of the ground as it is drawn:
@@ -72,7 +72,8 @@ struct Instance {
     float turn;      // about the vertical, counter-clockwise as seen from above [rad]
     vec3 colour;     // mean reflectance, linear; meshes vary it
     int kind;        // which of the meshes, from 0
-    float taper;     // of its sprite: 0 an ellipse, 1 a cone
+    float taper;     // of its sprite and its shadow: 0 an ellipse, 1 a cone
+    float sun;       // share of the sun's light that passes the instances whose shadows are not drawn, 0..1; at first 1
 };
 
 /// A texel of a plugin's pass.
@@ -80,4 +81,17 @@ struct Texel {
     vec2 at_px;    // its centre, from the texture's lower left corner, right and up [texels]
     vec2 at;       // the same as shares of the texture's width and height, 0..1
     vec2 size_px;  // of the texture [texels]
+};
+
+/// A texel of a 3-D texture that a pass of a plugin computes.
+struct Voxel {
+    vec3 at_px;    // its centre, from the corner of texel (0, 0, 0) [texels]
+    vec3 at;       // the same as shares of the texture's width, height and depth, 0..1
+    vec3 size_px;  // of the texture [texels]
+};
+
+/// An invocation of a compute pass. Work groups are whole: some invocations are beyond `size`.
+struct Invocation {
+    ivec3 at;    // its number along each axis, from 0; of a texture its texel, of a buffer in x its element
+    ivec3 size;  // how many are wanted along each axis
 };

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     services.add_parameter("probe.size", false, {3, 0, 0, 0});
     services.add_parameter("probe.level", true, {});
     services.add_text("probe.track");
+    services.add_marks("places");
     void* library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) return std::printf("%s\n", dlerror()), 1;
     const auto* version = static_cast<const std::uint32_t*>(dlsym(library, "relevo_plugin_abi"));

@@ -1,17 +1,16 @@
 /* A module in C99 that asks every service what it may be asked, and what it may not. */
 #include <math.h>
+#include <relevo/plugin.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <relevo/plugin.h>
-
-#define EXPECT(condition)                                                                  \
-    do {                                                                                   \
-        if (!(condition)) return complain(__LINE__, #condition);                           \
+#define EXPECT(condition)                                        \
+    do {                                                         \
+        if (!(condition)) return complain(__LINE__, #condition); \
     } while (0)
-#define NEED(table, type, name)                                                            \
-    const type* table = (const type*)host_->service(host_, name, 1);                       \
+#define NEED(table, type, name)                                      \
+    const type* table = (const type*)host_->service(host_, name, 1); \
     EXPECT(table != NULL && table->size >= sizeof *table && table->self != NULL)
 
 static const relevo_host* host_;
@@ -182,11 +181,40 @@ static relevo_status check_ground(int in_frame) {
     return RELEVO_OK;
 }
 
+static relevo_status check_marks(void) {
+    NEED(marks, relevo_marks_1, "relevo.marks");
+    void* self = marks->self;
+    relevo_mark two[2];
+    memset(two, 0, sizeof two);
+    two[0].size = two[1].size = sizeof two[0];
+    two[0].text = "B\xc3\xa4r";
+    two[1].text = "";
+    two[1].lat_deg = -90;
+    EXPECT(marks->set(self, "places", two, 2) == RELEVO_OK);
+    EXPECT(marks->set(self, "places", NULL, 0) == RELEVO_OK);
+    EXPECT(marks->set(self, "places", NULL, 1) == RELEVO_FAILED);
+    EXPECT(marks->set(self, "others", two, 2) == RELEVO_FAILED);
+    EXPECT(marks->set(self, NULL, two, 2) == RELEVO_FAILED);
+    EXPECT(marks->set(NULL, "places", two, 2) == RELEVO_FAILED);
+    EXPECT(marks->set(self, "places", two, 10000000) == RELEVO_FAILED);
+    two[1].text = "\xff";
+    EXPECT(marks->set(self, "places", two, 2) == RELEVO_FAILED);
+    two[1].text = NULL;
+    EXPECT(marks->set(self, "places", two, 2) == RELEVO_FAILED);
+    two[1].text = "";
+    two[1].lat_deg = 95;
+    EXPECT(marks->set(self, "places", two, 2) == RELEVO_FAILED);
+    two[1].lat_deg = 0;
+    two[1].size = 8;
+    EXPECT(marks->set(self, "places", two, 2) == RELEVO_FAILED);
+    return RELEVO_OK;
+}
+
 static relevo_status create(const relevo_host* host, void** instance) {
     host_ = host;
     *instance = (void*)host;
-    if (check_host() != RELEVO_OK || check_params() != RELEVO_OK ||
-        check_textures() != RELEVO_OK || check_ground(0) != RELEVO_OK)
+    if (check_host() != RELEVO_OK || check_params() != RELEVO_OK || check_textures() != RELEVO_OK ||
+        check_ground(0) != RELEVO_OK || check_marks() != RELEVO_OK)
         return RELEVO_FAILED;
     return RELEVO_OK;
 }

@@ -40,6 +40,7 @@ class Probe : public Instance {
           terrain_(host),
           heights_(host),
           geo_(host),
+          marks_(host),
           program_(host, "fill.glsl") {
         log_.debug("made");
         expect(params_.get("probe.size") == 3, "a parameter");
@@ -79,6 +80,9 @@ class Probe : public Instance {
         expect(back && std::abs((*back)[0] - 0.01) < 1e-6, "to a post and back");
         const Geo::Point local = geo_.to_local({0.01, 0.01, 5});
         expect(std::abs(geo_.from_local(local)[2] - 5) < 1e-6, "to the local frame and back");
+        marks_.set("places", std::array{Mark{.text = "here"}, Mark{.azimuth_deg = 30}});
+        expect(fails([&] { marks_.set("others", {}); }), "an unknown list");
+        expect(fails([&] { marks_.set("places", std::array{Mark{.lat_deg = 95}}); }), "a latitude");
     }
 
   private:
@@ -89,6 +93,7 @@ class Probe : public Instance {
     Terrain terrain_;
     Heights heights_;
     Geo geo_;
+    Marks marks_;
     Program program_;
     Texture texture_;
 };

@@ -58,6 +58,8 @@ AT(relevo_geo_1, self, 8);
 AT(relevo_geo_1, to_local, 16);
 AT(relevo_geo_1, from_local, 24);
 AT(relevo_geo_1, to_post, 32);
+AT(relevo_marks_1, self, 8);
+AT(relevo_marks_1, set, 16);
 AT(relevo_geo_1, from_post, 40);
 
 AT(relevo_frame, size, 0);
@@ -126,6 +128,16 @@ AT(relevo_nodes, row, 12);
 AT(relevo_nodes, columns, 16);
 AT(relevo_nodes, rows, 20);
 
+AT(relevo_mark, height_of, 4);
+AT(relevo_mark, lat_deg, 8);
+AT(relevo_mark, lon_deg, 16);
+AT(relevo_mark, height_m, 24);
+AT(relevo_mark, rank, 32);
+AT(relevo_mark, symbol, 40);
+AT(relevo_mark, direction, 44);
+AT(relevo_mark, azimuth_deg, 48);
+AT(relevo_mark, text, 56);
+
 // No padding at the end either: the next word would lie in it, and nobody could tell.
 #define ENDS(type, last) \
     static_assert(sizeof(type) == offsetof(type, last) + sizeof(type::last), #type " has padding")
@@ -139,6 +151,7 @@ ENDS(relevo_draw, values);
 ENDS(relevo_box, high);
 ENDS(relevo_heights, levels);
 ENDS(relevo_nodes, rows);
+ENDS(relevo_mark, text);
 
 /// What a host says of a module, each built against this header or against one that has grown.
 std::string answer(const std::string& host, const std::string& module,
@@ -155,13 +168,13 @@ std::string answer(const std::string& host, const std::string& module,
 }
 
 TEST(Abi, ModulesInCAndCppDoInTodaysHost) {
-    EXPECT_EQ(answer("host", "c_module"), "ok, interface 2.0 of the module\n");
-    EXPECT_EQ(answer("host", "cpp_module"), "ok, interface 2.0 of the module\n");
+    EXPECT_EQ(answer("host", "c_module"), "ok, interface 2.1 of the module\n");
+    EXPECT_EQ(answer("host", "cpp_module"), "ok, interface 2.1 of the module\n");
 }
 
 TEST(Abi, TheyDoInAHostWhoseStructsHaveGrown) {
-    EXPECT_EQ(answer("grown_host", "c_module"), "ok, interface 2.0 of the module\n");
-    EXPECT_EQ(answer("grown_host", "cpp_module"), "ok, interface 2.0 of the module\n");
+    EXPECT_EQ(answer("grown_host", "c_module"), "ok, interface 2.1 of the module\n");
+    EXPECT_EQ(answer("grown_host", "cpp_module"), "ok, interface 2.1 of the module\n");
 }
 
 TEST(Abi, LaterModulesThatAskForNoMoreDoInTodaysHost) {
@@ -172,10 +185,10 @@ TEST(Abi, LaterModulesThatAskForNoMoreDoInTodaysHost) {
 TEST(Abi, AModuleRefusesAHostThatItCannotUse) {
     EXPECT_EQ(answer("host", "cpp_module", "older-major"),
               "registration: this program has version 1.0 of the plugin interface, and the module "
-              "is built for 2.0\n");
+              "is built for 2.1\n");
     EXPECT_EQ(answer("host", "cpp_module", "small-table"),
-              "registration: this program has version 2.0 of the plugin interface, and the module "
-              "is built for 2.0\n");
+              "registration: this program has version 2.1 of the plugin interface, and the module "
+              "is built for 2.1\n");
 }
 
 }  // namespace

@@ -162,6 +162,72 @@ TEST(Marks, NamesOfAnyLettersAreDrawn) {
         }
 }
 
+TEST(Marks, TurnedNamesAreCentredAndInsideTheirBoxes) {
+    for (const double turn_deg : {-90.0, -45.0, 0.0, 20.0, 90.0}) {
+        FreeRoom room(kPicture);
+        const std::vector<MarkPoint> points{{{500, 300}, "1200 m", {}, turn_deg}};
+        // A symbol and a leader are those of upright names.
+        const MarkStyle style{.size = 24, .symbol = Symbol::Dot, .leader = 20};
+        const std::vector<PlacedMark> placed = place_marks(points, style, room);
+        ASSERT_EQ(placed.size(), 1u);
+        EXPECT_EQ(placed[0].symbol.width, 0);
+        EXPECT_EQ(placed[0].leader_top, 300);
+        Drawing drawing(kPicture.width, kPicture.height);
+        draw_marks(placed, style, drawing);
+        const image::Image8 image = to_transparent_image(drawing);
+        glm::dvec2 sum(0);
+        double count = 0, outside = 0, along = 0;
+        const double turn = turn_deg * 3.14159265358979 / 180;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) {
+                if (image.at(x, y, 3) < 16) continue;
+                const glm::dvec2 at(x + 0.5, y + 0.5);
+                sum += at;
+                count += 1;
+                outside += apart(placed[0].box, {at.x, at.y, 0, 0}) > 1 ? 1 : 0;
+                along = std::max(
+                    along, std::abs(dot(at - points[0].at, {std::cos(turn), std::sin(turn)})));
+            }
+        EXPECT_EQ(outside, 0) << turn_deg;
+        EXPECT_LT(distance(sum / count, points[0].at), 2.5) << turn_deg;
+        // The words run along the direction.
+        EXPECT_NEAR(along, 0.5 * text_width("1200 m", style.size) + 0.15 * style.size, 3)
+            << turn_deg;
+    }
+}
+
+TEST(Marks, OfTheSameNameAreApart) {
+    std::vector<MarkPoint> points;
+    for (int i = 0; i < 400; ++i)
+        points.push_back(
+            {{20 + 48 * (i % 20), 20 + 33 * (i / 20)}, i % 2 == 0 ? "500 m" : "600 m"});
+    FreeRoom room(kPicture);
+    const std::vector<PlacedMark> placed =
+        place_marks(points, {.size = 8, .symbol = Symbol::None, .repeat = 200}, room);
+    double least = 1e9, least_of_others = 1e9;
+    for (const PlacedMark& a : placed)
+        for (const PlacedMark& b : placed) {
+            if (a.index == b.index) continue;
+            double& of = a.words == b.words ? least : least_of_others;
+            of = std::min(of, distance(a.at, b.at));
+        }
+    EXPECT_GE(placed.size(), 16u);
+    EXPECT_GE(least, 200);
+    EXPECT_LT(least_of_others, 100);
+}
+
+TEST(Marks, HaveTheirOwnSymbols) {
+    const std::vector<MarkPoint> points{{{100, 100}, "list's"},
+                                        {{300, 100}, "own", Symbol::Triangle},
+                                        {{500, 100}, "none", Symbol::None}};
+    FreeRoom room(kPicture);
+    const std::vector<PlacedMark> placed = place_marks(points, {.symbol = Symbol::Dot}, room);
+    ASSERT_EQ(placed.size(), 3u);
+    EXPECT_EQ(placed[0].kind, Symbol::Dot);
+    EXPECT_EQ(placed[1].kind, Symbol::Triangle);
+    EXPECT_EQ(placed[2].symbol.width, 0);
+}
+
 TEST(Marks, WithoutAPictureThereIsNoRoom) {
     FreeRoom room({0, 0, 0, 0});
     const std::vector<MarkPoint> points{{{0, 0}, "a"}, {{std::nan(""), 3}, "b"}};

@@ -156,5 +156,53 @@ TEST_F(AuthorMistakes, LightThatIsNoNumberIsNamedWithHookLineAndPixel) {
                     "error: dust/dust.glsl:5: dust_on_lit: radiance is NaN or infinite in ")));
 }
 
+TEST_F(AuthorMistakes, APassWhoseTexelsAreNoNumbersIsNamed) {
+    EXPECT_THAT(check("uniform float dust_zero = 0.0; //@ range(-1, 1)\n"
+                      "uniform sampler3D dust_block;\n"
+                      "vec4 dust_pass_block(in Voxel v) {\n"
+                      "    return vec4(v.at_px, 1.0) / dust_zero;\n"
+                      "}\n"
+                      "void dust_on_lit(in Surface s, inout vec3 radiance) {\n"
+                      "    radiance += textureLod(dust_block, vec3(0.5), 0.0).rgb;\n"
+                      "}\n",
+                      R"(, "passes": {"block": {"kind": "3d", "size": [4, 4, 4]}})"),
+                ElementsAre(::testing::StartsWith("error: dust/dust.glsl:3: dust_pass_block: it "
+                                                  "makes light that is NaN or infinite in ")));
+}
+
+TEST_F(AuthorMistakes, OfComputePassesEachIsNamed) {
+    const std::string members =
+        R"(, "passes": {"sum": {"kind": "compute", "writes": "uints", "count": 4,
+                               "local_size": [4]}})";
+    const std::string reads =
+        "uniform usamplerBuffer dust_sum;\n"
+        "void dust_on_lit(in Surface s, inout vec3 radiance) {\n"
+        "    radiance *= float(texelFetch(dust_sum, 0).r);\n"
+        "}\n";
+    EXPECT_THAT(check(reads, members),
+                ElementsAre("error: dust/plugin.json:1: passes.sum: expected one function void "
+                            "dust_pass_sum(in Invocation i) in the plugin's GLSL but got 0"));
+    EXPECT_THAT(check(reads + "void dust_pass_sum(in Invocation i) {\n"
+                              "    dust_sum_out[i.at.x] = i.at;\n"
+                              "}\n",
+                      members),
+                ElementsAre(::testing::StartsWith("error: dust/dust.glsl:6: ")));
+    EXPECT_THAT(check(reads + "void dust_pass_sum(in Invocation i) {\n"
+                              "    imageStore(dust_sum_out, ivec2(0), vec4(1.0));\n"
+                              "}\n",
+                      members),
+                ElementsAre(::testing::StartsWith("error: dust/dust.glsl:6: ")));
+    EXPECT_THAT(check(reads + "void dust_pass_sum(in Invocation i) {\n"
+                              "    while (i.at.x >= 0) dust_sum_out[0] = 1u;\n"
+                              "}\n"
+                              "buffer Dust { float dust_more[]; };\n",
+                      members),
+                ElementsAre("error: dust/dust.glsl:8: buffer is core's; a plugin declares "
+                            "parameters, samplers, varyings, constants, structs and functions"));
+    EXPECT_THAT(
+        check(reads + "void dust_pass_sum(in Invocation i) { dust_sum_out[0] = 1u; }\n", members),
+        IsEmpty());
+}
+
 }  // namespace
 }  // namespace relevo::test

@@ -185,6 +185,27 @@ TEST_F(Plugins, AnEndlessLoopOfAVertexHookEndsTheProgram) {
     EXPECT_FALSE(drawn());
 }
 
+TEST_F(Plugins, AnEndlessLoopOfAPassEndsTheProgram) {
+    const std::string loops =
+        "    float x = 0.5;\n"
+        "    for (uint i = 0u; i < 4000000000u; ++i)\n"
+        "        for (uint k = 0u; k < 4000000000u; ++k) " +
+        long_turn("x") + "\n";
+    const std::string read =
+        "void odd_on_albedo(inout Surface s) { s.diffuse *= float(texelFetch(odd_sum, 0).r); }\n";
+    make("uniform samplerBuffer odd_sum;\n" + read + "void odd_pass_sum(in Invocation i) {\n" +
+             loops + "    odd_sum_out[0] = x;\n}\n",
+         R"("passes": {"sum": {"kind": "compute", "writes": "floats", "count": 1,
+                               "local_size": [64], "over": "frame"}})");
+    const Result run = capture({}, {"RELEVO_PATIENCE_S=1"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.err,
+              "relevo: error: render: program odd.sum: the device took more than 1 s; "
+              "plugins/odd/odd.glsl:5, plugins/odd/odd.glsl:6 may never end; --disable odd "
+              "goes on without it\n");
+    EXPECT_FALSE(drawn());
+}
+
 /// GLSL that is small, and of which a driver makes more than it can hold.
 std::vector<std::pair<const char*, std::string>> bombs() {
     std::string doubled = "#define odd_m0 s.diffuse.x +=\\\n 0.1;\n";

@@ -82,7 +82,83 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"PassOfAnotherSignature", R"("passes": {"blur": {}})",
                  "vec4 haze_pass_blur(in vec2 at) { return vec4(0.0); }\n" + kHook,
                  "shader: plugins/haze/haze.glsl:1: haze_pass_blur: wrong signature, expected "
-                 "vec4 haze_pass_blur(in Texel) but got vec4 haze_pass_blur(in vec2)"},
+                 "vec4 haze_pass_blur(in Texel), or of kind 3d vec4 haze_pass_blur(in Voxel), or "
+                 "of kind compute void haze_pass_blur(in Invocation) but got vec4 "
+                 "haze_pass_blur(in vec2)"},
+        Mismatch{"PassOfAnotherKind", R"("passes": {"blur": {"kind": "3d", "size": [4, 4, 4]}})",
+                 "\nvec4 haze_pass_blur(in Texel t) { return vec4(0.0); }\n" + kHook,
+                 "plugin: plugins/haze/haze.glsl:2: haze_pass_blur: it is the function of a pass "
+                 "of kind full, but the kind in plugins/haze/plugin.json:1 is 3d; expected vec4 "
+                 "haze_pass_blur(in Voxel v)"},
+        Mismatch{"PassOfNoKind", R"("passes": {"blur": {"kind": "cube"}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.kind: expected one of full, 3d, "
+                 "compute but got \"cube\""},
+        Mismatch{"FullPassWithWorkGroups", R"("passes": {"blur": {"local_size": [8, 8]}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.local_size: only passes of kind "
+                 "compute have this, but the kind is full"},
+        Mismatch{"VolumeOfAScale", R"("passes": {"blur": {"kind": "3d", "scale": 0.5}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.scale: only passes of kind full "
+                 "or compute have this, but the kind is 3d"},
+        Mismatch{"VolumeWithoutASize", R"("passes": {"blur": {"kind": "3d"}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur: expected a member \"size\""},
+        Mismatch{"VolumeOfNothing", R"("passes": {"blur": {"kind": "3d", "size": [4, 0, 4]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.blur.size: expected 3 whole numbers "
+                 "from 1 to 2048, 2048 and 2048"},
+        Mismatch{"VolumeOfTooMuchMemory",
+                 R"("passes": {"blur": {"kind": "3d", "size": [2048, 2048, 2048]}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes: expected at most 32 passes and 256 "
+                 "MiB of fixed size but got 1 and 65536"},
+        Mismatch{"ABillionWorkGroups",
+                 R"("passes": {"sum": {"kind": "compute", "writes": "uints", "count": 4,
+                               "local_size": [64], "work_groups": [1000000000]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: passes.sum.work_groups: expected 1 to 3 "
+                 "whole numbers from 1 to 65535, 65535 and 65535"},
+        Mismatch{"ABillionWorkGroupsOverThreeAxes",
+                 R"("passes": {"sum": {"kind": "compute", "writes": "uints", "count": 4,
+                               "local_size": [64], "work_groups": [1000, 1000, 1000]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: passes.sum.work_groups: expected at most "
+                 "134.217728 million invocations but got 64000 million"},
+        Mismatch{"WorkGroupsTooLarge",
+                 R"("passes": {"sum": {"kind": "compute", "local_size": [64, 32]}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.sum.local_size: expected at most 1024 "
+                 "invocations in a work group, which every device has, but got 64 x 32 x 1"},
+        Mismatch{"WorkGroupsWithoutALocalSize", R"("passes": {"sum": {"kind": "compute"}})", kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.sum: expected a member "
+                 "\"local_size\""},
+        Mismatch{"WorkGroupsOfTwoNumbers",
+                 R"("passes": {"sum": {"kind": "compute", "local_size": [8], "over": "frame",
+                               "work_groups": [8]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.sum.over: expected this or "
+                 "\"work_groups\", not both"},
+        Mismatch{"OverNothing",
+                 R"("passes": {"sum": {"kind": "compute", "local_size": [8], "over": "scene"}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.sum.over: expected \"frame\" or the "
+                 "name of a pass but got \"scene\""},
+        Mismatch{"BufferWithAFormat",
+                 R"("passes": {"sum": {"kind": "compute", "writes": "floats", "count": 9,
+                               "format": "r32f", "local_size": [8]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: passes.sum.format: a buffer has no such key; "
+                 "its length is \"count\""},
+        Mismatch{"BufferTooLong",
+                 R"("passes": {"sum": {"kind": "compute", "writes": "floats", "count": 65537,
+                               "local_size": [8]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: passes.sum.count: expected a whole number in "
+                 "[1, 65536] but got 65537"},
+        Mismatch{"SamplerOfABuffer",
+                 R"("passes": {"sum": {"kind": "compute", "writes": "uints", "count": 9,
+                               "local_size": [8]}})",
+                 "uniform sampler2D haze_sum;\n"
+                 "void haze_pass_sum(in Invocation i) {}\n" +
+                     kHook,
+                 "plugin: plugins/haze/haze.glsl:1: haze_sum: expected a usamplerBuffer for the "
+                 "pass sum of plugins/haze/plugin.json:1 but got a sampler2D"},
         Mismatch{"InstancesWithoutAFunction",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["haze.glsl"]}]}})",
@@ -110,6 +186,24 @@ INSTANTIATE_TEST_SUITE_P(
             R"("instances": {"oak": {"spacing_m": 1e-9, "height_m": 9, "levels": [{}]}})", kHook,
             "plugin: plugins/haze/plugin.json:1: instances.oak.spacing_m: expected a number in "
             "[0.5, 100000] but got 1e-09"},
+        Mismatch{"InstancesThatLetTooMuchLightThrough",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "light_through": 1.5,
+                    "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.light_through: expected a "
+                 "number in [0, 1] but got 1.5"},
+        Mismatch{"InstancesWithoutAShadowThatLetLightThrough",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "casts_shadow": false,
+                    "light_through": 0.5, "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:2: instances.oak.light_through: expected none "
+                 "where casts_shadow is false"},
+        Mismatch{"InstancesWhoseShadowIsANumber",
+                 R"("instances": {"oak": {"spacing_m": 5, "height_m": 9, "casts_shadow": 1,
+                    "levels": [{"meshes": ["haze.glsl"]}]}})",
+                 kHook,
+                 "plugin: plugins/haze/plugin.json:1: instances.oak.casts_shadow: expected true or "
+                 "false but got 1"},
         Mismatch{"InstancesOfAMeshOutside",
                  R"("instances": {"oak": {"spacing_m": 5, "height_m": 9,
                     "levels": [{"meshes": ["../oak.obj"]}]}})",

@@ -73,6 +73,20 @@ TEST(PluginGuide, ItsGlowIsAPlugin) {
     EXPECT_EQ(registry.effects()[0].manifest.passes.size(), 1U);
 }
 
+TEST(PluginGuide, ItsAirAndItsMeterArePlugins) {
+    const Plugins plugins;
+    plugins.add("air", R"("passes": {"air": {"kind": "3d", "size": [32, 32, 16], "when": "sun"}})",
+                block(guide(), "glsl air.glsl"));
+    plugins.add("meter",
+                R"("passes": {"histogram": {"kind": "compute", "writes": "uints", "count": 64,
+                                            "local_size": [8, 8], "over": "frame"}})",
+                block(guide(), "glsl meter.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    EXPECT_EQ(registry.effects()[0].manifest.passes.size(), 1U);
+    EXPECT_EQ(registry.effects()[1].manifest.passes.size(), 1U);
+}
+
 TEST(PluginGuide, ItsStonesAreAPlugin) {
     const Plugins plugins;
     plugins.write("plugins/stones/stone.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -52,7 +52,9 @@ TEST(MarksSpec, MistakesAreNamed) {
     };
     const std::string kFile = R"("from": "file", )";
     for (const Bad& bad :
-         {Bad{R"("size": 12)", ":2: marks.huts: expected a member \"from\""},
+         {Bad{R"("size": 12)",
+              ":2: marks.huts: expected a member \"from\", or a \"module\" of the plugin that sets "
+              "the marks"},
           Bad{R"("from": "list")",
               ":2: marks.huts.from: expected a text of kind file but got \"list\"; add \"texts\": "
               "{\"list\": {\"kind\": \"file\"}}"},

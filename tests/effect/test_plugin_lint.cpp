@@ -56,6 +56,18 @@ TEST(PluginLint, NamesLoopsThatMayNeverEnd) {
                             "0; i < N; ++i) with a constant N of at most 10000"));
 }
 
+TEST(PluginLint, NamesPassesThatNothingReads) {
+    const std::string passes = R"("passes": {
+        "sum": {"kind": "compute", "writes": "uints", "count": 4, "local_size": [4]}})";
+    const std::string function = "void dust_pass_sum(in Invocation i) { dust_sum_out[0] = 1u; }\n";
+    EXPECT_THAT(findings(kHook + function, passes),
+                ElementsAre("warning plugins/dust/plugin.json:2: passes.sum: nothing reads it, so "
+                            "it is never computed; add uniform usamplerBuffer dust_sum, or remove "
+                            "it"));
+    EXPECT_THAT(findings("uniform usamplerBuffer dust_sum;\n" + kHook + function, passes),
+                IsEmpty());
+}
+
 TEST(PluginLint, NamesParametersThatNoHookReads) {
     EXPECT_THAT(findings("uniform float dust_amount = 0.5; //@ range(0, 1)\n"
                          "uniform float dust_level_m = 0.5; //@ range(0, 1)\n"
@@ -83,7 +95,7 @@ TEST(PluginLint, NamesDerivativesThatAreNotThere) {
     EXPECT_THAT(
         findings("uniform sampler2D dust_map;\n"
                  "void dust_on_material(inout Surface s) {\n"
-                 "    s.diffuse = texture(dust_map, s.ground_m.xy).rgb;\n"
+                 "    s.diffuse = s.ambient = texture(dust_map, s.ground_m.xy).rgb;\n"
                  "    s.diffuse *= dFdx(s.height_m);\n"
                  "}\n",
                  texture),
@@ -98,6 +110,27 @@ TEST(PluginLint, NamesDerivativesThatAreNotThere) {
                          "    return texture(dust_map, at).rgb;\n"
                          "}\n",
                          texture),
+                IsEmpty());
+}
+
+TEST(PluginLint, NamesHooksThatPaintTheGroundInDirectLightAlone) {
+    const std::string expected =
+        "warning plugins/dust/dust.glsl:2: dust_on_material sets diffuse without ambient, so the "
+        "ground keeps its earlier colour in the sky's light and in shade; set s.ambient, too";
+    EXPECT_THAT(findings("void dust_on_material(inout Surface s) {\n"
+                         "    s.diffuse = mix(s.ambient, vec3(0.4), 0.5);\n"
+                         "}\n"),
+                ElementsAre(expected));
+    EXPECT_THAT(findings("void dust_paint(inout Surface s) {\n"
+                         "    s.diffuse.rg = vec2(0.4);\n"
+                         "}\n"
+                         "void dust_on_material(inout Surface s) { dust_paint(s); }\n"),
+                ElementsAre(expected));
+    EXPECT_THAT(findings("void dust_paint(inout Surface s) { s.ambient = s.diffuse; }\n"
+                         "void dust_on_material(inout Surface s) {\n"
+                         "    s.diffuse = vec3(0.4);\n"
+                         "    dust_paint(s);\n"
+                         "}\n"),
                 IsEmpty());
 }
 

@@ -67,6 +67,9 @@ TEST(PluginSchema, HasTheLoadersKeys) {
     EXPECT_THAT(keys(member(objects, "marks")),
                 UnorderedElementsAreArray(
                     known_keys(R"("marks": {"a": {"from": "file", )" + unknown + "}}")));
+    // Each kind of pass takes some of these.
+    EXPECT_THAT(keys(member(objects, "pass")),
+                UnorderedElementsAreArray(known_keys(R"("passes": {"a": {)" + unknown + "}}")));
     // Each kind of texture takes some of these.
     std::vector<std::string> texture =
         known_keys(R"("textures": {"a": {"kind": "3d", "file": "dust.glsl", "encoding": "srgb", )" +

@@ -1,6 +1,6 @@
 #include "golden/reference_compiler.h"
 
-#include <array>
+#include <memory>
 #include <span>
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 namespace relevo::test {
 namespace {
 
-constexpr std::array kStages = {EShLangVertex, EShLangFragment};
 constexpr int kVersion = 450;
 
 /// The compiler's tables, made once a process: they take ten times as long as a program.
@@ -23,18 +22,26 @@ struct Compiler {
     Compiler& operator=(const Compiler&) = delete;
 };
 
+/// A stage of a program, and where its SPIR-V goes.
+struct Stage {
+    EShLanguage kind;
+    std::string_view text;
+    std::vector<std::uint32_t>* code;
+};
+
 /// @param spirv  for SPIR-V, which wants a location for whatever has none
-void compile(const std::array<std::string_view, 2>& texts, bool spirv, ReferenceProgram& result) {
+void compile(const std::vector<Stage>& stages, bool spirv, ReferenceProgram& result) {
     const EShMessages messages = spirv ? EShMsgSpvRules : EShMsgDefault;
-    glslang::TShader vertex(kStages[0]), fragment(kStages[1]);
+    std::vector<std::unique_ptr<glslang::TShader>> shaders;
     glslang::TProgram program;
-    for (std::size_t i = 0; i < kStages.size(); ++i) {
-        glslang::TShader& shader = i == 0 ? vertex : fragment;
-        const char* const text = texts[i].data();
-        const int length = static_cast<int>(texts[i].size());
+    for (const Stage& stage : stages) {
+        glslang::TShader& shader =
+            *shaders.emplace_back(std::make_unique<glslang::TShader>(stage.kind));
+        const char* const text = stage.text.data();
+        const int length = static_cast<int>(stage.text.size());
         shader.setStringsWithLengths(&text, &length, 1);
         if (spirv) {
-            shader.setEnvInput(glslang::EShSourceGlsl, kStages[i], glslang::EShClientOpenGL, 100);
+            shader.setEnvInput(glslang::EShSourceGlsl, stage.kind, glslang::EShClientOpenGL, 100);
             shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
             shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
             shader.setAutoMapLocations(true);
@@ -48,10 +55,9 @@ void compile(const std::array<std::string_view, 2>& texts, bool spirv, Reference
     if (program.link(messages) && spirv) program.mapIO();
     result.refused += program.getInfoLog();
     if (!spirv || !result.refused.empty()) return;
-    for (std::size_t i = 0; i < kStages.size(); ++i) {
+    for (const Stage& stage : stages) {
         spv::SpvBuildLogger log;
-        glslang::GlslangToSpv(*program.getIntermediate(kStages[i]),
-                              i == 0 ? result.vertex : result.fragment, &log);
+        glslang::GlslangToSpv(*program.getIntermediate(stage.kind), *stage.code, &log);
         result.refused += log.getAllMessages();
     }
 }
@@ -92,14 +98,30 @@ int count_decorations(const std::vector<std::uint32_t>& code, std::uint32_t deco
     return count;
 }
 
-ReferenceProgram reference_compile(std::string_view vertex, std::string_view fragment) {
+namespace {
+
+void compile_and_validate(const std::vector<Stage>& stages, ReferenceProgram& result) {
     static const Compiler compiler;
-    ReferenceProgram result;
     for (const bool spirv : {false, true})
-        if (result.refused.empty()) compile({vertex, fragment}, spirv, result);
-    if (!result.refused.empty()) return result;
-    validate(result.vertex, result);
-    validate(result.fragment, result);
+        if (result.refused.empty()) compile(stages, spirv, result);
+    if (!result.refused.empty()) return;
+    for (const Stage& stage : stages)
+        validate(*stage.code, result);
+}
+
+}  // namespace
+
+ReferenceProgram reference_compile(std::string_view vertex, std::string_view fragment) {
+    ReferenceProgram result;
+    compile_and_validate(
+        {{EShLangVertex, vertex, &result.vertex}, {EShLangFragment, fragment, &result.fragment}},
+        result);
+    return result;
+}
+
+ReferenceProgram reference_compile_compute(std::string_view text) {
+    ReferenceProgram result;
+    compile_and_validate({{EShLangCompute, text, &result.compute}}, result);
     return result;
 }
 

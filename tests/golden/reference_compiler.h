@@ -11,6 +11,7 @@ namespace relevo::test {
 struct ReferenceProgram {
     std::string refused;                          ///< why, a message a line; empty: it is taken
     std::vector<std::uint32_t> vertex, fragment;  ///< SPIR-V for OpenGL
+    std::vector<std::uint32_t> compute;           ///< of a compute program
 };
 
 /// How often SPIR-V has an operation, or a decoration, by its number there.
@@ -20,5 +21,7 @@ int count_decorations(const std::vector<std::uint32_t>& code, std::uint32_t deco
 /// Compiles and links as OpenGL's GLSL, then again to SPIR-V for OpenGL 4.5, which is validated.
 /// Warnings count as refusals.
 ReferenceProgram reference_compile(std::string_view vertex, std::string_view fragment);
+/// The same of a compute program.
+ReferenceProgram reference_compile_compute(std::string_view text);
 
 }  // namespace relevo::test

@@ -51,10 +51,16 @@ class Programs {
     struct Program {
         std::string name;  ///< of the first with this text, with what it is drawn for
         std::string vertex, fragment;
+        std::string compute{};  ///< instead of both
+
+        ReferenceProgram compiled() const {
+            return compute.empty() ? reference_compile(vertex, fragment)
+                                   : reference_compile_compute(compute);
+        }
     };
 
     void add(Program program) {
-        std::string key = program.vertex + '\0' + program.fragment;
+        std::string key = program.vertex + '\0' + program.fragment + program.compute;
         programs_.emplace(std::move(key), std::move(program));
     }
     /// All programs that a selection is drawn with.
@@ -71,7 +77,7 @@ class Programs {
         input.same_textures = same_textures(selection);
         for (render::ProgramText& text : render::stitch_frames(core_, input, options).programs)
             add({fmt::format("{} of {}, {}", text.name, what, with), text.stitched.vertex.text,
-                 text.stitched.fragment.text});
+                 text.stitched.fragment.text, text.stitched.compute.text});
     }
 
     bool has(const std::string& vertex, const std::string& fragment) const {
@@ -162,7 +168,7 @@ class Shipped {
 std::string refusals(const std::vector<Programs::Program>& programs) {
     std::string refused;
     for (const Programs::Program& program : programs) {
-        const std::string why = reference_compile(program.vertex, program.fragment).refused;
+        const std::string why = program.compiled().refused;
         if (!why.empty()) refused += fmt::format("{}:\n{}", program.name, why);
     }
     return refused;
@@ -283,6 +289,25 @@ TEST(ReferenceCompiler, SeesThatVerticesOfTheGroundAndItsWallsAreInvariant) {
         EXPECT_GE(count_decorations(compiled.vertex, kNoContraction), 24) << name;
     }
     EXPECT_TRUE(seen.contains("geometry") && seen.contains("depth"));
+}
+
+TEST(ReferenceCompiler, TakesAComputeProgram) {
+    EXPECT_NE(reference_compile_compute("#version 450 core\nvoid main() { discard; }\n").refused,
+              "");
+    const Shipped shipped;
+    const shader::ParamStore values = shipped.values();
+    Programs programs;
+    for (const Ids& ids : shipped.everything())
+        programs.add(effect::select(shipped.registry, {}, {.only = ids}), values, "all", "picture",
+                     {.shown = true, .natives = kNatives});
+    int computes = 0;
+    for (const Programs::Program& program : programs.all())
+        if (!program.compute.empty()) {
+            EXPECT_FALSE(program.compiled().compute.empty()) << program.name;
+            ++computes;
+        }
+    if (!shipped.registry.find("autoexposure")) GTEST_SKIP() << "no plugin with a compute pass";
+    EXPECT_GE(computes, 1);
 }
 
 /// A discard costs a GPU the early depth test.

@@ -138,6 +138,15 @@ TEST(Graph, RefusesAPassThatContradictsItself) {
               "pass one is full-screen and has a body");
     EXPECT_EQ(refused([](Pass& p) { p.kind = PassKind::Geometry; }), "pass one has no body");
     EXPECT_EQ(refused([](Pass& p) { p.program.clear(); }), "pass one has no program");
+    EXPECT_EQ(refused([](Pass& p) { p.dispatch = Dispatch{}; }),
+              "pass one has work groups and is not compute");
+    EXPECT_EQ(refused([](Pass& p) { p.kind = PassKind::Compute; }),
+              "pass one is compute and has no work groups");
+    EXPECT_EQ(refused([](Pass& p) {
+                  p.kind = PassKind::Compute;
+                  p.dispatch = Dispatch{};
+              }),
+              "pass one is compute and does not write one image or buffer");
     EXPECT_EQ(refused([](Pass& p) {
                   p.depth = Depth{"z"};
                   p.stencil = Stencil{"z"};
@@ -158,11 +167,24 @@ TEST(Graph, BarriersStandBeforeWhatUsesAComputePass) {
                       pass("first", {"a", "b"}, {"end"}), pass("second", {"a"}, {}, {"end"})}};
     graph.passes[0].kind = PassKind::Compute;
     graph.passes[0].program = "compute";
+    graph.passes[0].body = {};
+    graph.passes[0].dispatch = Dispatch{};
     std::vector<bool> barriers;
     for (const Plan::Step& step : plan(graph).steps)
         barriers.push_back(step.barrier);
     // Before its own writes, for readers in the frame before; then once for both readers.
     EXPECT_EQ(barriers, (std::vector<bool>{true, false, true, false}));
+}
+
+TEST(Graph, WorkGroupsAreWhole) {
+    using Counts = std::array<int, 3>;
+    const ResourceSize half{.share = 0.5}, box{.share = 0, .width = 9, .height = 8, .depth = 3};
+    EXPECT_EQ((Dispatch{.over = half, .local_size = {16, 16, 1}}.groups(131, 64)),
+              (Counts{5, 2, 1}));
+    EXPECT_EQ((Dispatch{.over = box, .local_size = {4, 4, 4}}.groups(131, 64)), (Counts{3, 2, 1}));
+    EXPECT_EQ(
+        (Dispatch{.over = box, .local_size = {4, 4, 4}, .work_groups = {7, 1, 2}}.groups(131, 64)),
+        (Counts{7, 1, 2}));
 }
 
 /// What executing a graph leaves in a memory, as one number for a texture.

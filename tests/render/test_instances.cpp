@@ -1,7 +1,5 @@
 // Instances of plugins: where they stand, that none is lost between levels, and how many are drawn.
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "effect/effect.h"
 #include "light/fields.h"
 #include "render/instance_blocks.h"
+#include "render/instance_sites.h"
 
 namespace relevo::render {
 namespace {
@@ -53,34 +52,6 @@ effect::Effect boxes(const std::string& levels, const std::string& place) {
 
 const std::string kBox = R"({"meshes": ["box.obj"]})";
 
-/// @source  M. Jarzynski, M. Olano, JCGT 9(3), 2020: pcg4d, as lib/instances.glsl
-std::array<double, 4> random_of(int x, int y, std::uint32_t stream) {
-    std::array<std::uint32_t, 4> v{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                   stream, 0x9e3779b9U};
-    for (std::uint32_t& each : v)
-        each = each * 1664525U + 1013904223U;
-    const auto mix = [&] {
-        v[0] += v[1] * v[3];
-        v[1] += v[2] * v[0];
-        v[2] += v[0] * v[1];
-        v[3] += v[1] * v[2];
-    };
-    mix();
-    for (std::uint32_t& each : v)
-        each ^= each >> 16U;
-    mix();
-    std::array<double, 4> result{};
-    for (std::size_t i = 0; i < 4; ++i)
-        result[i] = (v[i] >> 8U) / 16777216.0;
-    return result;
-}
-
-/// The post of a cell's site.
-glm::dvec2 site_post(int x, int y) {
-    const auto chance = random_of(x, y, 0);
-    return (glm::dvec2(x, y) + 0.1 + 0.8 * glm::dvec2(chance[0], chance[1])) * kSite_m / kSpacing_m;
-}
-
 struct Found {
     int sites = 0, red_px = 0, hit = 0;
 };
@@ -100,7 +71,7 @@ Found find(Drawn& drawn) {
     const double tan_y = std::tan(camera.fov_y_rad / 2), scale = drawn.height_px() / (2 * tan_y);
     for (int row = 0; row < 64; ++row) {
         for (int column = 0; column < 64; ++column) {
-            const glm::dvec2 post = site_post(column, row);
+            const glm::dvec2 post = test::site_post(column, row, kSite_m / kSpacing_m);
             geo::Geodetic place = drawn.dem().grid.place(post.x, post.y);
             place.height_m = 100 + 4.0 * post.x + 2;
             const glm::dvec3 to = drawn.ground().frame.to_local(place) - camera.eye_m;

@@ -83,6 +83,24 @@ TEST(Audit, CoarsePixelsAreComparedWithAllPostsThatTheyHold) {
     EXPECT_LT(audit.all.sum_of_sizes / static_cast<double>(audit.all.pixels), 0.06);
 }
 
+TEST(Audit, GroundInTheShadowOfInstancesIsCountedApart) {
+    scene::Scene scene = morning("shadows");
+    scene.time.at = "2026-06-21T13:00Z";
+    scene.view = {.eye = scene::Standpoint{geo::geodetic_deg(36.3, -84.25, 900)},
+                  .heading_deg = 0,
+                  .pitch_deg = -30};
+    const ShadowAudit bare = audit_of(scene);
+    scene.effects.switches.only->push_back("trees");
+    const ShadowAudit forest = audit_of(scene);
+    fmt::print("[ audit  ] {} px show instances, {} are in their shadow\n", forest.excluded.moved,
+               forest.excluded.instances);
+    EXPECT_EQ(bare.excluded.instances, 0);
+    EXPECT_GT(forest.excluded.instances, 10000);
+    EXPECT_GT(forest.pixels(), 50);
+    EXPECT_EQ(forest.agreement(), bare.agreement());
+    EXPECT_NE(forest.json_text().find("\"instances\":"), std::string::npos);
+}
+
 TEST(Audit, ShadowsThreePostsOffAreFoundOut) {
     const ShadowAudit audit = audit_of(morning("shifted"));
     EXPECT_EQ(audit.provider, "shifted");

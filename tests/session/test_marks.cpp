@@ -324,7 +324,7 @@ TEST(Marks, TheirFileIsReadAgainOnlyIfItHasChanged) {
     Shown shown(scene);
     EXPECT_THAT(shown.names(), testing::ElementsAre("before"));
     const auto standing = shown.session.marks().at(0).standing;
-    scene.effects.switches.only->push_back("contours");
+    scene.effects.switches.only->push_back("avalanche");
     shown.session.set_effects(scene.effects);
     EXPECT_EQ(shown.session.marks().at(0).standing, standing);
     written("changed.csv", header + row("afterwards", grid.place(150, 150)));

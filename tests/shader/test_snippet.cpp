@@ -246,8 +246,9 @@ INSTANTIATE_TEST_SUITE_P(
             "1: * and \\ next to each other in a comment may end it; put a space between them"},
         Bad{"CommentThatTheDriverBegins", "void haze_f() { /\\\n/ }\n}",
             "1: \\ joins this line and the next without a space between them; add one"},
-        Bad{"Barrier", "void haze_f() { memoryBarrier(); }",
-            "1: memoryBarrier: plugins have no shared memory, so barriers are not allowed"},
+        Bad{"Buffer", "buffer Haze { float haze_x[]; };",
+            "1: buffer is core's; a plugin declares parameters, samplers, varyings, constants, "
+            "structs and functions"},
         Bad{"Image", "uniform image2D haze_i;",
             "1: haze_i: expected a parameter of type float, int, bool, vec2, vec3 or vec4, or a "
             "sampler, but got image2D"},

@@ -195,7 +195,7 @@ TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
     open({dem.string(), "--only", "aname", "--plugin-path", plugins_.string()});
     EXPECT_THAT(program_->title(), testing::HasSubstr("山岳.tif"));
     const image::Image8 before = display_.screen();
-    constexpr glm::ivec4 kPanel{60, 505, 280, 25};  // of the first effect
+    constexpr glm::ivec4 kPanel{60, 531, 280, 25};  // of the first effect
     const auto differing = [&] {
         const image::Image8 now = display_.screen();
         int count = 0;

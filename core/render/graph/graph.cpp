@@ -13,6 +13,16 @@ std::array<int, 2> ResourceSize::sides_px(int frame_width_px, int frame_height_p
     return {side(frame_width_px), side(frame_height_px)};
 }
 
+std::array<int, 3> Dispatch::groups(int frame_width_px, int frame_height_px) const {
+    if (work_groups[0] > 0) return work_groups;
+    const auto [width, height] = over.sides_px(frame_width_px, frame_height_px);
+    const std::array<int, 3> sides{width, height, over.depth};
+    std::array<int, 3> result{};
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = (sides[i] + local_size[i] - 1) / local_size[i];
+    return result;
+}
+
 const Resource* FrameGraph::find(std::string_view resource) const {
     const auto found = std::ranges::find(resources, resource, &Resource::name);
     return found == resources.end() ? nullptr : &*found;

@@ -82,8 +82,9 @@ struct Stencil {
 enum class PassKind {
     Fullscreen,  ///< one triangle over all targets
     Geometry,    ///< the body draws, with program and targets bound
-    Compute,     ///< the body dispatches, with the program bound; barriers follow only these
-    Host         ///< the body may do anything with the resources that it declares
+    Compute,  ///< dispatches the program, whose image or storage block 0 is what it writes; that is
+              ///< zero before. Barriers follow only these
+    Host      ///< the body may do anything with the resources that it declares
 };
 
 /// When a pass runs. Passes that do not run in every frame may use only Kept and Provided
@@ -93,6 +94,16 @@ enum class When {
     Sun,         ///< when the sun has moved
     Parameters,  ///< when one of Pass::parameters has changed
     Dem          ///< once for each DEM
+};
+
+/// The work groups of a compute pass.
+struct Dispatch {
+    ResourceSize over{};  ///< has an invocation for each of its texels, or `width` for a buffer
+    std::array<int, 3> local_size{1, 1, 1};   ///< invocations of a work group
+    std::array<int, 3> work_groups{0, 0, 0};  ///< a fixed number instead of `over`; 0: none
+
+    /// Number of work groups along each axis for a frame size [px].
+    std::array<int, 3> groups(int frame_width_px, int frame_height_px) const;
 };
 
 struct PassContext;  // render/pass_context.h
@@ -114,13 +125,15 @@ struct Pass {
     std::vector<Colour> colours{};          ///< in the order of the program's outputs
     std::optional<Depth> depth{};
     std::optional<Stencil> stencil{};
-    /// Written otherwise than as targets: buffers, images, provided textures.
+    /// Written otherwise than as targets: buffers, images, provided textures. One of a compute
+    /// pass.
     std::vector<std::string> writes{};
     /// Updated otherwise than as targets.
     std::vector<std::string> updates{};
-    std::vector<std::string> after{};  ///< names of earlier passes; unknown names are ignored
-    bool clips_voids = false;          ///< enables GL_CLIP_DISTANCE0 if the DEM has voids
-    std::function<void(PassContext&)> body{};  ///< required except for Fullscreen
+    std::vector<std::string> after{};    ///< names of earlier passes; unknown names are ignored
+    bool clips_voids = false;            ///< enables GL_CLIP_DISTANCE0 if the DEM has voids
+    std::optional<Dispatch> dispatch{};  ///< of a compute pass, and only there
+    std::function<void(PassContext&)> body{};  ///< of a geometry or host pass, and only there
 };
 
 struct FrameGraph {

@@ -77,10 +77,18 @@ class Planner {
             if (wrong) refuse(fmt::format("pass {} {}", of.name, what));
         };
         const bool fullscreen = of.kind == PassKind::Fullscreen;
+        const bool computes = of.kind == PassKind::Compute;
         refuse_if(of.name == "before" || of.name.find('@') != std::string::npos,
                   "has a name that means a version");
         refuse_if(fullscreen && of.body, "is full-screen and has a body");
-        refuse_if(!fullscreen && !of.body, "has no body");
+        refuse_if(computes && of.body, "is compute and has a body");
+        refuse_if(!fullscreen && !computes && !of.body, "has no body");
+        refuse_if(computes != of.dispatch.has_value(), computes
+                                                           ? "is compute and has no work groups"
+                                                           : "has work groups and is not compute");
+        refuse_if(computes && (of.writes.size() != 1 || !of.updates.empty() ||
+                               !of.colours.empty() || of.depth || of.stencil),
+                  "is compute and does not write one image or buffer");
         refuse_if(of.kind != PassKind::Host && of.program.empty(), "has no program");
         refuse_if(of.depth && of.stencil, "has both a depth and a stencil");
         refuse_if(of.depth && of.depth->clear && !of.depth->writes, "clears a depth that it reads");

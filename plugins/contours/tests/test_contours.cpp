@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "../levels.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -50,7 +51,19 @@ TEST(Contours, DivideTheReliefByARoundNumber) {
         EXPECT_NEAR(gpu.run("result = vec4(contours_interval());", 1, 1)[0].x, interval_m,
                     1e-3 * interval_m)
             << relief_m;
+        // The module has the same lines.
+        EXPECT_NEAR(contours::interval(0, relief_m), interval_m, 1e-9 * interval_m) << relief_m;
     }
+    EXPECT_EQ(contours::interval(30.48, 840), 30.48);
+}
+
+TEST(Contours, HeightsAreWrittenWithTheDecimalsThatTheyNeed) {
+    EXPECT_EQ(contours::text_of(1200, 100), "1200 m");
+    EXPECT_EQ(contours::text_of(2.5, 2.5), "2.5 m");
+    EXPECT_EQ(contours::text_of(5, 2.5), "5.0 m");
+    EXPECT_EQ(contours::text_of(152.4, 152.4), "152.4 m");
+    EXPECT_EQ(contours::text_of(0.3, 0.1), "0.3 m");
+    EXPECT_EQ(contours::text_of(100.0 / 3, 100.0 / 3), "33.333 m");
 }
 
 }  // namespace

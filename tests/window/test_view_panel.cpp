@@ -1,0 +1,91 @@
+// Lens, exposure, exaggeration and zone of the window, and places by their names.
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include "base/units.h"
+#include "viewer/find_sheet.h"
+#include "viewer/navigation.h"
+#include "window/viewer_fixture.h"
+
+namespace relevo {
+namespace {
+
+TEST(FindNames, AreThoseOfTheFilesThatAreShown) {
+    const auto file = test::scratch_dir() / "summits.csv";
+    std::ofstream(file) << "name,lat,lon\nGrosser Bettelwurf,47.34,11.52\nBettelwurfhuette,47.33,"
+                           "11.53\nHafelekar,47.31,11.39\n";
+    scene::Effects effects;
+    effects.settings = {{"labels.file", file.string()}};
+    const auto names = [&](const char* text) {
+        std::vector<std::string> found;
+        const auto model = viewer::EffectsModel::of(effects);
+        for (const viewer::FoundPlace& place : viewer::find_names(text, *model, 10))
+            found.push_back(place.name);
+        return found;
+    };
+    EXPECT_THAT(names("bettel"), testing::IsEmpty());  // the effect is off
+    effects.switches.enable = {"labels"};
+    EXPECT_THAT(names("bettel"), testing::ElementsAre("Bettelwurfhuette", "Grosser Bettelwurf"));
+    EXPECT_THAT(names(" HAFEL "), testing::ElementsAre("Hafelekar"));
+    EXPECT_THAT(names(""), testing::IsEmpty());
+    effects.settings = {{"labels.file", "/missing.csv"}};
+    EXPECT_THAT(names("bettel"), testing::IsEmpty());
+}
+
+/// With the panel View open.
+class ViewPanel : public Viewer {
+  protected:
+    void open_panel() {
+        open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+        // The heading below Sun.
+        act({"mousemove", "200", "315", "click", "1"});
+        act({"mousemove", "900", "60"});
+        ASSERT_TRUE(settles());
+    }
+    /// Drags a slider of the panel. @param y  of its row
+    void slide(int y, int from_x, int to_x) { drag(1, from_x, y, to_x - from_x, 0); }
+    static constexpr int kLens = 341, kExposure = 393, kHeights = 419, kZone = 445;
+};
+
+TEST_F(ViewPanel, LensExposureAndHeightsAreThoseOfTheScene) {
+    open_panel();
+    const nlohmann::json before = scene();
+    slide(kLens, 100, 200);
+    EXPECT_LT(resting_scene()["camera"]["fov"].get<double>(),
+              before["camera"]["fov"].get<double>() - 3);
+    const image::Image8 dark = display_.screen();
+    slide(kExposure, 130, 200);
+    EXPECT_GT(resting_scene()["picture"]["exposure"].get<double>(), 0.5);
+    EXPECT_TRUE(wait([&] { return brightness(display_.screen()) > brightness(dark) + 5; }));
+    const nlohmann::json flat = resting_scene();
+    slide(kHeights, 80, 200);
+    ASSERT_TRUE(wait([&] { return resting_scene()["exaggeration"].get<double>() > 1.5; }));
+    ASSERT_TRUE(settles());
+    // The eye is where it was over the ground: heights in scenes are not exaggerated.
+    const nlohmann::json high = resting_scene();
+    for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(high["camera"]["eye"][i].get<double>(), flat["camera"]["eye"][i].get<double>(),
+                    1e-6);
+    EXPECT_NEAR(high["camera"]["eye"][2].get<double>(), flat["camera"]["eye"][2].get<double>(), 1);
+    // Back by undo, with the same eye.
+    act({"key", "ctrl+z"});
+    ASSERT_TRUE(wait([&] { return resting_scene()["exaggeration"].get<double>() == 1; }));
+    EXPECT_NEAR(resting_scene()["camera"]["eye"][2].get<double>(),
+                flat["camera"]["eye"][2].get<double>(), 1);
+}
+
+TEST_F(ViewPanel, TimesAreShownInAnotherZone) {
+    open_panel();
+    act({"mousemove", "150", std::to_string(kZone), "click", "1"});
+    act({"type", "--delay", "60", "Asia/Tokyo"});
+    act({"key", "Return"});
+    nlohmann::json now;
+    EXPECT_TRUE(wait([&] {
+        now = scene();
+        return now["time"]["at"].get<std::string>().ends_with("+09:00");
+    })) << now;
+}
+
+}  // namespace
+}  // namespace relevo
