@@ -118,11 +118,20 @@ class Maker {
             bad_usage(fmt::format("--span: {}: expected FROM,TO such as {}",
                                   printable(arguments_.span), kDefaultSpan));
         scene::FilmJob::Day day{sun::to_string(date()), zone_, ends[0], ends[1]};
+        if (zone_.empty()) day.zone = zone_of(day.date);
         if (arguments_.span.empty() && !has_sunrise_and_sunset(day)) {
             day.from = "00:00";
             day.to = "23:59";
         }
         return day;
+    }
+
+    /// The zone of the place by its name, so that the job says it.
+    std::string zone_of(const std::string& date) {
+        scene::Scene scene = scene_;
+        scene.time = {"noon", date, ""};
+        const std::string name = times_.of(scene).zone.name();
+        return name.starts_with("LMT") ? "" : name;
     }
 
     /// Where the sun does not rise or set, or sets after midnight, a day is the whole day.

@@ -170,7 +170,7 @@ void set_effort(const std::string& encoder, int quality, AVCodecContext& codec, 
     } else if (encoder == "libwebp_anim") {
         options.set("quality", std::to_string(quality));
     } else if (encoder != "gif") {  // VP9 and AV1
-        options.set("crf", std::to_string(52 - quality * 3 / 10));
+        options.set("crf", std::to_string(44 - quality * 3 / 10));
         options.set("b", "0");
     }
     if (encoder == "libvpx-vp9") options.set("deadline", "realtime");

@@ -186,6 +186,7 @@ TEST_F(FilmVerb, MakesADayThatItsJobMakesAgain) {
     EXPECT_EQ(job["output"], "a.mp4");
     EXPECT_EQ(job["sweep"][0]["times"]["from"], "sunrise-30min");
     EXPECT_EQ(job["time"]["date"], "2026-10-01");
+    EXPECT_EQ(job["time"]["zone"], "America/New_York");
 }
 
 TEST_F(FilmVerb, MotionsAreAxes) {
