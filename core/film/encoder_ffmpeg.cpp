@@ -338,7 +338,6 @@ class FfmpegEncoder final : public Encoder {
             const int got = avcodec_receive_packet(codec_.get(), packet_.get());
             if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) break;
             check(got, "it cannot be encoded");
-            if (packet_->duration == 0) packet_->duration = 1;
             av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
             packet_->stream_index = stream_->index;
             const int written = av_interleaved_write_frame(format_.get(), packet_.get());
