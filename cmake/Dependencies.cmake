@@ -14,6 +14,7 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(heif REQUIRED IMPORTED_TARGET libheif)
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake files want its programs too
+pkg_check_modules(ffmpeg REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 find_package(GDAL CONFIG REQUIRED)
 find_package(date REQUIRED)
 find_package(glm REQUIRED)

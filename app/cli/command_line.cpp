@@ -276,6 +276,7 @@ void add_verbs(CLI::App& app) {
     add_view(app);
     add_capture(app);
     add_run(app);
+    add_film(app);
     add_compare(app);
     add_info(app);
     add_sun(app);

@@ -9,6 +9,7 @@ namespace relevo::cli {
 void add_capture(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_run(CLI::App& app);
+void add_film(CLI::App& app);
 void add_view(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);

@@ -14,6 +14,7 @@
 #include "cli/shared.h"
 #include "dem/versions.h"
 #include "effect/registry.h"
+#include "film/film.h"
 #include "gl/context.h"
 #include "render/renderer.h"
 #include "session/active_effects.h"
@@ -202,6 +203,7 @@ Json to_json(const Findings& found) {
     json["threads"] = thread_count();
     json["gdal"] = dem::gdal_version();
     json["proj"] = dem::proj_version();
+    json["films"] = film::installed_text();
     json["share_dir"] = share_dir().string();
     json["share_found"] = found.has_share;
     json["plugin_folder"] = found.plugins.folder.string();
@@ -236,6 +238,7 @@ void print(const Findings& found) {
                              ? fmt::format("{}, {}", tried.info->renderer, tried.info->version)
                              : tried.reason));
     line("threads", std::to_string(thread_count()));
+    line("films", film::installed_text());
     line("data", fmt::format("{}{}", share_dir().string(),
                              found.has_share ? "" : " (not there; RELEVO_SHARE names another)"));
     line("plugins",

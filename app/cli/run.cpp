@@ -11,14 +11,12 @@
 #include <unistd.h>
 
 #include "base/error.h"
-#include "base/held_notices.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/format_arguments.h"
-#include "cli/scene_arguments.h"
+#include "cli/job_run.h"
 #include "cli/shard.h"
 #include "scene/job.h"
 #include "session/batch.h"
@@ -31,29 +29,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More pictures than anybody means without saying so.
-constexpr std::size_t kMostUnasked = 100'000;
-constexpr std::size_t kMost = 1'000'000'000;
-
-struct Arguments {
-    SceneArguments scene;
-    FormatArguments format;
-    std::string job, output, device = "auto", shard;
-    bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
-    bool audit = false, allow_blank = false;
-};
-
 std::optional<std::string> environment(const char* name) {
     const char* const value = std::getenv(name);
     return value ? std::optional<std::string>(value) : std::nullopt;
-}
-
-/// Warns of skipped pictures in one line.
-void warn_of_skipped(const std::vector<std::string>& reasons) {
-    if (reasons.size() == 1) log::warning("1 picture is skipped: " + reasons.front());
-    if (reasons.size() > 1)
-        log::warning(
-            fmt::format("{} pictures are skipped; the first: {}", reasons.size(), reasons.front()));
 }
 
 /// What the audits of a job's pictures come to.
@@ -101,14 +79,18 @@ class Blanks {
     std::string first_;
 };
 
-/// A job on its way.
+/// The pictures of a job on their way.
 class Run {
   public:
-    explicit Run(const Arguments& arguments) : arguments_(arguments) {}
+    Run(const JobArguments& arguments, JobRun& work)
+        : notices_(work.notices),
+          arguments_(arguments),
+          files_(work.files),
+          times_(work.times),
+          shots_(work.shots),
+          inputs_(work.inputs) {}
 
     void run() {
-        if (!arguments_.dry_run) times_.before_reading([this](const auto& scene) { hash(scene); });
-        shots_ = shots();
         for (const scene::Shot& shot : shots_)
             check_format(shot);
         session::settle(shots_, times_, inputs_);
@@ -134,42 +116,6 @@ class Run {
                                .height_px = shot.scene.height_px,
                                .alpha = shot.scene.transparent,
                                .layers = !arguments_.format.layers.empty()});
-    }
-
-    /// Hashes the files of a scene, so that changes after they were read are noticed.
-    void hash(const scene::Scene& scene) {
-        try {
-            inputs_.record(scene);
-        } catch (const Error&) {
-            // What settles the scene says what is wrong with it.
-        }
-    }
-
-    std::vector<scene::Shot> shots() {
-        scene::Job job = scene::read_job(
-            arguments_.job, [&](scene::Scene& scene) { arguments_.scene.apply_to(scene); });
-        if (!arguments_.output.empty()) {
-            job.output = arguments_.output;
-            job.output_given = false;
-            job.folder.clear();
-        }
-        files_.add_input(arguments_.job, "the job");
-        session::Trust trusted(arguments_.scene.named(), "job: " + printable(arguments_.job),
-                               session::NamedBy::File);
-        for (const scene::JobFile& file : job.files)
-            files_.add_input(file.path, file.what);
-        scene::Shots drawn_up = scene::shots_of(
-            job,
-            [&](const scene::Scene& scene) {
-                trusted.check_names(scene);  // before its DEM is opened
-                return times_.of(scene);
-            },
-            arguments_.yes ? kMost : kMostUnasked);
-        for (scene::Shot& shot : drawn_up.shots)
-            trusted.keep_folders(shot.scene.effects);
-        trusted.tell();
-        warn_of_skipped(drawn_up.left_out);
-        return std::move(drawn_up.shots);
     }
 
     /// Neighbours stay together: they share most of what is loaded.
@@ -392,12 +338,12 @@ class Run {
 
     bool wants_sidecar() const { return arguments_.sidecar || arguments_.audit; }
 
-    log::HeldNotices notices_;
-    const Arguments& arguments_;
-    FilesInUse files_;
-    session::SceneTimes times_;
-    std::vector<scene::Shot> shots_;
-    session::SceneInputs inputs_{RELEVO_VERSION};
+    log::HeldNotices& notices_;
+    const JobArguments& arguments_;
+    FilesInUse& files_;
+    session::SceneTimes& times_;
+    std::vector<scene::Shot>& shots_;
+    session::SceneInputs& inputs_;
     std::set<fs::path> beside_;  ///< pictures whose scene is in a sidecar, for want of room
     std::set<fs::path> parts_;   ///< pictures of which, or of whose sidecar, --resume finds one
     std::size_t made_ = 0;       ///< pictures that --resume keeps
@@ -406,9 +352,18 @@ class Run {
 
 }  // namespace
 
+void run_job(const JobArguments& arguments) {
+    JobRun work;
+    work.read(arguments);
+    if (work.job.is_film())
+        run_film(arguments, work);
+    else
+        Run(arguments, work).run();
+}
+
 void add_run(CLI::App& app) {
-    const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("run", "Makes the pictures of a job");
+    const auto arguments = std::make_shared<JobArguments>();
+    CLI::App& verb = *app.add_subcommand("run", "Makes the pictures or the film of a job");
     verb.add_option("JOB", arguments->job, "Job file, JSON: docs/jobs.md")->required();
     arguments->scene.add_to(verb, /*with_file=*/false);
     arguments->scene.dem.dem_option->required(false);
@@ -433,7 +388,7 @@ void add_run(CLI::App& app) {
     verb.callback([arguments, template_given = output] {
         if (template_given->count() > 0 && arguments->output.empty())
             bad_usage("-o: expected a template of names but got nothing");
-        Run(*arguments).run();
+        run_job(*arguments);
     });
 }
 

@@ -248,6 +248,10 @@ void OutputFile::write(std::string_view text) {
     write(std::as_bytes(std::span(text)));
 }
 
+int OutputFile::descriptor() const {
+    return impl_->file.get();
+}
+
 int OutputFile::open_scratch() const {
     // What is no regular file has no folder of ours.
     if (!impl_->folder) {

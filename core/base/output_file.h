@@ -39,6 +39,10 @@ class OutputFile {
     void write(std::span<const std::byte> bytes);
     void write(std::string_view text);
 
+    /// The open file, for encoders that seek in it; the file keeps the descriptor. What write()
+    /// adds goes to the descriptor's position.
+    int descriptor() const;
+
     /// Gives the file its name, once what was written is on the disk; called once.
     /// @throws Error (Failed) where the name has been taken meanwhile and may not be replaced, and
     ///     where the disk refuses

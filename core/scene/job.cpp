@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "image/image.h"
 #include "scene/name_template.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_words.h"
@@ -21,11 +22,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kWho = "job";
 
+/// "expected 96 values, as sweep[0].times has, but got 95; ..."
+std::string unlike(std::size_t expected, const std::string& path, std::size_t got) {
+    return fmt::format(
+        "expected {} values, as {} has, but got {}; \"combine\": \"zip\" takes axes of one length",
+        expected, path, got);
+}
+
 /// Draws up the pictures of a job.
 class Expansion {
   public:
-    Expansion(const Job& job, const Resolve& resolve, std::size_t most)
-        : job_(job), resolve_(resolve), most_(most) {}
+    Expansion(const Job& job, const Resolve& resolve, std::size_t most, const GroundOf& ground_of)
+        : job_(job), resolve_(resolve), most_(most), ground_of_(ground_of) {}
 
     Shots run() {
         const NameTemplate names = name_template();
@@ -72,16 +80,16 @@ class Expansion {
         std::size_t count = job_.shots.empty() ? 1 : job_.shots.front().values.size();
         bool more = false;
         std::size_t longest = 0;
+        std::string longest_path;
         for (const Axis& axis : job_.sweep) {
-            more = more || axis.range;
-            if (axis.range) continue;
-            if (job_.zip && longest > 0 && axis.values.size() != longest)
-                fail(axis.line, axis.path,
-                     fmt::format("expected {} values, as {} has, but got {}; \"combine\": \"zip\" "
-                                 "takes axes of one length",
-                                 longest, job_.sweep.front().path, axis.values.size()));
-            longest = axis.values.size();
-            if (!job_.zip) count = std::min(count * axis.values.size(), kMany);
+            const std::optional<std::size_t> values = axis.count();
+            more = more || !values;
+            if (!values) continue;
+            if (job_.zip && longest > 0 && *values != longest)
+                fail(axis.line, axis.path, unlike(longest, longest_path, *values));
+            longest = *values;
+            longest_path = axis.path;
+            if (!job_.zip) count = std::min(count * *values, kMany);
         }
         if (job_.zip && longest > 0) count *= longest;
         if (count > most_)
@@ -109,7 +117,7 @@ class Expansion {
     void product(const Draft& draft, std::size_t at) {
         if (at == job_.sweep.size()) return add(draft);
         const Axis& axis = job_.sweep[at];
-        for (const Change& value : axis.range ? times_of(axis, draft) : axis.values) {
+        for (const Change& value : values_of(axis, draft)) {
             Draft next = draft;
             value.apply(next);
             product(next, at + 1);
@@ -119,13 +127,11 @@ class Expansion {
     void zip(const Draft& draft) {
         std::vector<std::vector<Change>> columns;
         for (const Axis& axis : job_.sweep) {
-            columns.push_back(axis.range ? times_of(axis, draft) : axis.values);
+            columns.push_back(values_of(axis, draft));
             if (columns.back().size() != columns.front().size())
-                fail(axis.line, axis.path,
-                     fmt::format("expected {} values, as {} has, but got {}; \"combine\": \"zip\" "
-                                 "takes axes of one length",
-                                 columns.front().size(), job_.sweep.front().path,
-                                 columns.back().size()));
+                fail(
+                    axis.line, axis.path,
+                    unlike(columns.front().size(), job_.sweep.front().path, columns.back().size()));
         }
         const std::size_t count = columns.empty() ? 1 : columns.front().size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -134,6 +140,36 @@ class Expansion {
                 column[i].apply(next);
             add(std::move(next));
         }
+    }
+
+    std::vector<Change> values_of(const Axis& axis, const Draft& draft) {
+        if (axis.range) return times_of(axis, draft);
+        return axis.motion ? views_of(axis, draft) : axis.values;
+    }
+
+    /// The views of a camera that moves over the ground of a draft.
+    std::vector<Change> views_of(const Axis& axis, const Draft& draft) const {
+        const MotionGround ground = ground_of_(draft.scene);
+        std::vector<View> views;
+        try {
+            if (const auto* const orbit = std::get_if<OrbitMotion>(&*axis.motion))
+                views = orbit_views(*orbit, draft.scene.view, ground);
+            else
+                views =
+                    flight_views(std::get<FlightMotion>(*axis.motion), draft.scene.view, ground);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            fail(axis.line, axis.path, error.what());
+        }
+        std::vector<Change> result;
+        for (const View& view : views) {
+            const std::string name = fmt::format("{:04}", result.size() + 1);
+            result.push_back({name, [view, name](Draft& next) {
+                                  next.scene.view = view;
+                                  next.names["camera"] = name;
+                              }});
+        }
+        return result;
     }
 
     /// The times of a range on the day of a draft.
@@ -161,10 +197,13 @@ class Expansion {
             fail(axis.line, axis.path,
                  fmt::format("expected a time after {} but got {}",
                              sun::to_iso(from.utc, from.zone), sun::to_iso(to.utc, from.zone)));
-        const double steps = std::floor(length_s / range.step_s + 1e-6);
+        const bool counted = range.frames > 0;
+        const double steps =
+            counted ? range.frames - 1 : std::floor(length_s / range.step_s + 1e-6);
+        const double step_s = counted ? length_s / std::max(1.0, steps) : range.step_s;
         if (steps >= static_cast<double>(most_)) too_many(fmt::format("{:.0f} or more", steps + 1));
         for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i) {
-            const sun::Instant utc = from.utc + static_cast<double>(i) * range.step_s;
+            const sun::Instant utc = from.utc + static_cast<double>(i) * step_s;
             result.push_back({"", [text = sun::exact_iso(utc)](Draft& next) {
                                   next.time = text;
                                   next.date.reset();
@@ -239,15 +278,32 @@ class Expansion {
                                               shot.utc, shot.zone, shot.names});
             shot.output = (job_.folder / name).lexically_normal();
             const auto [other, fresh] = taken.emplace(shot.output, shot.number);
-            if (fresh) continue;
+            if (fresh || job_.is_film()) continue;
             const std::string what = fmt::format(
                 "\"{}\" names {} twice, for pictures {} and {}; add {{n}} or another field that "
                 "differs",
                 job_.output, printable(shot.output.string()), other->second, shot.number);
-            if (!job_.output_given)
-                bad_input(fmt::format("{}: {}: output: {}", kWho, job_.file, what));
-            fail(job_.output_line, "output", what);
+            bad_output(what);
         }
+        if (job_.is_film()) check_film();
+    }
+
+    /// A film is one file, whatever its frames.
+    void check_film() const {
+        for (const Shot& shot : result_.shots) {
+            const Shot& first = result_.shots.front();
+            if (shot.output == first.output) continue;
+            bad_output(
+                fmt::format("a film is one file but \"{}\" names {} and {}; remove what differs "
+                            "between its frames",
+                            job_.output, printable(first.output.filename().string()),
+                            printable(shot.output.filename().string())));
+        }
+    }
+
+    [[noreturn]] void bad_output(const std::string& what) const {
+        if (!job_.output_given) bad_input(fmt::format("{}: {}: output: {}", kWho, job_.file, what));
+        fail(job_.output_line, "output", what);
     }
 
     static constexpr std::size_t kMany = 1'000'000'000;
@@ -255,14 +311,30 @@ class Expansion {
     const Job& job_;
     const Resolve& resolve_;
     std::size_t most_;
+    const GroundOf& ground_of_;
     std::vector<Draft> drafts_;
     Shots result_;
 };
 
 }  // namespace
 
-Shots shots_of(const Job& job, const Resolve& resolve, std::size_t most) {
-    return Expansion(job, resolve, most).run();
+std::optional<std::size_t> Axis::count() const {
+    if (range) return range->frames > 0 ? std::optional<std::size_t>(range->frames) : std::nullopt;
+    if (motion)
+        return std::visit([](const auto& m) { return static_cast<std::size_t>(m.frames); },
+                          *motion);
+    return values.size();
+}
+
+bool Job::is_film() const {
+    if (film::is_film_name(output)) return true;
+    const bool webp = lower(fs::path(output).extension().string()) == ".webp";
+    return film && (webp || !image::is_picture_name(output));
+}
+
+Shots shots_of(const Job& job, const Resolve& resolve, std::size_t most,
+               const GroundOf& ground_of) {
+    return Expansion(job, resolve, most, ground_of).run();
 }
 
 }  // namespace relevo::scene

@@ -9,6 +9,7 @@
 #include "dem/places.h"
 #include "json/object_reader.h"
 #include "scene/job.h"
+#include "scene/motion_reader.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_words.h"
 #include "sun/event_time.h"
@@ -41,14 +42,13 @@ std::string name_of(const effect::Switches& switches) {
 /// Reads a job's file, member by member.
 class JobReader {
   public:
-    explicit JobReader(const fs::path& path)
-        : file_(path.string()),
-          folder_(path.parent_path()),
+    JobReader(std::string file, fs::path folder)
+        : file_(std::move(file)),
+          folder_(std::move(folder)),
           reader_(kWho, file_, folder_, SceneReader::Dates::Later) {}
 
-    Job run(const std::function<void(Scene&)>& change) {
-        json_ =
-            std::make_shared<const json::Value>(json::parse(kWho, file_, read_text(file_, kWho)));
+    Job run(const std::string& text, const std::function<void(Scene&)>& change) {
+        json_ = std::make_shared<const json::Value>(json::parse(kWho, file_, text));
         ObjectReader object(kWho, file_, "", *json_);
         const json::Value& format = object.need("format");
         if (format.kind != json::Value::Kind::Number || format.number != kFormat)
@@ -57,6 +57,7 @@ class JobReader {
                                     kFormat, json::describe(format)));
         object.string("$schema", "");  // which editors look for
         job_.file = file_;
+        job_.text = text;
         job_.folder = folder_;
         if (const std::string base = object.string("scene", ""); !base.empty()) {
             job_.files.push_back({reader_.beside(base), "the scene"});
@@ -68,6 +69,10 @@ class JobReader {
         job_.output = object.string("output", job_.output);
         job_.output_line = object.line_of("output");
         job_.zip = object.choice("combine", {"product", "zip"}, std::size_t{0}) == 1;
+        if (const json::Value* const film = object.take("film")) {
+            job_.film = read_film(object, *film);
+            fps_ = job_.film->fps;
+        }
         probe_.scene = job_.scene;
         shots(object);
         sweep(object);
@@ -89,7 +94,7 @@ class JobReader {
                 bad_input(
                     fmt::format("{}: {}:{}: {}: expected one axis of its kind but there is {}",
                                 kWho, file_, axis.line, axis.path, other.path));
-        if (axis.values.empty() && !axis.range)
+        if (axis.values.empty() && !axis.range && !axis.motion)
             bad_input(fmt::format("{}: {}:{}: {}: expected values but the list is empty", kWho,
                                   file_, axis.line, axis.path));
         const Draft before = probe_;
@@ -152,7 +157,10 @@ class JobReader {
         const json::Value* const sites = object.take("sites");
         const json::Value* const effects = object.take("effects");
         const json::Value* const set = object.take("set");
-        const int given = !!times + !!dates + !!cameras + !!sites + !!effects + !!set;
+        const json::Value* const orbit = object.take("orbit");
+        const json::Value* const flight = object.take("flight");
+        const int given =
+            !!times + !!dates + !!cameras + !!sites + !!effects + !!set + !!orbit + !!flight;
         if (given > 1)
             object.fail(
                 item.line, "",
@@ -163,8 +171,12 @@ class JobReader {
         if (sites) return sites_axis(*sites, path + ".sites");
         if (effects) return effects_axis(*effects, path + ".effects");
         if (set) return values_axis(object, *set);
+        if (orbit) return orbit_axis(*orbit, path + ".orbit");
+        if (flight) return flight_axis(*flight, path + ".flight");
         object.finish();
-        object.fail(item.line, "", "expected one of times, dates, cameras, sites, effects and set");
+        object.fail(item.line, "",
+                    "expected one of times, dates, cameras, sites, effects, set, orbit and "
+                    "flight");
     }
 
     /// A text that some parser takes.
@@ -210,7 +222,8 @@ class JobReader {
         TimeRange range;
         range.from = object.string("from");
         range.to = object.string("to");
-        const std::string step = object.string("step");
+        range.frames = frames_of(object);
+        const std::string step = range.frames > 0 ? "1" : object.string("step");
         object.finish();
         check_time(object, "from", range.from);
         check_time(object, "to", range.to);
@@ -256,6 +269,7 @@ class JobReader {
         if (!at.empty() && !is_clock(at) && !sun::is_event_time(at))
             object.fail(object.line_of("at"), "at",
                         fmt::format("expected a time of day or an event but got \"{}\"", at));
+        const int frames = frames_of(object);
         const auto step = static_cast<int>(object.number("step", 1, 1, 366 * 201, true));
         sun::Date first, last;
         if (object.has("year")) {
@@ -273,7 +287,11 @@ class JobReader {
             object.fail(object.line_of("to"), "to",
                         fmt::format("expected a day from {} on but got {}", sun::to_string(first),
                                     sun::to_string(last)));
-        for (int day = 0; day <= sun::days_between(first, last); day += step)
+        const int days = sun::days_between(first, last);
+        for (int i = 0; i < frames; ++i)  // the same day again where frames are more
+            add_date(sun::add_days(
+                first, static_cast<int>(std::lround(days * i / std::max(1.0, frames - 1.0)))));
+        for (int day = 0; frames == 0 && day <= days; day += step)
             add_date(sun::add_days(first, day));
         return axis;
     }
@@ -291,6 +309,15 @@ class JobReader {
                                    }});
         }
         return axis;
+    }
+
+    Axis orbit_axis(const json::Value& value, const std::string& path) const {
+        return {"camera", path, value.line, {}, {}, read_orbit(reader_, value, path, fps_)};
+    }
+
+    Axis flight_axis(const json::Value& value, const std::string& path) {
+        return {"camera", path, value.line,
+                {},       {},   read_flight(reader_, value, path, fps_, job_.scene, job_.files)};
     }
 
     Axis effects_axis(const json::Value& value, const std::string& path) {
@@ -370,7 +397,8 @@ class JobReader {
                                    }});
         };
         if (const json::Value* const values = object.take("values")) {
-            object.take("from"), object.take("to"), object.take("step");
+            for (const char* const key : {"from", "to", "step", "frames", "duration_s"})
+                object.take(key);
             if (values->kind != json::Value::Kind::Array)
                 object.fail(
                     values->line, "values",
@@ -387,14 +415,16 @@ class JobReader {
             }
         } else {
             const double from = number(object, "from"), to = number(object, "to");
-            const double step = number(object, "step");
-            if (!(step > 0))
+            const int frames = frames_of(object);
+            const double step =
+                frames > 0 ? (to - from) / std::max(1, frames - 1) : number(object, "step");
+            if (!(step > 0) && frames == 0)
                 object.fail(object.line_of("step"), "step",
                             fmt::format("expected more than 0 but got {}", step));
-            if (to < from)
+            if (to < from && frames == 0)
                 object.fail(object.line_of("to"), "to",
                             fmt::format("expected {} or more but got {}", from, to));
-            const double steps = std::floor((to - from) / step + 1e-9);
+            const double steps = frames > 0 ? frames - 1 : std::floor((to - from) / step + 1e-9);
             if (steps >= kMostValues)
                 object.fail(object.line_of("step"), "step",
                             fmt::format("expected at most {} values", kMostValues));
@@ -423,6 +453,17 @@ class JobReader {
         return object.number(key, 0, -1e9, 1e9, false);
     }
 
+    /// The number of values of a range that has no step; 0 where it has one.
+    int frames_of(ObjectReader& object) const {
+        const bool counted = object.has("frames") || object.has("duration_s");
+        if (counted && object.has("step"))
+            object.fail(object.line_of("step"), "step",
+                        "expected a step or a number of frames but got both");
+        const int frames = read_frames(object, fps_, 10);
+        if (counted) object.take("step");
+        return counted ? frames : 0;
+    }
+
     static constexpr int kMostValues = 1'000'000;
     static constexpr const char* kSeconds = "seconds";
 
@@ -432,12 +473,18 @@ class JobReader {
     std::shared_ptr<const json::Value> json_;  // the axes' values refer to it
     Draft probe_;                              // what values are tried on
     Job job_;
+    double fps_ = film::Settings().fps;  ///< of the film
 };
 
 }  // namespace
 
 Job read_job(const fs::path& path, const std::function<void(Scene&)>& change) {
-    return JobReader(path).run(change);
+    return read_job_text(read_text(path.string(), kWho), path.string(), path.parent_path(), change);
+}
+
+Job read_job_text(const std::string& text, const std::string& file, const fs::path& folder,
+                  const std::function<void(Scene&)>& change) {
+    return JobReader(file, folder).run(text, change);
 }
 
 }  // namespace relevo::scene

@@ -16,4 +16,16 @@ std::string day_job_text(const Scene& scene, const JobDay& day,
     return json.dump(2) + "\n";
 }
 
+std::string job_record(const Job& job) {
+    using nlohmann::ordered_json;
+    ordered_json record = ordered_json::parse(scene_line(job.scene));
+    const ordered_json given = ordered_json::parse(job.text);
+    for (const char* const key : {"shots", "sweep", "combine", "film"})
+        if (given.contains(key)) record[key] = given[key];
+    record["output"] = job.output;
+    const std::filesystem::path folder = std::filesystem::absolute(job.folder / ".");
+    return ordered_json{{"relevo:job", record}, {"folder", folder.lexically_normal().string()}}
+        .dump();
+}
+
 }  // namespace relevo::scene

@@ -52,8 +52,26 @@ glm::dvec3 middle_ray(const Camera& camera, double aspect, const Insets& insets)
                      tan_y * (insets.bottom - insets.top) * camera.up);
 }
 
-/// The first point of the ground along a ray from an eye; none where it meets no ground.
-/// @param points  of the ground: no other is nearer or farther along the ray than these
+/// The camera of an orbit. Zooming moves towards the ground in the picture's middle, which stays
+/// there; where it shows none, towards the ground's mean distance.
+Camera zoomed_orbit(const Orbit& orbit, const GroundHeight& ground_height_m,
+                    const geo::LocalFrame& frame, const Outline& outline, double fov_y_rad,
+                    double aspect, double exaggeration, const Insets& insets) {
+    Orbit whole = orbit;
+    whole.zoom = 1;
+    Camera camera = orbit_camera(whole, outline.points, fov_y_rad, aspect, outline.also, insets);
+    if (orbit.zoom == 1) return camera;
+    const std::optional<glm::dvec3> target =
+        first_ground(camera.eye_m, middle_ray(camera, aspect, insets), outline.points,
+                     ground_height_m, frame, exaggeration);
+    if (!target)
+        return orbit_camera(orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
+    camera.eye_m = *target + (camera.eye_m - *target) / orbit.zoom;
+    return camera;
+}
+
+}  // namespace
+
 std::optional<glm::dvec3> first_ground(const glm::dvec3& eye_m, const glm::dvec3& ray,
                                        const std::vector<glm::dvec3>& points,
                                        const GroundHeight& ground_height_m,
@@ -84,26 +102,6 @@ std::optional<glm::dvec3> first_ground(const glm::dvec3& eye_m, const glm::dvec3
     }
     return std::nullopt;
 }
-
-/// The camera of an orbit. Zooming moves towards the ground in the picture's middle, which stays
-/// there; where it shows none, towards the ground's mean distance.
-Camera zoomed_orbit(const Orbit& orbit, const GroundHeight& ground_height_m,
-                    const geo::LocalFrame& frame, const Outline& outline, double fov_y_rad,
-                    double aspect, double exaggeration, const Insets& insets) {
-    Orbit whole = orbit;
-    whole.zoom = 1;
-    Camera camera = orbit_camera(whole, outline.points, fov_y_rad, aspect, outline.also, insets);
-    if (orbit.zoom == 1) return camera;
-    const std::optional<glm::dvec3> target =
-        first_ground(camera.eye_m, middle_ray(camera, aspect, insets), outline.points,
-                     ground_height_m, frame, exaggeration);
-    if (!target)
-        return orbit_camera(orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
-    camera.eye_m = *target + (camera.eye_m - *target) / orbit.zoom;
-    return camera;
-}
-
-}  // namespace
 
 double within_a_turn_deg(double angle_deg) {
     return std::abs(angle_deg) <= 360 ? angle_deg : std::fmod(angle_deg, 360.0);

@@ -68,6 +68,15 @@ Camera make_camera(const View& view, const GroundHeight& ground_height_m,
                    const geo::LocalFrame& frame, const Outline& outline, double aspect,
                    double exaggeration, const Insets& insets = {});
 
+/// The first point of the ground along a ray from an eye, in the DEM's local frame [m]; none where
+/// it meets no ground.
+/// @param ray     unit
+/// @param points  of the ground: no other is nearer or farther along the ray than these
+std::optional<glm::dvec3> first_ground(const glm::dvec3& eye_m, const glm::dvec3& ray,
+                                       const std::vector<glm::dvec3>& points,
+                                       const GroundHeight& ground_height_m,
+                                       const geo::LocalFrame& frame, double exaggeration);
+
 /// Logs a warning where the eye of a view stands below the ground.
 /// @throws Error (BadInput) as make_camera()
 void warn_of_eye_below_ground(const View& view, const GroundHeight& ground_height_m,

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
 #include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,79 +18,11 @@
 #include "image/image.h"
 #include "session/picture_maker.h"
 #include "session/record.h"
+#include "session/shot_session.h"
+#include "session/task_queue.h"
 
 namespace relevo::session {
 namespace {
-
-/// Runs tasks in order on its own threads. add() blocks while many tasks are waiting.
-class TaskQueue {
-  public:
-    explicit TaskQueue(int threads) : most_(static_cast<std::size_t>(threads) + 1) {
-        for (int i = 0; i < threads; ++i)
-            threads_.emplace_back([this] { work(); });
-    }
-    ~TaskQueue() { finish(); }
-    TaskQueue(const TaskQueue&) = delete;
-    TaskQueue& operator=(const TaskQueue&) = delete;
-
-    /// @param task  must not throw
-    void add(std::function<void()> task) {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return tasks_.size() < most_; });
-        tasks_.push_back(std::move(task));
-        changed_.notify_all();
-    }
-
-    /// Waits for all tasks.
-    void finish() {
-        {
-            const std::lock_guard lock(mutex_);
-            ended_ = true;
-            changed_.notify_all();
-        }
-        for (std::thread& thread : threads_)
-            if (thread.joinable()) thread.join();
-    }
-
-  private:
-    void work() {
-        std::unique_lock lock(mutex_);
-        for (;;) {
-            changed_.wait(lock, [this] { return ended_ || !tasks_.empty(); });
-            if (tasks_.empty()) return;
-            const std::function<void()> task = std::move(tasks_.front());
-            tasks_.pop_front();
-            changed_.notify_all();
-            lock.unlock();
-            task();
-            lock.lock();
-        }
-    }
-
-    std::size_t most_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<std::function<void()>> tasks_;
-    bool ended_ = false;
-    std::vector<std::thread> threads_;
-};
-
-/// The message of a failure of one picture.
-std::string reason_of(const std::exception_ptr& thrown) {
-    try {
-        std::rethrow_exception(thrown);
-    } catch (const std::bad_alloc&) {
-        return "out of memory; use a smaller --size or --memory";
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-}
-
-/// The scene with a default camera: an impossible camera must fail its picture, not the session.
-scene::Scene of_any_view(scene::Scene scene) {
-    scene.view = {};
-    return scene;
-}
 
 /// Open output files of a picture, still without their final names.
 struct Outputs {
@@ -104,8 +32,16 @@ struct Outputs {
 
 class Batch {
   public:
-    Batch(const BatchOptions& options, SceneTimes& times, SceneInputs& inputs, FilesInUse& files)
-        : options_(options), times_(times), inputs_(inputs), files_(files) {}
+    Batch(const BatchOptions& options, bool linear, SceneTimes& times, SceneInputs& inputs,
+          FilesInUse& files)
+        : options_(options),
+          inputs_(inputs),
+          files_(files),
+          session_of_({.device = options.device,
+                       .radiance = linear,
+                       .format = options.format,
+                       .audited = options.audit},
+                      times, files) {}
 
     std::size_t run(const std::vector<scene::Shot>& shots) {
         const bool linear = image::holds_linear_light(shots.front().output);
@@ -115,7 +51,7 @@ class Batch {
             try {
                 draw(shot, linear, queue);
             } catch (const Error& error) {
-                if (!opened_) throw;  // nothing can be drawn
+                if (!session_of_.was_opened()) throw;  // nothing can be drawn
                 failed(shot, error.what());
             } catch (...) {
                 failed(shot, reason_of(std::current_exception()));
@@ -127,12 +63,12 @@ class Batch {
 
   private:
     void draw(const scene::Shot& shot, bool linear, TaskQueue& queue) {
-        open_session(shot, linear);
         if (needs_bands(shot.scene, options_.format, linear))
             bad_input(
                 fmt::format("run: {} x {} px take more than 1 GiB; make it by itself with "
                             "relevo capture",
                             shot.scene.width_px, shot.scene.height_px));
+        Session& session = session_of_.of(shot);
         const SceneIn scene_is = scene_in(shot.output, shot.scene);
         const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
         auto outputs = std::make_shared<Outputs>(
@@ -141,21 +77,21 @@ class Batch {
             outputs->sidecar.emplace(
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
         inputs_.record(shot.scene);  // before files are read, to notice later changes
-        session_->show(shot.scene, shot.utc);
-        auto picture = std::make_shared<image::Picture>(session_->make_picture());
-        if (!options_.allow_blank && !session_->shows_ground()) return blank(shot);
+        session.show(shot.scene, shot.utc);
+        auto picture = std::make_shared<image::Picture>(session.make_picture());
+        if (!options_.allow_blank && !session.shows_ground()) return blank(shot);
         std::optional<ShadowAudit> audit;
-        if (options_.audit) audit = audit_shadows(*session_);
+        if (options_.audit) audit = audit_shadows(session);
         if (audit) options_.audited(shot, *audit);
         if (outputs->sidecar)
             outputs->sidecar->write(
-                sidecar_text(*session_, inputs_, shot.output.filename().string(), audit));
-        const image::Metadata metadata = metadata_of(*session_, inputs_, scene_is);
+                sidecar_text(session, inputs_, shot.output.filename().string(), audit));
+        const image::Metadata metadata = metadata_of(session, inputs_, scene_is);
         queue.add([this, &shot, outputs, metadata, picture] {
             write_files(shot, *outputs, metadata, *picture);
         });
         if (!linear)
-            for (const std::string& note : session_->stamp_notes())
+            for (const std::string& note : session.stamp_notes())
                 log::info(fmt::format("{}: {}", printable(shot.output.string()), note));
     }
 
@@ -185,34 +121,11 @@ class Batch {
         options_.failed(shot, why);
     }
 
-    /// Opens a session for the shot's DEM unless it is already open.
-    void open_session(const scene::Shot& shot, bool linear) {
-        std::string key = dem_key(shot.scene);
-        const RendererNeeds needs = needs_of(shot.scene, options_.format);
-        if (session_ && key == dem_ && needs == needs_) return;
-        Options options;
-        options.device = options_.device;
-        options.radiance = linear;
-        options.audited = options_.audit;
-        options.format = options_.format;
-        session_.reset();
-        times_.keep_only(shot.scene);
-        options.dem = times_.loaded(shot.scene);
-        session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
-        dem_ = std::move(key);
-        needs_ = needs;
-        opened_ = true;
-    }
-
     const BatchOptions& options_;
-    SceneTimes& times_;
     SceneInputs& inputs_;
     FilesInUse& files_;
-    std::unique_ptr<Session> session_;
-    std::string dem_;
-    RendererNeeds needs_;
-    bool opened_ = false;  ///< a session has been opened at least once
-    std::mutex mutex_;     // guards the callbacks and failed_
+    ShotSession session_of_;
+    std::mutex mutex_;  // guards the callbacks and failed_
     std::size_t failed_ = 0;
 };
 
@@ -254,7 +167,9 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
 
 std::size_t draw_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
                        SceneTimes& times, SceneInputs& inputs, FilesInUse& files) {
-    return shots.empty() ? 0 : Batch(options, times, inputs, files).run(shots);
+    if (shots.empty()) return 0;
+    const bool linear = image::holds_linear_light(shots.front().output);
+    return Batch(options, linear, times, inputs, files).run(shots);
 }
 
 double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,

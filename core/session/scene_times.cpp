@@ -10,6 +10,7 @@
 #include "render/ground.h"
 #include "scene/default_time.h"
 #include "scene/framing.h"
+#include "session/standing.h"
 #include "session/words.h"
 #include "sun/event_time.h"
 
@@ -140,6 +141,31 @@ sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
         ground.frame, {to_show.points, {}}, static_cast<double>(scene.width_px) / scene.height_px,
         scene.exaggeration);
     return day.time(scene::side_of_deg(camera)).utc;
+}
+
+scene::MotionGround SceneTimes::motion_ground(const scene::Scene& scene) {
+    const auto heights = loaded(scene);
+    const render::Ground ground = ground_of(*heights);
+    const render::GroundToShow to_show =
+        render::ground_to_show(heights->field, ground, scene.exaggeration);
+    // Seas lie at level 0, whatever their bottom.
+    render::Displacement seas;
+    seas.to_m = {0};
+    scene::MotionGround result{.height_m = heights_to_aim_at(heights, seas),
+                               .frame = ground.frame,
+                               .exaggeration = scene.exaggeration,
+                               .points = to_show.points,
+                               .aspect = static_cast<double>(scene.width_px) / scene.height_px};
+    const auto base = render::block_below(to_show.rim, ground, scene.exaggeration);
+    result.points.insert(result.points.end(), base.begin(), base.end());
+    result.camera = [this, scene, height_m = result.height_m, frame = ground.frame,
+                     points = to_show.points, aspect = result.aspect](const scene::View& view) {
+        scene::Scene seen = scene;
+        seen.view = view;
+        return scene::make_camera(settled_view(seen), height_m, frame, {points, {}}, aspect,
+                                  scene.exaggeration);
+    };
+    return result;
 }
 
 void SceneTimes::keep_only(const scene::Scene& scene) {

@@ -42,6 +42,10 @@ class SceneTimes {
     /// The scene's view with the default angles of a session where none are given.
     scene::View settled_view(const scene::Scene& scene);
 
+    /// The scene's ground, for cameras that move over it. Keeps the DEM alive; must not outlive
+    /// this.
+    scene::MotionGround motion_ground(const scene::Scene& scene);
+
     /// Frees all DEMs but the scene's.
     void keep_only(const scene::Scene& scene);
 

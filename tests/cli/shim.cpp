@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -39,6 +40,14 @@ int openat(int folder, const char* path, int flags, ...) {
         return -1;
     }
     return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+}
+
+/// "encoders": FFmpeg has none.
+const void* avcodec_find_encoder_by_name(const char* name) {
+    if (refuses("encoders")) return nullptr;
+    using Find = const void* (*)(const char*);
+    const auto find = reinterpret_cast<Find>(dlsym(RTLD_NEXT, "avcodec_find_encoder_by_name"));
+    return find ? find(name) : nullptr;
 }
 
 /// "jpeg": libjpeg finds no memory, and does what it does then.

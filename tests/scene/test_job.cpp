@@ -166,7 +166,8 @@ TEST_F(JobFile, MistakesNameTheirPlace) {
     EXPECT_EQ(error(with("\"sweep\": [{\"camera\": []}]")),
               "2: sweep[0].camera: no such key; did you mean \"cameras\"?");
     EXPECT_EQ(error(with("\"sweep\": [{}]")),
-              "2: sweep[0]: expected one of times, dates, cameras, sites, effects and set");
+              "2: sweep[0]: expected one of times, dates, cameras, sites, effects, set, orbit and "
+              "flight");
     EXPECT_EQ(error(with("\"sweep\": [{\"times\": [], \"dates\": []}]")),
               "2: sweep[0]: expected one axis but got 2; each has braces of its own");
     EXPECT_EQ(error(with("\"sweep\": [{\"times\": 7}]")),
@@ -321,6 +322,138 @@ TEST_F(JobFile, TheSchemasKnowTheKeysThatTheReadersKnow) {
     std::set<std::string> sites =
         of_job("\"sweep\": [{\"sites\": {\"file\": \"a.csv\"," + no_key + "}}]");
     EXPECT_EQ(sites, keys_of(job["$defs"]["sites"]));
+    EXPECT_EQ(of_job("\"film\": {" + no_key + "}"), keys_of(job["$defs"]["film"]));
+    EXPECT_EQ(of_job("\"sweep\": [{\"orbit\": {" + no_key + "}}]"), keys_of(job["$defs"]["orbit"]));
+    write("lat,lon\n46,8\n46.1,8\n", "line.csv");
+    std::set<std::string> flight =
+        of_job("\"sweep\": [{\"flight\": {\"along\": \"line.csv\"," + no_key + "}}]");
+    const std::string views = "\"views\": [{\"eye\": [46, 8]}, {\"eye\": [46, 9]}],";
+    flight.merge(of_job("\"sweep\": [{\"flight\": {" + views + no_key + "}}]"));
+    EXPECT_EQ(flight, keys_of(job["$defs"]["flight"]));
+}
+
+// --- Films
+
+TEST_F(JobFile, AFilmIsOneFile) {
+    const std::string times =
+        "\"sweep\": [{\"times\": [\"2026-06-21T06:00Z\", "
+        "\"2026-06-21T07:00Z\"]}],";
+    EXPECT_THAT(names(times + "\"output\": \"{dem}.mp4\""), ElementsAre("alps.mp4", "alps.mp4"));
+    const Job webp = read_job(write(with(times + "\"output\": \"a.webp\", \"film\": {}")));
+    EXPECT_TRUE(webp.is_film());
+    EXPECT_FALSE(read_job(write(with(times + "\"output\": \"{n}.webp\""))).is_film());
+    // The frames of a film as pictures.
+    EXPECT_FALSE(read_job(write(with(times + "\"output\": \"{n}.png\", \"film\": {}"))).is_film());
+    EXPECT_EQ(error(with(times + "\"output\": \"{n}.mp4\"")),
+              "2: output: a film is one file but \"{n}.mp4\" names 1.mp4 and 2.mp4; remove what "
+              "differs between its frames");
+    EXPECT_EQ(error(with("\"film\": {\"fps\": 0}")),
+              "2: film.fps: expected a number in [0.1, 240] but got 0");
+}
+
+TEST_F(JobFile, RangesByTheNumberOfFrames) {
+    const auto times = shots(
+        "\"sweep\": [{\"times\": {\"from\": \"2026-06-21T06:00Z\", \"to\": "
+        "\"2026-06-21T07:00Z\", \"frames\": 5}}]");
+    ASSERT_EQ(times.size(), 5u);
+    EXPECT_EQ(sun::to_iso(times[1].utc), "2026-06-21T06:15:00Z");
+    EXPECT_EQ(sun::to_iso(times[4].utc), "2026-06-21T07:00:00Z");
+    const auto seconds = shots(
+        "\"film\": {\"fps\": 24}, \"sweep\": [{\"times\": {\"from\": "
+        "\"2026-06-21T06:00Z\", \"to\": \"2026-06-21T07:00Z\", "
+        "\"duration_s\": 2.5}}]");
+    EXPECT_EQ(seconds.size(), 60u);
+    const auto dates = shots(
+        "\"sweep\": [{\"dates\": {\"from\": \"2026-01-01\", \"to\": "
+        "\"2026-01-31\", \"frames\": 4, \"at\": \"12:00\"}}]");
+    ASSERT_EQ(dates.size(), 4u);
+    EXPECT_EQ(sun::to_iso(dates[1].utc), "2026-01-11T12:00:00Z");
+    EXPECT_EQ(sun::to_iso(dates[3].utc), "2026-01-31T12:00:00Z");
+    const auto values = shots(
+        "\"sweep\": [{\"set\": \"haze.density\", \"from\": 0.2, \"to\": 0, "
+        "\"frames\": 3}]");
+    ASSERT_EQ(values.size(), 3u);
+    EXPECT_EQ(values[1].names.at("haze.density"), "0.1");
+    EXPECT_EQ(values[2].names.at("haze.density"), "0");
+}
+
+TEST_F(JobFile, NumbersOfFramesThatAreNone) {
+    const auto of = [&](const std::string& member) {
+        return error(with("\"sweep\": [{\"orbit\": {" + member + "}}]"));
+    };
+    EXPECT_EQ(of("\"frames\": 0"),
+              "2: sweep[0].orbit.frames: expected a whole number in [1, 1000000] but got 0");
+    EXPECT_EQ(of("\"frames\": 1e7"),
+              "2: sweep[0].orbit.frames: expected a whole number in [1, 1000000] but got 10000000");
+    EXPECT_EQ(of("\"duration_s\": 1e5"),
+              "2: sweep[0].orbit.duration_s: expected at most 1000000 frames but got 3000000");
+    EXPECT_EQ(of("\"duration_s\": 1, \"frames\": 30"),
+              "2: sweep[0].orbit.duration_s: expected frames or a duration but got both");
+    EXPECT_THAT(error(with("\"sweep\": [{\"orbit\": {\"frames\": 5000}}]")),
+                HasSubstr("the job has 5000 pictures, more than 1000; add --yes"));
+}
+
+/// Flat ground at 500 m around 46, 8.
+MotionGround plain(const Scene& scene) {
+    const geo::LocalFrame frame(geo::geodetic_deg(46, 8));
+    MotionGround ground{.height_m = [](const geo::Geodetic&) { return 500.0; }, .frame = frame};
+    for (const double x : {-5000., 5000.})
+        for (const double y : {-5000., 5000.})
+            ground.points.push_back({x, y, 500});
+    ground.camera = [ground, settled = scene.view](View view) {
+        view.orbit.azimuth_deg = view.orbit.azimuth_deg.value_or(200);
+        view.orbit.elevation_deg = view.orbit.elevation_deg.value_or(30);
+        return make_camera(view, ground.height_m, ground.frame, {ground.points, {}}, 1, 1);
+    };
+    return ground;
+}
+
+TEST_F(JobFile, CamerasMoveWhileTimePasses) {
+    write("lat,lon\n46,8\n46.02,8.02\n", "line.csv");
+    const auto moving = [&](const std::string& axis, const std::string& more = "") {
+        const Job job = read_job(write(
+            with("\"combine\": \"zip\", \"sweep\": [{\"times\": {\"from\": \"2026-06-21T06:00Z\", "
+                 "\"to\": \"2026-06-21T07:00Z\", \"frames\": 31}}, {" +
+                 axis + "}], \"output\": \"{camera}.png\"" + more)));
+        return shots_of(job, resolve, 1000, plain).shots;
+    };
+    for (const std::string axis :
+         {"\"orbit\": {\"frames\": 31, \"ease\": true}",
+          "\"flight\": {\"along\": \"line.csv\", \"frames\": 31}",
+          "\"flight\": {\"views\": [{\"eye\": [46, 8, 900]}, {\"orbit\": {\"azimuth\": 90}}], "
+          "\"frames\": 31}"}) {
+        const std::vector<Shot> shots = moving(axis);
+        ASSERT_EQ(shots.size(), 31u) << axis;
+        EXPECT_EQ(shots[1].output.filename(), "0002.png");
+        EXPECT_EQ(sun::to_iso(shots[15].utc), "2026-06-21T06:30:00Z");
+        ASSERT_TRUE(shots[15].scene.view.eye) << axis;
+        EXPECT_NE(shots[15].scene.view.eye->place, shots[16].scene.view.eye->place);
+    }
+    // 2711 m at 100 m/s, at rest at both ends.
+    EXPECT_THAT(
+        test::error_of(
+            [&] { moving("\"flight\": {\"along\": \"line.csv\", \"speed_m_s\": 100}"); }),
+        HasSubstr("sweep[1].flight: expected 31 values, as sweep[0].times has, but got 1016; "
+                  "\"combine\": \"zip\" takes axes of one length"));
+}
+
+TEST_F(JobFile, FlightsThatAreNone) {
+    write("lat,lon\n46,8\n46,8\n", "same.csv");
+    write("lat,lon\n46,8\n", "one.csv");
+    write("lat,lon\n46,8\nnan,9\n", "nan.csv");
+    const auto of = [&](const std::string& members) {
+        return error(with("\"sweep\": [{\"flight\": {" + members + "}}]"));
+    };
+    EXPECT_EQ(
+        of("\"along\": \"same.csv\""),
+        "2: sweep[0].flight.along: expected two different places or more but got the same one "
+        "again");
+    EXPECT_THAT(of("\"along\": \"one.csv\""), HasSubstr("one.csv"));
+    EXPECT_THAT(of("\"along\": \"nan.csv\""), HasSubstr("nan.csv"));
+    EXPECT_EQ(of("\"frames\": 3"), "2: sweep[0].flight: expected a member \"along\"");
+    EXPECT_EQ(of("\"views\": [{\"eye\": [46, 8]}]"),
+              "2: sweep[0].flight.views: expected two cameras or more but got 1");
+    EXPECT_THAT(of("\"views\": [], \"along\": \"same.csv\""), HasSubstr("but got both"));
 }
 
 }  // namespace

@@ -1,0 +1,239 @@
+#include "film/film.h"
+
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/contains.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/job_run.h"
+#include "scene/film_job.h"
+#include "sun/event_time.h"
+
+namespace relevo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    JobArguments job;
+    std::string motion, along, span, save_job;
+    double duration_s = 10, turns = 1;
+    film::Settings film;
+    std::optional<double> height_m, look_ahead_m, speed_m_s;
+    std::optional<int> quality;
+    bool no_loop = false;
+};
+
+constexpr const char* kDefaultSpan = "sunrise-30min,sunset+30min";
+
+/// What moves: the words of --motion.
+std::vector<std::string> motions(const Arguments& arguments) {
+    if (arguments.motion.empty()) return {arguments.along.empty() ? "day" : "flight"};
+    std::vector<std::string> words = split(arguments.motion, ',');
+    const std::vector<std::string> known{"day", "year", "orbit", "flight"};
+    for (const std::string& word : words)
+        if (!contains(known, word))
+            bad_usage(
+                fmt::format("--motion: {}: expected day, year, orbit or flight, or two of them, as "
+                            "in day,orbit",
+                            printable(arguments.motion)));
+    const auto both = [&](const char* a, const char* b) {
+        if (contains(words, a) && contains(words, b))
+            bad_usage(fmt::format("--motion: {} and {} exclude each other; use one", a, b));
+    };
+    both("day", "year");
+    both("orbit", "flight");
+    if (contains(words, "flight") && arguments.along.empty())
+        bad_usage("--motion flight: its line is missing; add --along TRACK.gpx");
+    if (!contains(words, "flight") && !arguments.along.empty())
+        bad_usage("--along: needs --motion flight");
+    return words;
+}
+
+/// Makes a film's job from the command line.
+class Maker {
+  public:
+    explicit Maker(Arguments& arguments) : arguments_(arguments) {
+        // A film has a date without a time of day.
+        TimeArguments& time = arguments_.job.scene.time;
+        if (time.time.empty()) {
+            date_ = std::exchange(time.date, {});
+            zone_ = std::exchange(time.zone, {});
+        } else {
+            zone_ = time.zone;
+        }
+        scene_ = arguments_.job.scene.scene();
+        if (scene_.time.at.empty() && !zone_.empty()) scene_.time.zone = zone_;
+        if (arguments_.job.scene.size.empty() && arguments_.job.scene.file.empty()) {
+            scene_.width_px = 1280;
+            scene_.height_px = 720;
+        }
+        if (!date_.empty()) sun::parse_date(date_);
+    }
+
+    const scene::Scene& scene() const { return scene_; }
+
+    scene::FilmJob job() {
+        scene::FilmJob job{.film = arguments_.film,
+                           .duration_s = arguments_.duration_s,
+                           .output = arguments_.job.output};
+        job.film.quality = arguments_.quality;
+        if (arguments_.no_loop) job.film.loop = false;
+        film::check(job.output, scene_.width_px, scene_.height_px, job.film);
+        for (const std::string& word : motions(arguments_)) {
+            if (word == "day") job.day = day();
+            if (word == "year") job.year = year();
+            if (word == "orbit") job.orbit = {arguments_.turns};
+            if (word == "flight")
+                job.flight = {arguments_.along, arguments_.height_m, arguments_.look_ahead_m,
+                              arguments_.speed_m_s};
+        }
+        if (!job.day && !job.year) fix_date();
+        return job;
+    }
+
+  private:
+    sun::Date date() {
+        if (!date_.empty()) return sun::parse_date(date_);
+        const sun::ParsedTime time = times_.of(scene_);
+        return time.zone.local(time.utc).wall.date;
+    }
+
+    /// The day of a film whose time does not move. Its time of day is that of the scene.
+    void fix_date() const {
+        if (!date_.empty())
+            bad_usage(
+                fmt::format("--date: this film has one time; write it as --time {}T18:30", date_));
+    }
+
+    scene::FilmJob::Day day() {
+        const std::vector<std::string> ends =
+            split(arguments_.span.empty() ? kDefaultSpan : arguments_.span, ',');
+        if (ends.size() != 2)
+            bad_usage(fmt::format("--span: {}: expected FROM,TO such as {}",
+                                  printable(arguments_.span), kDefaultSpan));
+        scene::FilmJob::Day day{sun::to_string(date()), zone_, ends[0], ends[1]};
+        if (zone_.empty()) day.zone = zone_of(day.date);
+        if (arguments_.span.empty() && !has_sunrise_and_sunset(day)) {
+            day.from = "00:00";
+            day.to = "23:59";
+        }
+        return day;
+    }
+
+    /// The zone of the place by its name, so that the job says it.
+    std::string zone_of(const std::string& date) {
+        scene::Scene scene = scene_;
+        scene.time = {"noon", date, ""};
+        const std::string name = times_.of(scene).zone.name();
+        return name.starts_with("LMT") ? "" : name;
+    }
+
+    /// Where the sun does not rise or set, or sets after midnight, a day is the whole day.
+    bool has_sunrise_and_sunset(const scene::FilmJob::Day& day) {
+        const auto at = [&](const std::string& event) {
+            scene::Scene scene = scene_;
+            scene.time = {event, day.date, day.zone};
+            return times_.of(scene).utc;
+        };
+        try {
+            if (at(day.from) < at(day.to)) return true;
+            log::info(fmt::format("{}: the sun sets after midnight; the film shows the whole day",
+                                  day.date));
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            log::info(fmt::format("the film shows the whole day: {}", error.what()));
+        }
+        return false;
+    }
+
+    scene::FilmJob::Year year() {
+        std::string at = "12:00";
+        if (!scene_.time.at.empty()) {
+            const sun::ParsedTime time = times_.of(scene_);
+            const sun::CivilTime wall = time.zone.local(time.utc).wall;
+            at = fmt::format("{:02}:{:02}", wall.hour, wall.minute);
+        }
+        return {date().year, at, zone_.empty() ? "solar" : zone_};
+    }
+
+    Arguments& arguments_;
+    std::string date_, zone_;
+    scene::Scene scene_;
+    session::SceneTimes times_;
+};
+
+void film(Arguments arguments) {
+    Maker maker(arguments);
+    const scene::FilmJob job = maker.job();
+    if (!arguments.save_job.empty())
+        write_text(arguments.save_job,
+                   scene::film_job_text(maker.scene(), job,
+                                        fs::absolute(arguments.save_job).parent_path()),
+                   arguments.job.overwrite, "--save-job");
+    arguments.job.text = JobText{scene::film_job_text(maker.scene(), job, ""), ""};
+    run_job(arguments.job);
+}
+
+void add_motion(CLI::App& verb, Arguments& arguments) {
+    verb.add_option("--motion", arguments.motion,
+                    "What moves: day, year, orbit, flight, or two, as in day,orbit (day)")
+        ->group("Film");
+    verb.add_option("--duration", arguments.duration_s, "Length in seconds (10)")
+        ->check(in_range(0.001, 1e6))
+        ->group("Film");
+    verb.add_option("--fps", arguments.film.fps, "Frames per second (30)")
+        ->check(in_range(film::kMinFps, film::kMaxFps))
+        ->group("Film");
+    verb.add_option("--quality", arguments.quality, "0 to 100 (80); not of gif")
+        ->check(whole_number())
+        ->check(CLI::Range(0, 100))
+        ->group("Film");
+    verb.add_flag("--no-loop", arguments.no_loop, "Play a gif or webp once")->group("Film");
+    verb.add_option("--span", arguments.span,
+                    fmt::format("Times of a day, FROM,TO ({})", kDefaultSpan))
+        ->group("Film");
+    verb.add_option("--turns", arguments.turns, "Turns of an orbit, clockwise from above (1)")
+        ->check(in_range(-1000, 1000))
+        ->group("Film");
+    verb.add_option("--along", arguments.along, "Line of a flight: GPX, CSV or GeoJSON")
+        ->group("Film");
+    verb.add_option("--above", arguments.height_m,
+                    "Least height of a flight above the ground in metres (150)")
+        ->check(in_range(0.1, 1e6))
+        ->group("Film");
+    verb.add_option("--look-ahead", arguments.look_ahead_m,
+                    "How far ahead a flight looks, in metres; bends narrower than it are cut")
+        ->check(in_range(1, 1e6))
+        ->group("Film");
+    verb.add_option("--speed", arguments.speed_m_s,
+                    "Highest speed of a flight in m/s, instead of --duration")
+        ->check(in_range(0.01, 1e6))
+        ->group("Film");
+}
+
+}  // namespace
+
+void add_film(CLI::App& app) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *app.add_subcommand("film", "Makes a film: a day, a year, an orbit, a flight");
+    JobArguments& job = arguments->job;
+    job.scene.add_to(verb);
+    verb.add_option("-o,--output", job.output, "Film to write: mp4, webm, webp or gif")->required();
+    add_motion(verb, *arguments);
+    verb.add_option("--save-job", arguments->save_job,
+                    "Write the job as JSON, for relevo run; with --dry-run no film is made");
+    verb.add_flag("--overwrite", job.overwrite, "Replace existing files");
+    verb.add_flag("--dry-run", job.dry_run, "Estimate the time, and make no film");
+    verb.add_flag("--allow-blank", job.allow_blank, "Accept a film that shows no ground");
+    verb.add_option("--device", job.device,
+                    "GL device: auto, an index, software, or a part of its name");
+    verb.callback([arguments] { film(*arguments); });
+}
+
+}  // namespace relevo::cli

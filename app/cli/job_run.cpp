@@ -1,0 +1,75 @@
+#include "cli/job_run.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "session/trust.h"
+
+namespace relevo::cli {
+namespace {
+
+/// More pictures than anybody means without saying so.
+constexpr std::size_t kMostUnasked = 100'000;
+constexpr std::size_t kMost = 1'000'000'000;
+
+/// Warns of skipped pictures in one line.
+void warn_of_skipped(const std::vector<std::string>& reasons) {
+    if (reasons.size() == 1) log::warning("1 picture is skipped: " + reasons.front());
+    if (reasons.size() > 1)
+        log::warning(
+            fmt::format("{} pictures are skipped; the first: {}", reasons.size(), reasons.front()));
+}
+
+}  // namespace
+
+void JobRun::hash(const scene::Scene& scene) {
+    try {
+        inputs.record(scene);
+    } catch (const Error&) {
+        // What settles the scene says what is wrong with it.
+    }
+}
+
+void JobRun::read_job(const JobArguments& arguments) {
+    if (arguments.text) {
+        job = scene::read_job_text(arguments.text->text, "film", arguments.text->folder);
+        return;
+    }
+    job = scene::read_job(arguments.job,
+                          [&](scene::Scene& scene) { arguments.scene.apply_to(scene); });
+    if (!arguments.output.empty()) {
+        job.output = arguments.output;
+        job.output_given = false;
+        job.folder.clear();
+    }
+    files.add_input(arguments.job, "the job");
+}
+
+void JobRun::read(const JobArguments& arguments) {
+    if (!arguments.dry_run) times.before_reading([this](const auto& scene) { hash(scene); });
+    read_job(arguments);
+    session::Trust trusted(arguments.scene.named(), "job: " + printable(job.file),
+                           session::NamedBy::File);
+    for (const scene::JobFile& file : job.files)
+        files.add_input(file.path, file.what);
+    scene::Shots drawn_up = scene::shots_of(
+        job,
+        [&](const scene::Scene& scene) {
+            trusted.check_names(scene);  // before its DEM is opened
+            return times.of(scene);
+        },
+        arguments.yes ? kMost : kMostUnasked,
+        [&](const scene::Scene& scene) {
+            trusted.check_names(scene);
+            return times.motion_ground(scene);
+        });
+    for (scene::Shot& shot : drawn_up.shots)
+        trusted.keep_folders(shot.scene.effects);
+    trusted.tell();
+    warn_of_skipped(drawn_up.left_out);
+    shots = std::move(drawn_up.shots);
+}
+
+}  // namespace relevo::cli

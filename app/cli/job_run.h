@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/files_in_use.h"
+#include "base/held_notices.h"
+#include "cli/format_arguments.h"
+#include "cli/scene_arguments.h"
+#include "scene/job.h"
+#include "session/scene_inputs.h"
+#include "session/scene_times.h"
+
+namespace relevo::cli {
+
+/// A job that no file holds: that of `relevo film`.
+struct JobText {
+    std::string text;
+    std::filesystem::path folder;  ///< from which its paths count
+};
+
+/// What the command line says of a job.
+struct JobArguments {
+    SceneArguments scene;
+    FormatArguments format;         ///< of pictures
+    std::string job;                ///< its file
+    std::optional<JobText> text{};  ///< instead of a file
+    std::string output, device = "auto", shard;
+    bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
+    bool audit = false, allow_blank = false;
+};
+
+/// A job on its way: its pictures, and what they are made from.
+struct JobRun {
+    log::HeldNotices notices;
+    FilesInUse files;
+    session::SceneTimes times;
+    session::SceneInputs inputs{RELEVO_VERSION};
+    scene::Job job;
+    std::vector<scene::Shot> shots;
+
+    /// Reads the job and draws up its pictures.
+    /// @throws Error as scene::read_job() and scene::shots_of()
+    void read(const JobArguments& arguments);
+
+  private:
+    /// Hashes the files of a scene, so that changes after they were read are noticed.
+    void hash(const scene::Scene& scene);
+    void read_job(const JobArguments& arguments);
+};
+
+/// Checks, draws and encodes the film of a job.
+void run_film(const JobArguments& arguments, JobRun& work);
+
+/// Reads a job and makes its pictures or its film.
+void run_job(const JobArguments& arguments);
+
+}  // namespace relevo::cli
