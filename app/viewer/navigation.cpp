@@ -217,7 +217,8 @@ Pose centred(const Pose& pose, const Land& land, const scene::Insets& insets, do
         high(1 - 2 * insets.right, 1 - 2 * insets.top);
     const glm::dvec2 middle = 0.5 * (low + high);
     const auto angle = [&](glm::dvec2 a, glm::dvec2 b) {
-        return std::acos(std::clamp(dot(ray(camera, a, window), ray(camera, b, window)), -1.0, 1.0));
+        return std::acos(
+            std::clamp(dot(ray(camera, a, window), ray(camera, b, window)), -1.0, 1.0));
     };
     Pose turned = looking(pose, land, pose.eye_m, ray(camera, middle, window));
     const double height_rad = angle({middle.x, low.y}, {middle.x, high.y});
