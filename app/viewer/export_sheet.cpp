@@ -138,7 +138,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
                        const sun::Zone& zone, bool is_busy) {
     if (!is_open_) return;
     const float line = ImGui::GetFrameHeight();
-    ImGui::SetNextWindowPos({window_px.x - line, 3 * line}, ImGuiCond_Appearing, {1, 0});
+    ImGui::SetNextWindowPos({window_px.x - line, 5.5f * line}, ImGuiCond_Appearing, {1, 0});
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
     if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushItemWidth(-4 * line);
