@@ -316,6 +316,7 @@ std::string draw_with(const std::string& library) {
     effect::Manifest manifest;
     manifest.id = manifest.module = "probe";
     manifest.folder = folder;
+    manifest.marks.emplace_back().name = "places";  // which the module sets
     const shader::Snippet snippet =
         shader::parse_snippet("probe", "probe.glsl",
                               "uniform float probe_size = 3.0; //@ range(0, 9)\n"

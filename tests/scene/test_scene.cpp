@@ -149,7 +149,7 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
     EXPECT_EQ(error(with("\"camera\": {\"orbit\": {\"zoom\": 0}}")),
               "2: camera.orbit.zoom: expected a number in [0.001, 1000000] but got 0");
     EXPECT_EQ(error(with("\"picture\": {\"size\": [0, 10]}")),
-              "2: picture.size: expected 1 to 16384 but got 0");
+              "2: picture.size: expected 1 to 65536 but got 0");
     EXPECT_EQ(error(with("\"time\": {}")), "2: time: expected a member \"at\"");
     EXPECT_EQ(
         error(with("\"time\": {\"at\": \"noonish\"}")),

@@ -26,7 +26,7 @@ std::vector<double> light(double radius_px, double amount) {
         dem::load((test::source_dir() / "data/dem/jacksboro.tif").string()),
         {{"screen1",
           "vec3 screen1_on_background_radiance(in vec3 direction, in bool with_disc) {\n"
-          "    Pixel p = Pixel(gl_FragCoord.xy, vec2(0.0), direction, 0.0);\n"
+          "    Pixel p = Pixel(gl_FragCoord.xy, vec2(0.0), direction, 0.0, vec2(0.0));\n"
           "    return vec3(" +
               disc +
               ") / frame.exposure;\n"

@@ -12,7 +12,7 @@ double luminance(const glm::vec4& c) {
 
 constexpr const char* kFinish =
     "vec3 c = vec3(0.1, 0.3, 0.05) * float(x + 1);\n"
-    "grade_on_finish(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0), c);\n"
+    "grade_on_finish(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0, vec2(0.5)), c);\n"
     "result = vec4(c, 1.0);";
 
 TEST(Grade, LeavesAPictureAsItIsAtNeutralValues) {
@@ -32,7 +32,7 @@ TEST(Grade, WarmthKeepsTheLuminanceAndExposureCountsInStops) {
     gpu.values().set("grade.exposure", "1");
     const glm::vec4 found = gpu.run(
         "vec3 c = vec3(0.2, 0.4, 0.6);\n"
-        "grade_on_image(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0), c);\n"
+        "grade_on_image(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0, vec2(0.5)), c);\n"
         "result = vec4(c, 1.0);",
         1, 1)[0];
     EXPECT_NEAR(luminance(found), 2 * luminance({0.2, 0.4, 0.6, 1}), 1e-5);
@@ -45,7 +45,7 @@ TEST(Grade, ContrastTurnsAboutMiddleGrey) {
     gpu.values().set("grade.saturation", "0");
     const auto found = gpu.run(
         "vec3 c = vec3(x == 0 ? 0.18 : x == 1 ? 0.09 : 0.0);\n"
-        "grade_on_finish(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0), c);\n"
+        "grade_on_finish(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0, vec2(0.5)), c);\n"
         "result = vec4(c, 1.0);",
         3, 1);
     EXPECT_NEAR(found[0].x, 0.18, 1e-5);
@@ -59,8 +59,8 @@ TEST(Grade, TheVignetteDarkensTheCorners) {
     gpu.values().set("grade.vignette", "0.6");
     const auto found = gpu.run(
         "vec3 c = vec3(0.5);\n"
-        "grade_on_finish(Pixel(vec2(0.0), x == 0 ? vec2(0.5) : vec2(1.0), vec3(0.0, 1.0, 0.0),\n"
-        "                      1.0), c);\n"
+        "grade_on_finish(Pixel(vec2(0.0), vec2(0.5), vec3(0.0, 1.0, 0.0), 1.0,\n"
+        "                      x == 0 ? vec2(0.5) : vec2(1.0)), c);\n"
         "result = vec4(c, 1.0);",
         2, 1);
     EXPECT_NEAR(found[0].x, 0.5, 1e-6);
