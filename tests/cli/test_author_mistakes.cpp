@@ -106,7 +106,7 @@ TEST_F(AuthorMistakes, AFunctionWithoutItsIncludeIsNamed) {
 TEST_F(AuthorMistakes, ATextureThatNobodyMakesIsNamed) {
     EXPECT_THAT(check("uniform sampler2D dust_map; //@ from(vsm.momnts)\n"
                       "void dust_on_material(inout Surface s) {\n"
-                      "    s.diffuse = textureLod(dust_map, vec2(0.5), 0.0).rgb;\n"
+                      "    s.diffuse = s.ambient = textureLod(dust_map, vec2(0.5), 0.0).rgb;\n"
                       "}\n"),
                 ElementsAre("error: dust/dust.glsl:1: dust_map: no effect that is on makes the "
                             "texture vsm.momnts; correct //@ from(vsm.momnts)"));

@@ -175,7 +175,7 @@ TEST(BadOutput, EachHasItsMessage) {
     EXPECT_EQ(kept, "precious");
     expect_no_picture(
         {"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
-        "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got \"0x10\"");
+        "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 65536, but got \"0x10\"");
 }
 
 TEST(BadDevice, NoneIsExitFour) {

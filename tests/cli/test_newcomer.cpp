@@ -40,7 +40,7 @@ TEST(Newcomer, MisspeltWords) {
                    "--vieww: no such option; did you mean --view? See relevo capture --help");
     expect_failure({"info", bundled_dem(), "--size", "640x480"}, 2,
                    "--size: not an option of relevo info, but of relevo view, relevo capture, "
-                   "relevo run; see relevo info --help");
+                   "relevo run, ...; see relevo info --help");
     expect_failure(capture({"--view", "nort"}), 2,
                    "--view: nort: expected top, north, north-east, ... north-west, or "
                    "az=DEG,el=DEG,zoom=FACTOR, but got \"nort\"; did you mean north?");
@@ -70,7 +70,7 @@ TEST(Newcomer, MissingAndDividedWords) {
                    "--set: expected PLUGIN.PARAMETER=VALUE without spaces but got "
                    "\"haze.density\"");
     expect_failure(capture({"--size", "1920"}), 2,
-                   "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got "
+                   "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 65536, but got "
                    "\"1920\"");
     expect_failure({"sun", "position", "--at", "46.55", "8.56", "--time", "2026-06-21T12:00"}, 2,
                    "8.56: belongs to no option; write values of several parts with commas and "
@@ -129,9 +129,9 @@ TEST(Newcomer, OtherFilesInTheWrongPlace) {
 }
 
 TEST(Newcomer, Results) {
-    expect_failure(
-        {"capture", bundled_dem(), "-o", path("a.bmp")}, 3,
-        "image: " + path("a.bmp") + ": unknown picture format; use png, jpg, webp, tif or exr");
+    expect_failure({"capture", bundled_dem(), "-o", path("a.bmp")}, 3,
+                   "image: " + path("a.bmp") +
+                       ": unknown picture format; use png, jpg, webp, avif, tif or exr");
     std::ofstream(path("there.png")) << "precious";
     expect_failure({"capture", bundled_dem(), "-o", path("there.png")}, 3,
                    "image: " + path("there.png") + ": exists; pass --overwrite to replace it");

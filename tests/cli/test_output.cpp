@@ -400,7 +400,7 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
                        ": no such file; there is no folder " + path("none\\nrelevo: error: /etc"));
     expect_failure({"capture", bundled_dem(), "-o", path("a\x1b[2J\nrelevo: done.gif")}, 3,
                    "image: " + path("a\\x1b[2J\\nrelevo: done.gif") +
-                       ": unknown picture format; use png, jpg, webp, tif or exr");
+                       ": unknown picture format; use png, jpg, webp, avif, tif or exr");
 }
 
 TEST_F(Output, WithoutMemoryIsAnErrorThatSaysSo) {

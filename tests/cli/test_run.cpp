@@ -226,7 +226,7 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("run: {}: the folder cannot be made, Not a directory",
                           (dir_ / "file").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"a.bmp\"")),
-              fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
+              fmt::format("image: {}: unknown picture format; use png, jpg, webp, avif, tif or exr",
                           (dir_ / "a.bmp").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"{dem}.tif\""), {"-o", bundled_dem()}),
               fmt::format("run: {0}: is the DEM {0}, which would be overwritten; give the result "
