@@ -7,10 +7,12 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/files_in_use.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/job_run.h"
+#include "dem/files_of.h"
 #include "scene/film_job.h"
 #include "sun/event_time.h"
 
@@ -171,11 +173,18 @@ class Maker {
 void film(Arguments arguments) {
     Maker maker(arguments);
     const scene::FilmJob job = maker.job();
-    if (!arguments.save_job.empty())
+    if (!arguments.save_job.empty()) {
+        FilesInUse files;
+        dem::add_named(maker.scene().dems, files);
+        if (!arguments.along.empty()) files.add_input(arguments.along, "the track");
+        if (!arguments.job.scene.file.empty())
+            files.add_input(arguments.job.scene.file, "the scene");
+        files.check_planned({arguments.save_job, arguments.job.output}, "--save-job");
         write_text(arguments.save_job,
                    scene::film_job_text(maker.scene(), job,
                                         fs::absolute(arguments.save_job).parent_path()),
                    arguments.job.overwrite, "--save-job");
+    }
     arguments.job.text = JobText{scene::film_job_text(maker.scene(), job, ""), ""};
     run_job(arguments.job);
 }

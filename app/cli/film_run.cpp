@@ -135,6 +135,8 @@ class FilmRun {
         const auto bytes = static_cast<double>(fs::file_size(output_, ignored));
         log::info(fmt::format("{}: {}, {:.1f} MB, made in {}", name_, length(),
                               ignored ? 0.0 : bytes * 1e-6, duration_text(took_s)));
+        for (const std::string& note : report.stamp_notes)
+            log::info(fmt::format("{}: {}", name_, note));
         if (report.blank > 0)
             log::warning(fmt::format("{} of {} frames show only sky, the first is frame {}",
                                      report.blank, work_.shots.size(), report.first_blank));

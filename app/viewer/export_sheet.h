@@ -15,6 +15,8 @@ class ExportSheet {
   public:
     void open() { is_open_ = true; }
     void close() { is_open_ = false; }
+    /// Takes the stamps of another scene.
+    void forget_stamps() { stamps_.reset(); }
     bool is_open() const { return is_open_; }
     /// What the sheet does to the view: centres the picture on what the panels leave free.
     bool is_centred() const { return is_centred_; }

@@ -24,25 +24,34 @@ namespace {
 
 using nlohmann::json;
 
+/// The member "type" of an object; empty: none.
+std::string type_of(const json& object) {
+    const auto type = object.is_object() ? object.find("type") : object.end();
+    return object.is_object() && type != object.end() && type->is_string()
+               ? type->get<std::string>()
+               : "";
+}
+
+std::string geometry_of_feature(const json& feature) {
+    return feature.is_object() && feature.contains("geometry") ? type_of(feature["geometry"]) : "";
+}
+
 /// The first geometry of a GeoJSON; empty: none.
 std::string geometry_of(const json& object) {
-    if (!object.is_object()) return "";
-    const std::string type = object.value("type", "");
-    if (type == "FeatureCollection" && object.contains("features")) {
-        for (const json& feature : object["features"])
-            if (const std::string geometry = geometry_of(feature); !geometry.empty())
-                return geometry;
-        return "";
-    }
-    if (type == "Feature")
-        return object.contains("geometry") ? geometry_of(object["geometry"]) : "";
-    return type;
+    const std::string type = type_of(object);
+    if (type == "Feature") return geometry_of_feature(object);
+    if (type != "FeatureCollection") return type;
+    if (!object.contains("features")) return "";
+    for (const json& feature : object["features"])
+        if (const std::string geometry = geometry_of_feature(feature); !geometry.empty())
+            return geometry;
+    return "";
 }
 
 FileKind kind_of_json(const std::string& path) {
     const json object = json::parse(read_text(path, "open"), nullptr, /*allow_exceptions=*/false);
     if (!object.is_object()) return FileKind::Scene;  // whose reader says what is wrong
-    if (object.contains("type") && object["type"].is_string()) {
+    if (!type_of(object).empty()) {
         const std::string geometry = geometry_of(object);
         return geometry.ends_with("Point") ? FileKind::Places : FileKind::Lines;
     }

@@ -14,6 +14,10 @@ void History::add(const Document& document) {
     at_ = states_.size() - 1;
 }
 
+void History::amend(const Document& document) {
+    if (!states_.empty()) states_[at_] = document;
+}
+
 bool History::differs(const Document& document) const {
     if (states_.empty()) return true;
     const Document& now = states_[at_];

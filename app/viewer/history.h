@@ -13,6 +13,8 @@ class History {
     void add(const Document& document);
     /// Whether camera or time differ from the current state.
     bool differs(const Document& document) const;
+    /// Replaces the current state.
+    void amend(const Document& document);
     /// Adds a state if camera or time differ from the current one.
     void end_step(const Document& document);
     bool can_undo() const { return at_ > 0; }

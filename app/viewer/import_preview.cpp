@@ -102,7 +102,7 @@ std::shared_ptr<const Preview> preview_of(const PreviewWanted& wanted) {
         const dem::Heightfield field = coarse_field(source, wanted.side_px);
         preview->text = words_of(source, field);
         preview->picture = shaded(field);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {  // also for want of memory
         preview->error = error.what();
     }
     return preview;

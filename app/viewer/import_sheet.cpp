@@ -96,7 +96,12 @@ void ImportSheet::crs_field() {
 void ImportSheet::found_crs() {
     if (searched_ != fields_.crs) {
         searched_ = fields_.crs;
-        found_ = geo::search_crs(searched_, kMostFound);
+        found_.clear();
+        try {
+            found_ = geo::search_crs(searched_, kMostFound);
+        } catch (const Error& error) {
+            error_ = error.what();
+        }
     }
     const bool is_chosen = !found_.empty() && found_.front().code == fields_.crs;
     if (found_.empty() || is_chosen) {

@@ -95,11 +95,14 @@ bool MainWindow::is_drawing() const {
 void MainWindow::leave() {
     window_->hide();
     remember_settings();
+    if (picture_export_) {
+        log::info("view: the ordered picture is drawn before the end");
+        picture_export_.reset();
+    }
     discard_.take(std::move(comparison_));
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
     discard_.take(std::move(overlay_));
-    discard_.take(std::move(picture_export_));
     // No file is being written by now, and the system frees everything else.
     if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
 }

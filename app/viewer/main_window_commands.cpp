@@ -199,7 +199,7 @@ void MainWindow::move_to_point(Command command) {
 
 void MainWindow::measure() {
     Measurement& line = state_.measurement;
-    if (!state_.cursor && !line.follows_cursor) return;
+    if (!state_.cursor && line.ends_m.empty() && !line.follows_cursor) return;
     line.follows_cursor = !line.follows_cursor;
     if (line.follows_cursor && line.ends_m.empty()) line.start(state_.cursor->point_m);
 }

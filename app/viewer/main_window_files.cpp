@@ -92,6 +92,7 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
             return open_named_scene(scene::read_scene(path), path, session::NamedBy::File);
         case FileKind::Job:
             open_named_scene(scene_of_job(path), path, session::NamedBy::File);
+            if (!state_.message.empty()) return;  // a warning
             return messages_.note("the scene of " + name_of(path) +
                                   "; relevo run draws its pictures");
         case FileKind::Picture:
@@ -111,7 +112,9 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
 void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
                                   session::NamedBy by) {
     const scene::Scene& now = state_.document.scene;
-    session::Trust trusted({.plugin_folders = now.effects.plugin_path}, name_of(path), by);
+    session::Named named{.plugin_folders = now.effects.plugin_path, .dems = now.dems};
+    if (now.overlay) named.overlays = {now.overlay->file};
+    session::Trust trusted(named, name_of(path), by);
     trusted.check_names(scene);
     trusted.keep_folders(scene.effects);
     if (scene.dems.empty()) {
@@ -129,7 +132,9 @@ void MainWindow::show_features(FileKind kind, const std::string& path) {
     const std::string id = address.substr(0, address.find('.'));
     state_.set_effects(
         switched(with_value(state_.document.scene.effects, address, path), id, true));
+    state_.message.clear();
     state_.take_effects(/*is_step=*/true);
+    if (!state_.message.empty()) return;  // why the effect is not on
     messages_.note(name_of(path) + ": shown by the effect " + id);
 }
 
@@ -158,17 +163,23 @@ void MainWindow::stand_where_taken(const std::string& path) {
     if (photo.focal_length_mm)
         view.fov_y_rad = scene::fov_y_of_focal_length(
             *photo.focal_length_mm, static_cast<double>(photo.width_px) / photo.height_px);
+    std::optional<sun::Instant> taken;
+    try {
+        if (!photo.time.empty()) taken = sun::parse_time(photo.time, state_.document.zone).utc;
+    } catch (const Error&) {
+        // A camera whose clock was not set.
+    }
     history_.end_step(state_.document);
     hand_->rest();
     state_.document.pose = pose_in(view);
-    if (!photo.time.empty()) state_.set_utc(sun::parse_time(photo.time, state_.document.zone).utc);
+    if (taken) state_.set_utc(*taken);
     pacing_.moved();
     state_.step = true;
     messages_.note(fmt::format("{}: {}{}{}{}", name_of(path),
                                flies ? "from the air" : "from eye height at its place",
                                photo.heading_deg ? "" : ", which way it looks is not known",
-                               photo.is_magnetic ? ", turned from magnetic north" : "",
-                               photo.time.empty() ? ", without a time" : ""));
+                               photo.is_magnetic ? ", by the magnetic heading, not corrected" : "",
+                               taken ? "" : ", without a time"));
 }
 
 void MainWindow::ask_how_to_read() {

@@ -50,6 +50,7 @@ Wanted MainWindow::first_wanted() const {
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
     wanted_exaggeration_ = state_.document.scene.exaggeration;
+    export_sheet_.forget_stamps();
     point_->clear();
     overlay_->clear();
     state_.measurement = {};
@@ -158,7 +159,7 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
     document.pose = pose_in(view.value_or(scene.view));
     const bool has_time = is_first || !opening_->scene().time.at.empty();
-    state_.set_utc(has_time && !view ? opened.utc : time_from(zone_before));
+    state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     const std::vector<std::string> names = absolute_names(scene.dems);
@@ -170,7 +171,11 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
 void MainWindow::restart_scene(const Opened& before) {
     const geo::Geodetic centre = before.ground.frame.origin();
     History history = std::move(history_);
+    const scene::Scene kept = state_.document.scene;  // with what was changed while it was read
     start_scene(/*is_first=*/false, view_of(state_.document.pose, state_.land));
+    state_.document.scene = kept;
+    state_.set_effects(kept.effects);
+    state_.take_effects(/*is_step=*/false);
     const geo::Geodetic now = opening_->opened()->ground.frame.origin();
     if (now.lat_rad == centre.lat_rad && now.lon_rad == centre.lon_rad)
         history_ = std::move(history);
@@ -214,6 +219,8 @@ void MainWindow::take_shape() {
     use_dem();
     Document& document = state_.document;
     document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
+    history_.amend(document);
+    state_.measurement = {};  // its ends lie on the ground as it was drawn
     pacing_.moved();
 }
 

@@ -19,6 +19,7 @@ Opening::Opening(scene::Scene scene, const SceneDevice& device, Messages& messag
 
 void Opening::open(scene::Scene scene, const Wanted& first) {
     requested_file_ = scene.dems.front();
+    went_back_ = false;
     begin(std::move(scene), /*is_reload=*/false);
     next_->thread->want(first);
 }
@@ -30,6 +31,7 @@ void Opening::reload(scene::Scene scene, const Wanted& first) {
 
 void Opening::go_back(const Wanted& first) {
     begin(*complete_, /*is_reload=*/false);
+    went_back_ = true;
     next_->thread->want(first);
 }
 
@@ -80,10 +82,10 @@ Opening::Event Opening::poll_open() {
     } catch (const gl::DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        if (!complete_) throw;
+        if (!complete_ && !next_) throw;
         is_broken_ = true;
         messages_.show(error.what());
-        return next_ ? Event::None : Event::Broken;
+        return next_ || went_back_ ? Event::None : Event::Broken;
     }
     std::shared_ptr<const Opened> opened = open_.thread->opened();
     if (opened == opened_) return Event::None;

@@ -90,6 +90,7 @@ class Opening {
     std::optional<Attempt> next_;
     std::shared_ptr<const Opened> opened_;  // of open_
     bool is_broken_ = false;                // its posts cannot be read completely
+    bool went_back_ = false;                // open_ or next_ is complete_, after a failure
     std::optional<Failure> failure_;
     std::optional<scene::Scene> complete_;  // the last one whose posts were all read
     scene::View home_view_;

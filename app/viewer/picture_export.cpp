@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/files_in_use.h"
 #include "base/text.h"
 #include "dem/files_of.h"
@@ -43,8 +44,12 @@ std::string PictureExport::result() const {
 void PictureExport::run() {
     try {
         result_ = write();
-    } catch (...) {
+    } catch (const Error&) {
         failure_ = std::current_exception();
+    } catch (const std::exception& error) {
+        failure_ = std::make_exception_ptr(Error(
+            ErrorCode::Failed, fmt::format("export: {}: {}; use a smaller size or fewer samples",
+                                           printable(order_.path), error.what())));
     }
     is_done_ = true;
     on_change_();

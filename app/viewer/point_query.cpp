@@ -27,6 +27,7 @@ void PointQuery::clear() {
 void PointQuery::update(const Opened& opened, double px_a_unit) {
     if (!state_.chosen || opened.dem->is_preview) return;
     const bool is_requested = requested_ && requested_->date == state_.day.date &&
+                              requested_->zone.name() == state_.document.zone.name() &&
                               requested_->chart_px == state_.chart_px &&
                               requested_->px_a_unit == px_a_unit;
     if (is_requested) return;

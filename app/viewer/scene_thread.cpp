@@ -258,7 +258,7 @@ struct SceneThread::Impl {
             try {
                 attempt([&] { change(new_effects, new_values); });
                 if (new_overlay) attempt([&] { session->set_overlay(*new_overlay); });
-                if (new_exaggeration) exaggerate(*new_exaggeration, now.insets);
+                if (new_exaggeration) attempt([&] { exaggerate(*new_exaggeration, now.insets); });
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;

@@ -64,6 +64,7 @@ void State::take_effects(bool is_step) {
 }
 
 void State::restore(const Document& restored) {
+    if (restored.zone.name() != document.zone.name()) day = {};
     const bool changes_effects = effects_text(restored) != effects_text(document);
     document = restored;
     // Until the ground is drawn anew it has the exaggeration that it has now.

@@ -48,6 +48,7 @@ void InstanceShadows::prepare(const Terrain& terrain, const FrameInputs& inputs,
     Key key{.ground = terrain.serial(),
             .is_complete = terrain.is_complete(),
             .towards_sun = sun,
+            .up = inputs.deterministic ? up : glm::dvec3(0),
             .exaggeration = inputs.exaggeration,
             .day = std::floor(inputs.unix_s / kDay_s)};
     double highest_m = 0;
@@ -102,13 +103,18 @@ void InstanceShadows::write(const glm::dvec3& eye_m, FrameBlock& block) const {
 
 void InstanceShadows::clear_due() const {
     constexpr float kFar = 0;
+    // A first draw is watched, in a scissor of its own.
+    const bool was_on = glIsEnabled(GL_SCISSOR_TEST);
+    std::array<GLint, 4> before{};
+    glGetIntegerv(GL_SCISSOR_BOX, before.data());
     glEnable(GL_SCISSOR_TEST);
     for (int map = 0; map < kMaps; ++map) {
         if (!is_due(map)) continue;
         glScissor(0, map * kSide_px, kSide_px, kSide_px);
         glClearBufferfv(GL_DEPTH, 0, &kFar);
     }
-    glDisable(GL_SCISSOR_TEST);
+    glScissor(before[0], before[1], before[2], before[3]);
+    if (!was_on) glDisable(GL_SCISSOR_TEST);
 }
 
 bool InstanceShadows::meets(int map, const Box& box) const {

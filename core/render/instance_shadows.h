@@ -58,6 +58,7 @@ class InstanceShadows {
         std::uint64_t ground = 0;
         bool is_complete = true;
         glm::dvec3 towards_sun{0};
+        glm::dvec3 up{0};  ///< of deterministic frames, which depend on no earlier one
         double exaggeration = 1, range_m = 0;
         double day = 0;
         std::vector<shader::ParamValue> values;

@@ -30,6 +30,15 @@ struct Outputs {
     std::optional<OutputFile> sidecar;
 };
 
+/// @throws Error (BadInput) for a picture that is too large for memory
+void refuse_bands(const scene::Shot& shot, const PictureFormat& format, bool linear) {
+    if (needs_bands(shot.scene, format, linear))
+        bad_input(
+            fmt::format("run: {} x {} px take more than 1 GiB; make it by itself with "
+                        "relevo capture",
+                        shot.scene.width_px, shot.scene.height_px));
+}
+
 class Batch {
   public:
     Batch(const BatchOptions& options, bool linear, SceneTimes& times, SceneInputs& inputs,
@@ -63,11 +72,7 @@ class Batch {
 
   private:
     void draw(const scene::Shot& shot, bool linear, TaskQueue& queue) {
-        if (needs_bands(shot.scene, options_.format, linear))
-            bad_input(
-                fmt::format("run: {} x {} px take more than 1 GiB; make it by itself with "
-                            "relevo capture",
-                            shot.scene.width_px, shot.scene.height_px));
+        refuse_bands(shot, options_.format, linear);
         Session& session = session_of_.of(shot);
         const SceneIn scene_is = scene_in(shot.output, shot.scene);
         const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
@@ -180,15 +185,14 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     };
     const auto opening = Clock::now();
     FilesInUse files;
-    Options session_options;
-    session_options.device = options.device;
-    session_options.audited = options.audit;
-    session_options.dem = times.loaded(shots.front().scene);
-    session_options.format = options.format;
-    session_options.format->layers.clear();
-    Session session(of_any_view(shots.front().scene), session_options, files);
+    PictureFormat format = options.format;
+    format.layers.clear();
+    ShotSession sessions({.device = options.device, .format = format, .audited = options.audit},
+                         times, files);
     const auto draw = [&](const scene::Shot& shot) {
         const auto began = Clock::now();
+        refuse_bands(shot, format, /*linear=*/false);
+        Session& session = sessions.of(shot);
         session.show(shot.scene, shot.utc);
         session.make_picture();
         if (options.audit) audit_shadows(session);

@@ -58,11 +58,13 @@ class Encoding {
 };
 
 /// Draws a shot. @returns the frame
-image::Image8 draw(ShotSession& sessions, const scene::Shot& shot, bool& shows_ground) {
+image::Image8 draw(ShotSession& sessions, const scene::Shot& shot, bool& shows_ground,
+                   std::vector<std::string>& stamp_notes) {
     Session& session = sessions.of(shot);
     session.show(shot.scene, shot.utc);
     image::Picture picture = session.make_picture();
     shows_ground = session.shows_ground();
+    stamp_notes = session.stamp_notes();
     return std::get<image::Image8>(std::move(picture.pixels));
 }
 
@@ -83,7 +85,9 @@ FilmReport draw_film(const std::vector<scene::Shot>& shots, const FilmOptions& o
             bool shows_ground = true;
             image::Image8 frame;
             try {
-                frame = draw(sessions, shot, shows_ground);
+                std::vector<std::string> notes;
+                frame = draw(sessions, shot, shows_ground, notes);
+                if (number == 1) report.stamp_notes = std::move(notes);
             } catch (...) {
                 if (!sessions.was_opened()) throw;
                 failed(

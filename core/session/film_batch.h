@@ -24,8 +24,9 @@ struct FilmOptions {
 
 /// What became of a film.
 struct FilmReport {
-    std::size_t blank = 0;        ///< frames that show no ground of the DEM
-    std::size_t first_blank = 0;  ///< from 1
+    std::size_t blank = 0;                 ///< frames that show no ground of the DEM
+    std::size_t first_blank = 0;           ///< from 1
+    std::vector<std::string> stamp_notes;  ///< on stamps that the first frame omits
 };
 
 /// Draws shots as the frames of one film, which is encoded on a thread of its own while the next

@@ -110,13 +110,7 @@ PictureMaker::PictureMaker(Session::Impl& impl)
     }
     const int side_px = side_of(std::min(format_.frame_px, kTileFrame_px), max_side_px);
     tiles_ = tiles_of(picture_px_, side_px, kMargin_px);
-    if (!format_.layers.empty())
-        bad_input(
-            fmt::format("--layers: expected a picture of at most {:.0f} pixels but got {} x {}",
-                        format_.frame_px, picture_px_.x, picture_px_.y));
-    if (impl.drawn->without())
-        bad_input(fmt::format("--ab: expected a picture of at most {:.0f} pixels but got {} x {}",
-                              format_.frame_px, picture_px_.x, picture_px_.y));
+    refuse_in_tiles();
 }
 
 void PictureMaker::draw_frame(const PictureTile& tile, const glm::dvec2& offset_px) {
@@ -229,6 +223,21 @@ image::Picture PictureMaker::whole(render::PassTimes* times) {
     return picture;
 }
 
+void PictureMaker::refuse_in_tiles() const {
+    const auto refuse = [&](const std::string& what) {
+        bad_input(fmt::format("{}: expected a picture of at most {:.0f} pixels but got {} x {}",
+                              what, format_.frame_px, picture_px_.x, picture_px_.y));
+    };
+    if (!format_.layers.empty()) refuse("--layers");
+    if (impl_.drawn->without()) refuse("--ab");
+    if (impl_.options.audited) refuse("--audit");
+    // What such passes measure is of one frame, and would differ from tile to tile.
+    for (const shader::PluginPass& pass : impl_.drawn->effects().loaded.selection.passes())
+        if (pass.kind == shader::PluginPass::Kind::Compute)
+            refuse(pass.resource.substr(0, pass.resource.find('.')) +
+                   ", which computes from the whole frame");
+}
+
 void PictureMaker::check_bands() const {
     const auto refuse = [&](const std::string& what) {
         bad_input(
@@ -259,6 +268,12 @@ image::Picture Session::Impl::make_picture(const Session& session, render::PassT
     const bool annotated =
         !options.radiance && (has_marks() || state.scene.stamps != scene::Stamps() ||
                               (state.scene.stamps.legend && !session.legends().empty()));
+    constexpr int kMostAnnotated_px = 32767;  // of Cairo
+    if (annotated && std::max(state.scene.width_px, state.scene.height_px) > kMostAnnotated_px)
+        bad_input(
+            fmt::format("stamps, legends and names need sides of at most {} px; add "
+                        "--no-legend, or use a smaller --size",
+                        kMostAnnotated_px));
     if (maker.is_tiled() && annotated) maker.keep_depths();
     image::Picture picture = maker.whole(times);
     picture_shows_ground = maker.shows_ground();

@@ -2,7 +2,7 @@
 //! source    M. Jarzynski, M. Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020: pcg4d
 
 const float kInstance_px = 4.0;        // lowest instances that are drawn; render/instance_blocks.h: kLowest_px
-const float kInstanceCells = 350.0;    // most cells from the eye; render/instance_blocks.h: kMostCells
+const float kInstanceCells = 240.0;    // most cells from the eye; render/instance_blocks.h: kMostCells
 const float kInstanceFade = 0.6;       // share of the range from which on they become fewer
 
 /// Distance up to which instances are drawn [m]. @param height_m, spacing_m  of plugin.json
