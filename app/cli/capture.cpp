@@ -257,7 +257,8 @@ void capture(const Arguments& arguments) {
     timings.add_picture(milliseconds_since(passes_began));
 
     recorded.wait();
-    const image::Metadata metadata = session::metadata_of(session, inputs, scene_in);
+    const image::Metadata metadata =
+        session::metadata_of(session, inputs, scene_in, session::format_text(encoding, format));
     const auto write_began = Clock::now();
     if (picture) check_shows_ground(arguments, session);
     session::write_picture(session, picture, picture_file, metadata, encoding);

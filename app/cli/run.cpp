@@ -170,7 +170,10 @@ class Run {
         std::vector<session::Wanted> wanted;
         std::set<std::string> remote;
         for (const scene::Shot& shot : shots_) {
-            wanted.push_back({inputs_.record(shot.scene), has_sidecar(shot), arguments_.audit});
+            wanted.push_back(
+                {inputs_.record(shot.scene),
+                 session::format_text(arguments_.format.encoding(), arguments_.format.picture()),
+                 has_sidecar(shot), arguments_.audit});
             for (const std::string& name : inputs_.remote_names(shot.scene))
                 remote.insert(name);
         }

@@ -105,6 +105,8 @@ class MainWindow {
     void open_requested_files();
     void open_files(const std::vector<std::string>& files);
     void open_dem(const RecentDem& dem);
+    /// Opens what the sheet gives, as part of the scene that could not be opened.
+    void open_imported(const RecentDem& dem);
     void open_scene(scene::Scene scene);
     void open_file(FileKind kind, const std::string& path);
     /// Opens a scene that a file names, without plugin folders and names on the net in it.
@@ -167,6 +169,7 @@ class MainWindow {
     FindSheet find_sheet_;
     ExportSheet export_sheet_;
     std::unique_ptr<PictureExport> picture_export_;
+    std::optional<scene::Scene> refused_;  // for whose DEM the sheet was opened
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;

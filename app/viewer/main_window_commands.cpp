@@ -54,6 +54,7 @@ bool MainWindow::run_program_command(Command command) {
         case Command::HowToRead:
             if (is_open()) {
                 const scene::Scene& scene = state_.document.scene;
+                refused_.reset();
                 import_sheet_.open({scene.dems, scene.dem, scene.holes}, "");
             }
             return true;

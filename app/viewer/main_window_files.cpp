@@ -46,8 +46,9 @@ void MainWindow::open_requested_files() {
         files = std::move(chosen);
     const std::vector<std::string> dems = std::exchange(state_.files_to_open, {});
     std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
-    if (std::optional<RecentDem> imported = import_sheet_.take()) recent = std::move(imported);
+    const std::optional<RecentDem> imported = import_sheet_.take();
     if (!is_open()) return;
+    if (imported) return open_imported(*imported);
     if (recent) return open_dem(*recent);
     if (!dems.empty()) return open_dem({.files = dems});
     if (!files.empty()) open_files(files);
@@ -77,6 +78,14 @@ void MainWindow::open_dem(const RecentDem& dem) {
     scene.overlay.reset();
     scene.time.at.clear();
     scene.time.date.clear();
+    open_scene(std::move(scene));
+}
+
+void MainWindow::open_imported(const RecentDem& dem) {
+    if (!refused_) return open_dem(dem);
+    scene::Scene scene = *std::exchange(refused_, std::nullopt);
+    scene.dem = dem.options;
+    scene.holes = dem.holes;
     open_scene(std::move(scene));
 }
 
@@ -186,8 +195,8 @@ void MainWindow::ask_how_to_read() {
     const std::optional<Opening::Failure> failure = opening_->take_failure();
     if (!failure || !is_raster_file(failure->scene.dems.front())) return;
     state_.message.clear();
-    const scene::Scene& scene = failure->scene;
-    import_sheet_.open({scene.dems, scene.dem, scene.holes}, failure->reason);
+    refused_ = failure->scene;
+    import_sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason);
 }
 
 }  // namespace relevo::viewer

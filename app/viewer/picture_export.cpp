@@ -77,7 +77,9 @@ std::string PictureExport::write() {
         scene, {.device = device_, .dem = dem_, .radiance = linear, .format = format}, files);
     std::optional<image::Picture> picture;
     if (!in_bands) picture = session.make_picture();
-    session::write_picture(session, picture, file, session::metadata_of(session, inputs, scene_in),
+    session::write_picture(session, picture, file,
+                           session::metadata_of(session, inputs, scene_in,
+                                                session::format_text(order_.encoding, format)),
                            order_.encoding);
     if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
     files.finish_outputs();

@@ -91,7 +91,8 @@ class Batch {
         if (outputs->sidecar)
             outputs->sidecar->write(
                 sidecar_text(session, inputs_, shot.output.filename().string(), audit));
-        const image::Metadata metadata = metadata_of(session, inputs_, scene_is);
+        const image::Metadata metadata = metadata_of(
+            session, inputs_, scene_is, format_text(options_.encoding, options_.format));
         queue.add([this, &shot, outputs, metadata, picture] {
             write_files(shot, *outputs, metadata, *picture);
         });

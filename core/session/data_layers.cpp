@@ -108,6 +108,10 @@ class Layers {
 
 }  // namespace
 
+const std::string& word_of(DataLayer layer) {
+    return kWords[static_cast<std::size_t>(layer)];
+}
+
 std::vector<DataLayer> parse_layers(const std::vector<std::string>& words, const std::string& who) {
     std::vector<DataLayer> layers;
     for (const std::string& word : words == std::vector<std::string>{"all"} ? kWords : words) {

@@ -24,6 +24,8 @@ enum class DataLayer {
     Ids,       ///< ids.kind, whole: 0 nothing, 1 ground, 2 water, 3 wall of the DEM
 };
 
+/// "depth", "normal" ...
+const std::string& word_of(DataLayer layer);
 /// Reads "depth,normal" or "all". @throws Error (BadInput) for other words
 /// @param who  what an error begins with
 std::vector<DataLayer> parse_layers(const std::vector<std::string>& words, const std::string& who);

@@ -48,7 +48,7 @@ std::string difference(const std::string& before, const std::string& now) {
     return "it was made from other files";
 }
 
-std::string fault_of_picture(const scene::Shot& shot, const std::string& record) {
+std::string fault_of_picture(const scene::Shot& shot, const Wanted& wanted) {
     try {
         const image::Metadata metadata = image::read_metadata(shot.output);
         const auto text = [&](const char* keyword) {
@@ -61,7 +61,9 @@ std::string fault_of_picture(const scene::Shot& shot, const std::string& record)
         if (metadata.contains(kComparedKeyword) ||
             (scene.empty() ? digest != sha256_of_text(line) : scene != line))
             return "it shows another scene";
-        if (std::string why = difference(text(kInputsKeyword), record); !why.empty()) return why;
+        if (std::string why = difference(text(kInputsKeyword), wanted.record); !why.empty())
+            return why;
+        if (text(kFormatKeyword) != wanted.format) return "it has other bits, quality or layers";
         const image::Image8 picture = image::read(shot.output);
         if (picture.width == shot.scene.width_px && picture.height == shot.scene.height_px)
             return {};
@@ -104,7 +106,7 @@ OnDisk on_disk(const scene::Shot& shot, const Wanted& wanted) {
     if (!picture && !sidecar) return {};
     std::string why;
     if (sidecar) why = fault_of_sidecar(shot, wanted);
-    if (picture && why.empty()) why = fault_of_picture(shot, wanted.record);
+    if (picture && why.empty()) why = fault_of_picture(shot, wanted);
     if (!why.empty()) return {OnDisk::State::Other, std::move(why)};
     const bool all = picture && sidecar == wanted.sidecar;
     return {all ? OnDisk::State::Whole : OnDisk::State::Part, {}};

@@ -22,6 +22,7 @@ struct OnDisk {
 /// What a shot's files must contain to be current.
 struct Wanted {
     std::string record;  ///< inputs as SceneInputs::record()
+    std::string format;  ///< as format_text()
     bool sidecar = false;
     bool audited = false;  ///< the sidecar has an audit
 };

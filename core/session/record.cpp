@@ -114,7 +114,20 @@ std::string says_where_scene_is(const std::filesystem::path& picture) {
                        printable(picture.string()), printable(sidecar_of(picture).string()));
 }
 
-image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where) {
+std::string format_text(const image::Encoding& encoding, const PictureFormat& format) {
+    std::vector<std::string> parts;
+    if (encoding.bits != image::Encoding().bits)
+        parts.push_back(fmt::format("{} bits", encoding.bits));
+    if (encoding.quality) parts.push_back(fmt::format("quality {}", *encoding.quality));
+    std::string layers;
+    for (const DataLayer layer : format.layers)
+        layers += " " + word_of(layer);
+    if (!layers.empty()) parts.push_back("layers" + layers);
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where,
+                            const std::string& format) {
     const scene::Scene scene = settled_scene(session);
     const std::string line = scene::whole_scene_line(scene);
     image::Metadata metadata{
@@ -124,6 +137,7 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
         {kInputsKeyword, inputs.record(drawn(scene, session))}};
     if (session.format() && !session.format()->layers.empty())
         metadata[kOriginKeyword] = origin_line(session.ground().frame.origin());
+    if (!format.empty()) metadata[kFormatKeyword] = format;
     if (where == SceneIn::Picture)
         metadata[kSceneKeyword] = line;
     else

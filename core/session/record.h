@@ -42,8 +42,16 @@ enum class SceneIn { Picture, Sidecar };
 /// @param scene  with absolute paths
 SceneIn scene_in(const std::filesystem::path& picture, const scene::Scene& scene);
 
+/// Keyword of format_text(), of pictures that are not written as by default.
+inline constexpr const char* kFormatKeyword = "relevo:format";
+/// What a picture's file is besides what its name says: "16 bits, quality 80, layers depth
+/// position"; empty: as by default. By it --resume tells such files from others.
+std::string format_text(const image::Encoding& encoding, const PictureFormat& format);
+
 /// Metadata of every picture: `Software`, `Description`, the inputs, and the scene or its digest.
-image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where);
+/// @param format  as format_text()
+image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where,
+                            const std::string& format);
 
 /// Message that a picture's scene is in its sidecar.
 std::string says_where_scene_is(const std::filesystem::path& picture);

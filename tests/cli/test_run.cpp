@@ -157,6 +157,8 @@ TEST_F(Run, ResumeRefusesWhatIsNotTheSame) {
                                "; pass --overwrite to replace it, or --resume to make what is "
                                "missing");
     EXPECT_EQ(error(path, {"--resume", "--exposure", "1"}), other("it shows another scene"));
+    EXPECT_EQ(error(path, {"--resume", "--bits", "16"}),
+              other("it has other bits, quality or layers"));
     const std::string whole = bytes_of(dir_ / "a.png");
     std::ofstream(dir_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 200);
     EXPECT_EQ(error(path, {"--resume"}), other("it is not a complete picture"));

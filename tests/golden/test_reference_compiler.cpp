@@ -75,7 +75,10 @@ class Programs {
         input.values = &values;
         input.max_texture_units = 32;
         input.same_textures = same_textures(selection);
-        for (render::ProgramText& text : render::stitch_frames(core_, input, options).programs)
+        render::ProgramOptions all = options;
+        for (const effect::Effect* const effect : selection.effects)
+            if (!effect->manifest.module.empty()) all.natives.push_back(effect->id());
+        for (render::ProgramText& text : render::stitch_frames(core_, input, all).programs)
             add({fmt::format("{} of {}, {}", text.name, what, with), text.stitched.vertex.text,
                  text.stitched.fragment.text, text.stitched.compute.text});
     }
