@@ -117,7 +117,9 @@ FileKind kind_of_file(const std::string& path) {
 std::string file_text_for(FileKind kind, const effect::Registry& registry) {
     for (const effect::Effect& effect : registry.effects()) {
         const effect::Manifest& manifest = effect.manifest;
-        if (kind == FileKind::Places && !manifest.marks.empty()) return manifest.marks.front().from;
+        if (kind == FileKind::Places)
+            for (const effect::MarksSpec& marks : manifest.marks)
+                if (!marks.from.empty()) return marks.from;  // else a module sets them
         if (kind == FileKind::Lines && !manifest.lines.empty()) return manifest.lines.front().file;
     }
     return "";

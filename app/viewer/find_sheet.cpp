@@ -25,6 +25,7 @@ std::vector<FoundPlace> find_names(const std::string& text, const EffectsModel& 
     if (wanted.empty()) return found;
     for (const effect::Effect* const effect : effects.selection.effects) {
         for (const effect::MarksSpec& marks : effect->manifest.marks) {
+            if (marks.from.empty()) continue;  // a module sets them
             const std::string file = effects.values.text(marks.from);
             if (file.empty()) continue;
             try {

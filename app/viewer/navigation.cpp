@@ -84,6 +84,7 @@ scene::View view_of(const Pose& pose, const Land& land) {
 }
 
 Pose exaggerated(const Pose& pose, const Land& land, double from, double to) {
+    if (from == to) return pose;  // to the last bit, so that it counts as the same
     geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
     place.height_m *= to / from;
     Pose moved = pose;

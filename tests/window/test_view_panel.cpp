@@ -80,6 +80,7 @@ TEST_F(ViewPanel, TimesAreShownInAnotherZone) {
     act({"mousemove", "150", std::to_string(kZone), "click", "1"});
     act({"type", "--delay", "60", "Asia/Tokyo"});
     act({"key", "Return"});
+    ASSERT_TRUE(settles());  // until then keys are text
     nlohmann::json now;
     EXPECT_TRUE(wait([&] {
         now = scene();
