@@ -24,8 +24,8 @@ FileKind kind_of_file(const std::string& path);
 /// Whether GDAL opens a file as a raster.
 bool is_raster_file(const std::string& path);
 
-/// The text with the file of the first effect that draws places, "labels.file", or lines. Shipped
-/// effects are tried by id, too: core and window name none.
+/// The text with the file of the first effect by id that draws places, such as "labels.file", or
+/// lines.
 /// @param kind  Places or Lines
 /// @returns empty if no effect is installed that does
 std::string file_text_for(FileKind kind, const effect::Registry& registry);

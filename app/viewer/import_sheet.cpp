@@ -61,8 +61,6 @@ dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) cons
     return options;
 }
 
-ImportSheet::ImportSheet() : work_(std::make_unique<PreviewWork>(&Window::wake)) {}
-
 void ImportSheet::open(const RecentDem& dem, std::string reason) {
     dem_ = dem;
     reason_ = std::move(reason);
@@ -70,6 +68,7 @@ void ImportSheet::open(const RecentDem& dem, std::string reason) {
     error_.clear();
     previewed_.reset();
     shown_ = nullptr;
+    if (!work_) work_ = std::make_unique<PreviewWork>(&Window::wake);
     work_->forget();
     is_open_ = true;
 }

@@ -18,8 +18,6 @@ namespace relevo::viewer {
 /// files that do not say it, and later for those that say it wrongly.
 class ImportSheet {
   public:
-    ImportSheet();
-
     /// Shows the sheet. @param reason  why it is needed; may be empty
     void open(const RecentDem& dem, std::string reason);
     void close() { is_open_ = false; }
@@ -54,7 +52,7 @@ class ImportSheet {
     std::optional<Fields> previewed_;
     std::string searched_;  // of found_
     std::vector<geo::KnownCrs> found_;
-    std::unique_ptr<PreviewWork> work_;
+    std::unique_ptr<PreviewWork> work_;  // from the first open()
     std::shared_ptr<const Preview> shown_;
     gl::Texture texture_;  // of shown_
     bool is_open_ = false;

@@ -55,7 +55,6 @@ void exposure(State& state) {
     if (ImGui::SliderFloat("Exposure", &stops, -5, 5, "%+.1f EV"))
         state.document.scene.exposure_ev =
             std::clamp(std::round(10.0 * stops) / 10, option.min, option.max);
-    state.sun_moves = state.sun_moves || ImGui::IsItemActive();
     end_step(state);
 }
 

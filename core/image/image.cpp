@@ -93,8 +93,8 @@ const Format& known_format(const std::filesystem::path& path, const Encoding& en
                           printable(encoding.format.empty() ? path.string() : encoding.format)));
 }
 
-/// @throws Error (BadInput) where a format has none of what is wanted
-/// @param has  whether a format has it
+/// @param has  whether a format has what is wanted
+/// @throws Error (BadInput) if `format` has not, naming the formats that have
 void check_has(const std::filesystem::path& path, const Format& format, const std::string& what,
                const std::function<bool(const Format&)>& has) {
     if (has(format)) return;

@@ -7,8 +7,8 @@
 
 #include "image/image.h"
 
-/// WebP with alpha, which it has straight. OpenImageIO 2.4 divides colours by alpha on the way to a
-/// file and multiplies them on the way back, whatever it is told.
+/// WebP with straight alpha. OpenImageIO 2.4 always divides colours by alpha when it writes WebP,
+/// and multiplies them when it reads it.
 namespace relevo::image {
 
 /// @param image  RGBA

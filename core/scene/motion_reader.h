@@ -23,7 +23,7 @@ OrbitMotion read_orbit(const SceneReader& reader, const json::Value& value, cons
                        double fps);
 
 /// The object of an axis `flight`.
-/// @param scene  what its views leave out is the scene's
+/// @param scene  gives its views the members that they do not have
 /// @param files  receives the file of the line
 FlightMotion read_flight(const SceneReader& reader, const json::Value& value,
                          const std::string& path, double fps, const Scene& scene,

@@ -298,9 +298,12 @@ image::Picture Session::Impl::make_picture(const Session& session, render::PassT
     return picture;
 }
 
-void Session::Impl::make_bands(const std::function<void(const image::Picture&)>& take) {
+void Session::Impl::make_bands(const std::function<void(const image::Picture&)>& take,
+                               bool has_legends) {
     PictureMaker maker(*this);
     maker.bands(take);
+    stamp_notes.clear();
+    if (has_legends) stamp_notes.emplace_back("stamp: legend: not drawn on a picture in bands");
     picture_shows_ground = maker.shows_ground();
 }
 

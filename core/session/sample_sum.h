@@ -14,7 +14,7 @@ namespace relevo::session {
 /// alone, and the edge would show steps again. Radiance itself, for EXR, is added as it is.
 class SampleSum {
   public:
-    /// @param transparent  what shows no ground is left out of the colour, and of the alpha
+    /// @param transparent  only samples that show ground count, for the colour and for the alpha
     SampleSum(int width_px, int height_px, bool transparent);
 
     /// @param depths_m  infinite where there is no ground; rows from the top; may be empty where

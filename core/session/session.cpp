@@ -189,7 +189,7 @@ image::Picture Session::make_picture(render::PassTimes* times) {
 }
 
 void Session::make_bands(const std::function<void(const image::Picture&)>& take) {
-    impl_->make_bands(take);
+    impl_->make_bands(take, scene().stamps.legend && !legends().empty());
 }
 
 const std::optional<PictureFormat>& Session::format() const {

@@ -102,7 +102,8 @@ struct Session::Impl {
     /// Size of frames [px]: that of the scene, or less if its picture is drawn in tiles.
     glm::ivec2 frame_px() const;
     image::Picture make_picture(const Session& session, render::PassTimes* times);
-    void make_bands(const std::function<void(const image::Picture&)>& take);
+    /// @param has_legends  which are not drawn; stamp_notes says so
+    void make_bands(const std::function<void(const image::Picture&)>& take, bool has_legends);
     FaultyPicture faulty(const ActiveEffects& shown, int count);
     /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown);

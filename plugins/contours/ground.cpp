@@ -161,7 +161,7 @@ std::optional<Place> Ground::place(glm::dvec2 post, double level_m, int from, in
     const glm::dvec2 change = change_a_node(block, glm::ivec2(kReach + 2));
     if (!(length(change) > 0)) return std::nullopt;  // a void, too
     const glm::dvec2 node = *at / posts_a_node;
-    // The line of the coarser nodes, which is beside that of the finer ones.
+    // The line is followed on coarser nodes, where it runs at another height than at `at`.
     const double here_m = block.between(node);
     Place place{.level_m = level_m};
     place.straight_m =

@@ -86,9 +86,10 @@ float crown_gap(in float filled, in float cells) {
     return crown_gap(filled, cells, 1.0);
 }
 
-/// Share of the sun's light on the sunny side of crowns that other crowns do not keep off, in the mean, 0..1.
+/// Share of the sun's light on the sunny side of crowns that other crowns do not keep off, in the mean, 0..1. Fitted to
+/// such ellipsoids and cones under suns above 12 degrees.
 /// @param slant  area that crowns hide from the sun less what they hide from above, over the ground's area
 /// @param taper  0: ellipsoids, 1: cones
 float crown_sunlight(in float slant, in float taper) {
-    return 1.0 / (1.0 + mix(0.15, 0.45, taper) * max(slant, 0.0));  // fitted likewise, for suns above 12 degrees
+    return 1.0 / (1.0 + mix(0.15, 0.45, taper) * max(slant, 0.0));
 }
