@@ -58,6 +58,16 @@ TEST(FileKind, IsSeenInNameAndContents) {
               FileKind::Places);
     EXPECT_EQ(kind_of_file(write("way.gpx", "<gpx><trk><trkseg><trkpt/></trkseg></trk></gpx>")),
               FileKind::Lines);
+    // Files that lie.
+    for (const char* odd : {R"({"type": "Feature", "geometry": {"type": null}})",
+                            R"({"type": "Feature", "geometry": 7})", R"({"type": 7})", "[[[", "",
+                            R"({"type": "FeatureCollection", "features": {"a": [1]}})"})
+        kind_of_file(write("odd.json", odd));
+    std::string deep;
+    for (int i = 0; i < 100'000; ++i)
+        deep += R"({"type":"Feature","geometry":)";
+    EXPECT_EQ(kind_of_file(write("deep.json", deep + "7" + std::string(100'000, '}'))),
+              FileKind::Lines);
     const auto picture = test::scratch_dir() / "plain.png";
     image::write(picture, image::Image8(8, 8, 3), {}, /*overwrite=*/true);
     EXPECT_EQ(kind_of_file(picture.string()), FileKind::Overlay);
