@@ -40,6 +40,8 @@ enum class Command {
     DayEarlier,
     DayLater,
     Panels,
+    PanelKeys,  ///< gives the keyboard to the panels, or back to the scene
+    MenuKeys,   ///< gives it to the menu
     Charts,
     Keys,
     CloseKeys,

@@ -150,6 +150,8 @@ void MainWindow::draw_panels() {
         return;
     }
     if (picture_) draw_over_image();
+    state_.can_undo = history_.can_undo() || history_.differs(state_.document);
+    state_.can_redo = history_.can_redo();
     if (state_.settings.panels) {
         menu_bar(state_);
         side_panel(state_, size(), unit());

@@ -16,6 +16,7 @@ void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
     const std::optional<Click> clicked = hand_->take_click();
+    if (hand_->is_busy() && window_->panels_have_keys()) window_->take_keys_back();
     Measurement& line = state_.measurement;
     if (clicked && !line.follows_cursor) {
         choose_point(clicked->point_m);
@@ -74,6 +75,15 @@ bool MainWindow::run_program_command(Command command) {
             return true;
         case Command::Panels:
             state_.settings.panels = !state_.settings.panels;
+            return true;
+        case Command::PanelKeys:
+        case Command::MenuKeys:
+            state_.settings.panels = true;
+            if (window_->panels_have_keys())
+                window_->take_keys_back();
+            else
+                window_->give_keys_to("Relevo");
+            state_.opens_menu = command == Command::MenuKeys && window_->panels_have_keys();
             return true;
         case Command::Charts:
             state_.settings.charts = !state_.settings.charts;

@@ -111,7 +111,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 34> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 35> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -144,6 +144,7 @@ void key_sheet() {
         {"F5", "reload effects (automatic if their files change)"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
         {"Tab", "panels and menu on and off"},
+        {"F6, F10, Esc", "keyboard to the panels, to the menu, back to the scene"},
         {"H, Esc", "this sheet; Esc also cancels opening a DEM"},
         {"Ctrl + Q", "quit"},
     }};

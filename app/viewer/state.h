@@ -60,6 +60,8 @@ struct State {
     std::shared_ptr<const PointLight> point;  ///< its sunlight; null: not computed yet
     bool point_in_work = false;               ///< `point` is incomplete
     Measurement measurement;
+    bool can_undo = false, can_redo = false;
+    bool opens_menu = false;  ///< a request: the first menu
 
     std::shared_ptr<const OverlayShown> overlay;  ///< on the ground; null: none
     std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
