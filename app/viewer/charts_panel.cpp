@@ -18,6 +18,11 @@ namespace {
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
 
+/// Height of the status line.
+float status_px() {
+    return 2 * ImGui::GetFontSize() + 4;
+}
+
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -111,7 +116,9 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         if (is_under) {
             // At the edge with more room, upper or lower.
             const float top = ImGui::GetFrameHeight() + 10;
-            at_px_.y = point->y - top > size_px.y - point->y ? top : size_px.y - extent_px_.y;
+            at_px_.y = point->y - top > size_px.y - point->y
+                           ? top
+                           : size_px.y - extent_px_.y - status_px();
         }
     }
     ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
@@ -123,10 +130,9 @@ void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
     // On the right of the side panel unless that is at the right edge.
     const bool is_left = sides.x + sides.y < size_px.x;
     const float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
-    const float status_px = 2 * ImGui::GetFontSize() + 4;
     if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
     docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
-    ImGui::SetNextWindowPos({left, size_px.y - status_px}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowPos({left, size_px.y - status_px()}, ImGuiCond_Always, {0, 1});
     ImGui::SetNextWindowSize({std::max(360 * unit, right - left), docked_px_});
     state.docked_px = docked_px_;
     is_open_ = false;  // place() begins anew
