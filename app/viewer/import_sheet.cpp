@@ -30,6 +30,7 @@ ImportSheet::Fields ImportSheet::Fields::of(const dem::LoadOptions& options) {
     Fields fields;
     fields.crs = options.crs;
     fields.unit = options.unit;
+    fields.crop = options.crop;
     fields.band = options.band;
     fields.encoding = static_cast<int>(options.encoding);
     if (options.no_nodata)
@@ -56,6 +57,8 @@ dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) cons
         if (!options.nodata)
             bad_usage("nodata: expected a number or none, but got " + printable(value));
     }
+    options.crop = std::string(trimmed(crop));
+    if (!options.crop.empty()) dem::parse_bounds(options.crop, "crop");
     options.bounds.reset();
     if (!trimmed(bounds).empty()) options.bounds = dem::parse_bounds(trimmed(bounds), "bounds");
     return options;
@@ -119,6 +122,7 @@ void ImportSheet::found_crs() {
 void ImportSheet::other_fields() {
     ImGui::InputTextWithHint("Edges", "W,S,E,N in degrees; of a file without them",
                              &fields_.bounds);
+    ImGui::InputTextWithHint("Crop", "W,S,E,N in degrees; only what is in there", &fields_.crop);
     int unit = 0;
     for (std::size_t i = 1; i < kUnits.size(); ++i)
         if (fields_.unit == kUnits[i]) unit = static_cast<int>(i);
