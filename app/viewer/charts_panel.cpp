@@ -94,9 +94,18 @@ void ChartsPanel::year(State& state) {
     state.step = true;
 }
 
+void ChartsPanel::stay_above_film(const State& state, glm::vec2 size_px) {
+    const float top = ImGui::GetFrameHeight() + 10, lowest = size_px.y - state.film_px - 5;
+    if (state.film_px == 0 || at_px_.y + extent_px_.y <= lowest) return;
+    at_px_.y = std::max(top, lowest - extent_px_.y);
+    extent_px_.y = std::min(extent_px_.y, lowest - at_px_.y);
+    ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
+    ImGui::SetNextWindowSize({extent_px_.x, extent_px_.y});
+}
+
 void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
     ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
-    if (std::exchange(is_open_, true)) return;
+    if (std::exchange(is_open_, true)) return stay_above_film(state, size_px);
     if (extent_px_.x == 0) {
         const float left = 400 * unit;
         extent_px_ = {std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit)),
@@ -104,6 +113,7 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         at_px_ = {std::max(0.0f, size_px.x - 10 - extent_px_.x),
                   size_px.y - 64 * unit - extent_px_.y};
     }
+    stay_above_film(state, size_px);
     if (const auto point = chosen_in_window(state, size_px)) {
         const glm::vec2 from = *point - at_px_;
         const bool is_under =

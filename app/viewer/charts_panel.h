@@ -25,6 +25,7 @@ class ChartsPanel {
 
     /// Sets the panel's initial position: the last one, moved clear of the point.
     void place(const State& state, glm::vec2 size_px, float unit);
+    void stay_above_film(const State& state, glm::vec2 size_px);
     void horizon(State& state);
     void year(State& state);
 

@@ -42,6 +42,7 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     comparison_ = std::make_unique<Comparison>(device_, *window_, messages_, discard_);
     point_ = std::make_unique<PointQuery>(state_);
     overlay_ = std::make_unique<OverlayController>(state_, messages_, discard_);
+    film_ = make_film();
     state_.effects = EffectsModel::of(scene.effects);
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
@@ -58,8 +59,8 @@ Clock::duration MainWindow::shown_for() const {
 }
 
 void MainWindow::run() {
-    while (!window_->should_close()) {
-        const bool is_animated = state_.playing || hand_->is_moving();
+    while (!ends()) {
+        const bool is_animated = state_.playing || hand_->is_moving() || film_->is_playing();
         const double wait_s = pacing_.wait_s(is_animated, is_drawing());
         const auto waits_from = Clock::now();
         window_->wait(wait_s);
@@ -71,12 +72,14 @@ void MainWindow::run() {
         process_keys();
         if (is_open()) {
             process_mouse(std::min(passed_s, 0.1));
+            process_film(passed_s);
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
         }
         open_requested_files();
         check_files();
-        if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing)
+        if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing &&
+            !film_->shows_frame())
             history_.end_step(state_.document);
         const bool is_idle = wait_s >= kIdle_s && !pacing_.needs_frames();
         if (is_idle || repeats_frame()) continue;
@@ -99,6 +102,7 @@ void MainWindow::leave() {
         log::info("view: the ordered picture is drawn before the end");
         picture_export_.reset();
     }
+    film_.reset();  // ends a film without a file
     discard_.take(std::move(comparison_));
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
@@ -109,7 +113,7 @@ void MainWindow::leave() {
 
 bool MainWindow::repeats_frame() const {
     const bool moves_scene =
-        is_open() && (hand_->is_busy() || state_.playing) && !ImGui::GetIO().WantCaptureMouse;
+        is_open() && (hand_->is_busy() || state_.playing || film_->is_playing()) && !ImGui::GetIO().WantCaptureMouse;
     return moves_scene && pacing_.repeats_frame(window_->buttons());
 }
 
@@ -128,7 +132,7 @@ scene::Insets MainWindow::panel_insets() const {
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
     insets.top = 1.5 * text_px / size().y;     // the menu
-    insets.bottom = 2.0 * text_px / size().y;  // the status line
+    insets.bottom = std::max(2.0 * text_px, double{state_.film_px}) / size().y;  // status line
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;
@@ -145,9 +149,13 @@ void MainWindow::draw_panels() {
     if (picture_) draw_over_image();
     if (state_.settings.panels) {
         menu_bar(state_);
-        side_panel(state_, size(), unit());
-        charts_.draw(state_, size(), unit());
+        draw_film();
+        if (!film_->shows_frame()) {
+            side_panel(state_, size(), unit());
+            charts_.draw(state_, size(), unit());
+        }
     }
+    if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
     import_sheet_.draw(size());
@@ -203,10 +211,11 @@ void MainWindow::hand_over_scene() {
         thread.want_exaggeration(now);
         stop_comparison();
     }
-    if (state_.step) {
+    if (state_.step && !film_->shows_frame()) {
         history_.add(state_.document);
         pacing_.need_frames(2);
     }
+    if (film_->update(opened)) pacing_.need_frames(2);
     point_->update(opened, unit());
     if (overlay_->update(opened, thread)) pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())

@@ -78,6 +78,7 @@ struct State {
     std::optional<glm::vec2> side_panel_px;
     float point_room_px = 0;  ///< height of the point's text
     glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
+    float film_px = 0;        ///< height of the film panel at the lower edge; 0: closed
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo
     std::optional<scene::Effects> asked_effects;

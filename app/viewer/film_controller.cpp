@@ -1,0 +1,188 @@
+#include "viewer/film_controller.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/text.h"
+#include "viewer/export.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+
+FilmController::FilmController(State& state, Messages& messages, std::string device,
+                               FilmSource source)
+    : state_(state),
+      messages_(messages),
+      device_(std::move(device)),
+      source_(std::move(source)),
+      preview_(state),
+      work_(&Window::wake) {}
+
+void FilmController::play_or_pause() {
+    if (clock_.is_playing())
+        clock_.pause();
+    else
+        clock_.play();
+    action_ = FilmAction::ShowFrame;
+}
+
+void FilmController::end_preview() {
+    clock_.pause();
+    preview_.end();
+    shown_frame_ = -1;
+    if (action_ == FilmAction::ShowFrame) action_.reset();
+}
+
+void FilmController::forget() {
+    clock_.pause();
+    preview_.forget();
+    work_.forget();
+    requested_.reset();
+    plan_.reset();
+    shown_frame_ = -1;
+    error_.clear();
+}
+
+bool FilmController::advance(double passed_s) {
+    if (!preview_.is_on()) return false;
+    if (!panel_.is_open() || !plan_ || plan_->frames.shots.empty()) {
+        end_preview();
+        return true;
+    }
+    clock_.advance(passed_s);
+    const int frame = clock_.frame();
+    if (frame == shown_frame_) return false;
+    const scene::Shot& shot = plan_->frames.shots[static_cast<std::size_t>(frame)];
+    preview_.show(shot, source_.pose_of(shot.scene.view), plan_->of.wish.choice.value);
+    shown_frame_ = frame;
+    return true;
+}
+
+void FilmController::draw(glm::vec2 window_px, float left_px, float right_px) {
+    const FilmStatus status{.plan = plan_.get(),
+                            .is_planned = is_planned(),
+                            .shows_frame = preview_.is_on(),
+                            .drawing = film_.get(),
+                            .error = error_,
+                            .missing = missing_};
+    if (const auto action = panel_.draw(state_, clock_, status, window_px, left_px, right_px))
+        action_ = action;
+}
+
+FilmWish FilmController::wish() const {
+    const Document& document = state_.document;
+    const glm::dvec2 size(panel_.file().size_px);
+    return {.scene = source_.scene(document, panel_.is_centred(), size.x / size.y),
+            .utc = document.utc,
+            .zone = document.zone,
+            .views = state_.views,
+            .choice = panel_.choice(),
+            .file = panel_.file()};
+}
+
+bool FilmController::request(const Opened& opened) {
+    if (opened.dem->is_preview) {
+        requested_.reset();
+        work_.forget();
+        return false;
+    }
+    if (!preview_.is_on()) {
+        const std::string missing = source_.missing_overlay();
+        missing_ = missing.empty() ? "" : "the film is" + missing.substr(1);
+        FilmWish now = wish();
+        plans_again_ = plans_again_ || !requested_ || !(*requested_ == now);
+        if (plans_again_) requested_ = std::move(now);
+    }
+    if (!std::exchange(plans_again_, false)) return false;
+    work_.want({*requested_, opened.dem});
+    return true;
+}
+
+bool FilmController::take_plan() {
+    const std::shared_ptr<const FilmPlan> answer = work_.answer();
+    if (!answer || answer == plan_) return false;
+    plan_ = answer;
+    if (!plan_->frames.shots.empty())
+        clock_.set_film(static_cast<int>(plan_->frames.shots.size()), plan_->film.film.fps);
+    if (preview_.is_on()) shown_frame_ = -1;
+    return true;
+}
+
+bool FilmController::update(const Opened& opened) {
+    if (!panel_.is_open()) {
+        action_.reset();
+        return false;
+    }
+    bool has_changed = request(opened);
+    has_changed = take_plan() || has_changed;
+    if (action_ && plan_) {
+        act(*std::exchange(action_, std::nullopt));
+        has_changed = true;
+    }
+    return has_changed;
+}
+
+void FilmController::act(FilmAction action) {
+    switch (action) {
+        case FilmAction::ShowFrame:
+            if (preview_.is_on() || plan_->frames.shots.empty()) return;
+            preview_.begin();
+            shown_frame_ = -1;
+            return;
+        case FilmAction::EndPreview:
+            return end_preview();
+        case FilmAction::SaveFilm:
+            return save_film();
+        case FilmAction::SaveJob:
+            return messages_.try_to(
+                [&] { messages_.report(save_film_job(plan_->scene, plan_->film)); });
+        case FilmAction::CopyCommand:
+            ImGui::SetClipboardText(film_command(plan_->scene, plan_->film).c_str());
+            return messages_.note("the command for this film is on the clipboard");
+        case FilmAction::ShowTrack:
+            track_to_show_ = panel_.choice().track;
+            return;
+        case FilmAction::Cancel:
+            if (film_) film_->cancel();
+            return;
+    }
+}
+
+void FilmController::save_film() {
+    if (film_ || !is_planned()) return;
+    error_.clear();
+    film_ = std::make_unique<FilmExport>(plan_, device_, &Window::wake);
+}
+
+bool FilmController::poll() {
+    if (!film_ || !film_->is_done()) return false;
+    try {
+        messages_.report(film_->result());
+    } catch (const Error& error) {
+        error_ = error.what();
+        log::warning(error_);
+    }
+    film_.reset();
+    asks_to_quit_ = false;
+    plans_again_ = true;  // its name is taken now
+    return true;
+}
+
+bool FilmController::draw_question(glm::vec2 window_px) {
+    if (!asks_to_quit_ || !film_) return false;
+    ImGui::SetNextWindowPos({window_px.x / 2, window_px.y / 3}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("Quit", nullptr,
+                 ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoSavedSettings);
+    ImGui::Text("%s is being drawn, %d of %d frames.", printable(film_->file()).c_str(),
+                static_cast<int>(film_->drawn()), static_cast<int>(film_->frames()));
+    const bool quits = ImGui::Button("Quit without the film");
+    ImGui::SameLine();
+    if (ImGui::Button("Draw it to its end")) asks_to_quit_ = false;
+    ImGui::End();
+    return quits;
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "viewer/film_choice.h"
+#include "viewer/film_clock.h"
+#include "viewer/film_export.h"
+#include "viewer/film_plan.h"
+#include "viewer/state.h"
+
+namespace relevo::viewer {
+
+/// What the film panel shows.
+struct FilmStatus {
+    const FilmPlan* plan = nullptr;  ///< the latest; null: none yet
+    bool is_planned = false;         ///< `plan` is of what is chosen now
+    bool shows_frame = false;
+    const FilmExport* drawing = nullptr;  ///< the film in work
+    std::string error;                    ///< of the last film
+    std::string missing;                  ///< what of the window is not in the film; empty: nothing
+};
+
+/// What the user does with a film.
+enum class FilmAction { ShowFrame, EndPreview, SaveFilm, SaveJob, CopyCommand, ShowTrack, Cancel };
+
+/// The time line at the lower edge of the window, and above it the settings of the film while no
+/// frame is shown.
+class FilmPanel {
+  public:
+    void toggle() { is_open_ = !is_open_; }
+    void close() { is_open_ = false; }
+    bool is_open() const { return is_open_; }
+    const FilmChoice& choice() const { return choice_; }
+    const FilmFile& file() const { return file_; }
+    bool is_centred() const { return is_centred_; }
+
+    /// @param clock    its position; the panel moves and plays it
+    /// @param left_px, right_px  the part of the window's lower edge that is free
+    std::optional<FilmAction> draw(const State& state, FilmClock& clock, const FilmStatus& status,
+                                   glm::vec2 window_px, float left_px, float right_px);
+    /// Height that it covers above the window's lower edge [px]; 0: closed.
+    float height_px() const { return is_open_ ? height_px_ : 0; }
+
+  private:
+    void time_line(FilmClock& clock, const FilmStatus& status);
+    void stamp(const State& state, const FilmClock& clock, const FilmStatus& status) const;
+    void buttons(const FilmStatus& status);
+
+    bool is_open_ = false, is_centred_ = true;
+    float height_px_ = 0;
+    FilmChoice choice_ = film_presets().front().choice;
+    FilmFile file_;
+    std::optional<FilmAction> action_;
+};
+
+}  // namespace relevo::viewer
