@@ -34,8 +34,7 @@ struct Arguments {
     bool no_loop = false;
 };
 
-const std::string kDefaultSpan =
-    fmt::format("{},{}", session::kFilmDayFrom, session::kFilmDayTo);
+const std::string kDefaultSpan = fmt::format("{},{}", session::kFilmDayFrom, session::kFilmDayTo);
 
 /// What moves: the words of --motion.
 std::vector<std::string> motions(const Arguments& arguments) {
@@ -211,8 +210,9 @@ void add_motion(CLI::App& verb, Arguments& arguments) {
     verb.add_flag("--ease,!--no-ease", arguments.ease,
                   "Whether the camera begins and ends at rest (flights do, orbits do not)")
         ->group("Film");
-    verb.add_option("--vary", arguments.vary,
-                    "A parameter from one value to another, ADDRESS=FROM,TO; alone or with --motion")
+    verb.add_option(
+            "--vary", arguments.vary,
+            "A parameter from one value to another, ADDRESS=FROM,TO; alone or with --motion")
         ->group("Film");
     verb.add_option("--along", arguments.along, "Line of a flight: GPX, CSV or GeoJSON")
         ->group("Film");

@@ -16,7 +16,7 @@ namespace relevo::viewer {
 namespace {
 
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
-constexpr float kHeight_units = 300;
+constexpr float kHeight_units = 300, kLeast_units = 220;
 
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
@@ -104,7 +104,7 @@ void ChartsPanel::stay_above_film(const State& state, glm::vec2 size_px) {
 }
 
 void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
-    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
+    ImGui::SetNextWindowSizeConstraints({360 * unit, kLeast_units * unit}, {size_px.x, size_px.y});
     if (std::exchange(is_open_, true)) return stay_above_film(state, size_px);
     if (extent_px_.x == 0) {
         const float left = 400 * unit;
@@ -132,7 +132,10 @@ void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
     horizon_.take(state.point ? state.point->horizon : nullptr);
     year_.take(state.point ? state.point->year : nullptr);
     state.chart_px = {0, 0};
-    if (!state.settings.charts || !state.chosen) {
+    const bool has_room =
+        state.film_px == 0 ||
+        size_px.y - state.film_px - 2 * ImGui::GetFrameHeight() > kLeast_units * px_a_unit;
+    if (!state.settings.charts || !state.chosen || !has_room) {
         is_open_ = false;
         return;
     }

@@ -125,7 +125,8 @@ void add_stamps(Command& command, const scene::Stamps& stamps) {
 scene::Scene Document::whole(const Land& land) const {
     scene::Scene result = scene;
     result.view = view_of(pose, land);
-    result.time = {.at = sun::to_iso(utc, zone), .date = "", .zone = ""};
+    const int decimals = utc.unix_us() % 1'000'000 == 0 ? 0 : 6;
+    result.time = {.at = sun::to_iso(utc, zone, decimals), .date = "", .zone = ""};
     return result;
 }
 

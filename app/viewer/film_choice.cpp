@@ -25,19 +25,10 @@ scene::View around_dem(const scene::View& view) {
     return orbit;
 }
 
-scene::View view_of(const SavedView& saved) {
-    scene::View view;
-    view.eye = scene::Standpoint{saved.eye, /*above_ground=*/false};
-    view.heading_deg = saved.heading_deg;
-    view.pitch_deg = saved.pitch_deg;
-    view.fov_y_rad = saved.fov_y_rad;
-    return view;
-}
-
-bool same(const SavedView& a, const SavedView& b) {
-    return a.eye.lat_rad == b.eye.lat_rad && a.eye.lon_rad == b.eye.lon_rad &&
-           a.eye.height_m == b.eye.height_m && a.heading_deg == b.heading_deg &&
-           a.pitch_deg == b.pitch_deg && a.fov_y_rad == b.fov_y_rad;
+/// A scene on one line, with another view.
+std::string line_of(scene::Scene scene, const scene::View& view) {
+    scene.view = view;
+    return scene::scene_line(scene);
 }
 
 scene::FilmJob::Flight flight_of(const FilmWish& wish) {
@@ -45,8 +36,7 @@ scene::FilmJob::Flight flight_of(const FilmWish& wish) {
     scene::FilmJob::Flight flight;
     flight.ease = choice.ease;
     if (choice.camera == FilmChoice::Camera::Views) {
-        for (const SavedView& view : wish.views)
-            flight.views.push_back(view_of(view));
+        flight.views = wish.views;
         return flight;
     }
     flight.along = choice.track;
@@ -93,9 +83,12 @@ const std::vector<FilmPreset>& film_presets() {
 }
 
 bool FilmWish::operator==(const FilmWish& other) const {
+    const auto same = [](const scene::View& a, const scene::View& b) {
+        return line_of({}, a) == line_of({}, b);
+    };
     return utc == other.utc && zone.name() == other.zone.name() && choice == other.choice &&
            file == other.file && std::ranges::equal(views, other.views, same) &&
-           scene::scene_line(scene) == scene::scene_line(other.scene);
+           line_of(scene, scene.view) == line_of(other.scene, other.scene.view);
 }
 
 std::string film_problem(const FilmChoice& choice, std::size_t saved_views) {

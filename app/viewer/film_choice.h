@@ -9,7 +9,6 @@
 
 #include "scene/film_job.h"
 #include "session/scene_times.h"
-#include "viewer/settings.h"
 
 /// What the film panel asks for, and the job that follows. Needs no device and no panels.
 namespace relevo::viewer {
@@ -31,14 +30,14 @@ struct FilmChoice {
 
     Time time = Time::Day;
     Camera camera = Camera::Still;
-    double turns = 1;           ///< of an orbit, clockwise from above
-    std::string track;          ///< file of a line
-    double height_m = 150;      ///< least height of a flight along a track above the ground
-    double look_ahead_m = 0;    ///< 0: chosen from the height and the speed
-    double speed_m_s = 0;       ///< 0: by `duration_s`
-    bool ease = false;          ///< the camera begins and ends at rest
-    std::string value;          ///< address of a parameter, or "seconds"; empty: none
-    double from = 0, to = 1;    ///< of the parameter
+    double turns = 1;         ///< of an orbit, clockwise from above
+    std::string track;        ///< file of a line
+    double height_m = 150;    ///< least height of a flight along a track above the ground
+    double look_ahead_m = 0;  ///< 0: chosen from the height and the speed
+    double speed_m_s = 0;     ///< 0: by `duration_s`
+    bool ease = false;        ///< the camera begins and ends at rest
+    std::string value;        ///< address of a parameter, or "seconds"; empty: none
+    double from = 0, to = 1;  ///< of the parameter
     double duration_s = 10;
     double fps = 30;
 
@@ -77,7 +76,7 @@ struct FilmWish {
     scene::Scene scene;  ///< what the film begins with: time, eye, absolute paths
     sun::Instant utc;    ///< its time
     sun::Zone zone;
-    std::vector<SavedView> views;
+    std::vector<scene::View> views;  ///< of a flight through views
     FilmChoice choice;
     FilmFile file;
 

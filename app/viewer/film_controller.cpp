@@ -74,12 +74,22 @@ void FilmController::draw(glm::vec2 window_px, float left_px, float right_px) {
 FilmWish FilmController::wish() const {
     const Document& document = state_.document;
     const glm::dvec2 size(panel_.file().size_px);
-    return {.scene = source_.scene(document, panel_.is_centred(), size.x / size.y),
-            .utc = document.utc,
-            .zone = document.zone,
-            .views = state_.views,
-            .choice = panel_.choice(),
-            .file = panel_.file()};
+    const auto scene_of = [&](const Document& of) {
+        return source_.scene(of, panel_.is_centred(), size.x / size.y);
+    };
+    FilmWish wish{.scene = scene_of(document),
+                  .utc = document.utc,
+                  .zone = document.zone,
+                  .views = {},
+                  .choice = panel_.choice(),
+                  .file = panel_.file()};
+    if (wish.choice.camera != FilmChoice::Camera::Views) return wish;
+    Document seen = document;
+    for (const SavedView& view : state_.views) {
+        seen.pose = viewer::pose_of(view, state_.land);
+        wish.views.push_back(scene_of(seen).view);
+    }
+    return wish;
 }
 
 bool FilmController::request(const Opened& opened) {

@@ -46,9 +46,9 @@ void FilmExport::run() {
     } catch (const Error&) {
         failure_ = std::current_exception();
     } catch (const std::exception& error) {
-        failure_ = std::make_exception_ptr(
-            Error(ErrorCode::Failed, fmt::format("film: {}: {}; use a smaller size",
-                                                 printable(file()), error.what())));
+        failure_ = std::make_exception_ptr(Error(
+            ErrorCode::Failed,
+            fmt::format("film: {}: {}; use a smaller size", printable(file()), error.what())));
     }
     is_done_ = true;
     on_change_();

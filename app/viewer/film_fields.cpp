@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "base/text.h"
 #include "shader/params.h"
 #include "viewer/file_kind.h"
 
@@ -71,8 +75,11 @@ void preset(FilmChoice& choice) {
 
 void track_fields(FilmChoice& choice, WidgetRows& rows) {
     rows.next("Track", 14);
-    ImGui::InputTextWithHint("##track", "GPX, CSV, GeoJSON; then Enter", &choice.track,
-                             ImGuiInputTextFlags_EnterReturnsTrue);
+    std::string track = choice.track;  // not read before all of it is typed
+    if (ImGui::InputTextWithHint("##track", "GPX, CSV, GeoJSON; then Enter", &track,
+                                 ImGuiInputTextFlags_EnterReturnsTrue))
+        choice.track = track.empty() ? "" : std::filesystem::absolute(track).string();
+    if (!choice.track.empty()) tooltip(printable(choice.track).c_str());
     rows.next("Above ground", 5);
     number("##above", choice.height_m, 0.1, 1e6, "%.0f m");
     rows.next("Look ahead", 5);
@@ -82,8 +89,9 @@ void track_fields(FilmChoice& choice, WidgetRows& rows) {
     const DisabledIf disabled(!choice.can_have_speed());
     rows.next("Speed", 5);
     number("##speed", choice.speed_m_s, 0, 1e6, choice.speed_m_s > 0 ? "%.0f m/s" : "by length");
-    tooltip("Highest speed of the flight; 0: by the length of the film. If something else moves, "
-            "the length counts.");
+    tooltip(
+        "Highest speed of the flight; 0: by the length of the film. If something else moves, "
+        "the length counts.");
 }
 
 /// The scalar parameters of effects that are on, which need no other program.
@@ -98,9 +106,8 @@ void parameter_combo(FilmChoice& choice, const State& state) {
     for (const effect::Effect& effect : state.effects->registry.effects()) {
         if (!state.effects->selection.has(effect.id())) continue;
         for (const shader::Param& param : effect.params()) {
-            const bool is_number =
-                param.type == shader::ParamType::Float ||
-                (param.type == shader::ParamType::Int && param.words.empty());
+            const bool is_number = param.type == shader::ParamType::Float ||
+                                   (param.type == shader::ParamType::Int && param.words.empty());
             if (!is_number || param.is_static || param.is_host) continue;
             if (!ImGui::Selectable(param.address.c_str(), choice.value == param.address)) continue;
             choice.value = param.address;
@@ -135,12 +142,12 @@ void film_choice_fields(FilmChoice& choice, const State& state) {
     rows.next("Film", 13);
     preset(choice);
     rows.next("Time", 9);
-    combo<Time, 3>("##time", choice.time,
-                   {{{Time::Still, "stands still"},
-                     {Time::Day, "this day"},
-                     {Time::Year, "this year"}}});
-    tooltip("From half an hour before sunrise to half an hour after sunset; or the whole year at "
-            "this hour of mean solar time");
+    combo<Time, 3>(
+        "##time", choice.time,
+        {{{Time::Still, "stands still"}, {Time::Day, "this day"}, {Time::Year, "this year"}}});
+    tooltip(
+        "From half an hour before sunrise to half an hour after sunset; or the whole year at "
+        "this hour of mean solar time");
     rows.next("Camera", 11);
     const Camera before = choice.camera;
     combo<Camera, 5>("##camera", choice.camera,
@@ -149,8 +156,9 @@ void film_choice_fields(FilmChoice& choice, const State& state) {
                        {Camera::AroundDem, "around the DEM"},
                        {Camera::Views, "through the views"},
                        {Camera::Track, "along a track"}}});
-    tooltip("Around the ground in the middle of the picture, or around all of the DEM; through the "
-            "saved views (B) in their order; above the line of a file");
+    tooltip(
+        "Around the ground in the middle of the picture, or around all of the DEM; through the "
+        "saved views (B) in their order; above the line of a file");
     if (choice.camera != before) choice.ease = choice.is_flight();
     if (choice.is_orbit()) {
         rows.next("Turns", 4);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -16,16 +17,28 @@ namespace {
 /// Room for the status line and the scale below the panel, in text heights.
 constexpr float kStatus_em = 3.4f;
 
-/// "21 Jun 2026, 12:43:10 CEST, camera at 1530 m facing 214°": what a frame shows.
-std::string stamp_of(const State& state) {
-    const Document& document = state.document;
+/// "21 Jun 2026, 12:43:10 CEST": the time of a frame.
+std::string time_of(const Document& document) {
     const sun::LocalTime local = document.zone.local(document.utc);
     const sun::CivilTime& wall = local.wall;
-    const double eye_m = state.land.frame->to_geodetic(document.pose.eye_m).height_m;
-    return fmt::format("{} {}, {:02}:{:02}:{:02} {}, camera at {:.0f} m facing {:.0f}°",
-                       day_label(wall.date), wall.date.year, wall.hour, wall.minute, wall.second,
-                       local.abbreviation, eye_m / state.land.exaggeration,
-                       std::fmod(document.pose.heading_deg + 360, 360.0));
+    return fmt::format("{} {}, {:02}:{:02}:{:02} {}", day_label(wall.date), wall.date.year,
+                       wall.hour, wall.minute, wall.second, local.abbreviation);
+}
+
+/// "camera at 1530 m facing 214°".
+std::string camera_of(const State& state) {
+    const Pose& pose = state.document.pose;
+    const double eye_m = state.land.frame->to_geodetic(pose.eye_m).height_m;
+    return fmt::format("camera at {:.0f} m facing {:.0f}°", eye_m / state.land.exaggeration,
+                       std::fmod(pose.heading_deg + 360, 360.0));
+}
+
+/// The first of some texts, each shorter than the one before, that has room on a line.
+std::string fitting(const std::vector<std::string>& texts) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    for (const std::string& text : texts)
+        if (ImGui::CalcTextSize(text.c_str()).x <= room) return text;
+    return texts.back();
 }
 
 void message(const std::string& text, bool is_error) {
@@ -54,12 +67,10 @@ void FilmPanel::time_line(FilmClock& clock, const FilmStatus& status) {
             clock.play();
         action_ = FilmAction::ShowFrame;
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Space. Frames that are late are skipped");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!status.shows_frame);
     if (ImGui::Button("Back", {4.5f * em, 0})) action_ = FilmAction::EndPreview;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Shows the scene as it was before the preview");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!has_frames(status));
@@ -72,8 +83,6 @@ void FilmPanel::time_line(FilmClock& clock, const FilmStatus& status) {
         clock.go_to(frame - 1);
         action_ = FilmAction::ShowFrame;
     }
-    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-        ImGui::SetTooltip("Drag; Ctrl and a click to type a frame");
     ImGui::EndDisabled();
 }
 
@@ -85,8 +94,8 @@ void FilmPanel::buttons(const FilmStatus& status) {
         rows.next(width);
         ImGui::BeginDisabled(!enabled);
         if (ImGui::Button(name, {width, 0})) action_ = action;
-        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
         ImGui::EndDisabled();
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
     };
     const bool is_ready = has_frames(status) && status.is_planned;
     button("Save film", is_ready && !status.drawing, FilmAction::SaveFilm,
@@ -103,11 +112,10 @@ void FilmPanel::buttons(const FilmStatus& status) {
     const FilmExport& film = *status.drawing;
     const float cancel = ImGui::CalcTextSize("Cancel").x + 2 * em;
     rows.next(std::min(16 * em, ImGui::GetWindowContentRegionMax().x - 2 * em - cancel) + cancel);
-    ImGui::ProgressBar(static_cast<float>(film.drawn()) / static_cast<float>(film.frames()),
-                       {std::max(8 * em, std::min(16 * em, ImGui::GetContentRegionAvail().x -
-                                                               cancel - em)),
-                        0},
-                       fmt::format("{} of {} frames", film.drawn(), film.frames()).c_str());
+    ImGui::ProgressBar(
+        static_cast<float>(film.drawn()) / static_cast<float>(film.frames()),
+        {std::max(8 * em, std::min(16 * em, ImGui::GetContentRegionAvail().x - cancel - em)), 0},
+        fmt::format("{} of {} frames", film.drawn(), film.frames()).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(film.file()).c_str());
     ImGui::SameLine();
     ImGui::BeginDisabled(film.is_cancelled());
@@ -116,14 +124,19 @@ void FilmPanel::buttons(const FilmStatus& status) {
 }
 
 void FilmPanel::stamp(const State& state, const FilmClock& clock, const FilmStatus& status) const {
-    if (status.shows_frame)
-        ImGui::TextUnformatted(
-            fmt::format("{:.2f} s   {}", clock.time_s(), stamp_of(state)).c_str());
-    else if (has_frames(status))
-        ImGui::TextDisabled("%d frames, %.3g s; Play or drag for a preview", clock.frames(),
-                            clock.length_s());
-    else
+    if (status.shows_frame) {
+        const std::string time =
+            fmt::format("{}   {:.2f} s", time_of(state.document), clock.time_s());
+        ImGui::TextUnformatted(fitting({time + "   " + camera_of(state), time}).c_str());
+    } else if (has_frames(status)) {
+        const std::string length =
+            fmt::format("{} frames, {:.3g} s", clock.frames(), clock.length_s());
+        const std::string drag = length + "   Space plays, dragging shows a frame";
+        ImGui::TextDisabled(
+            "%s", fitting({drag + ", Ctrl and a click takes its number", drag, length}).c_str());
+    } else {
         ImGui::TextDisabled("%s", status.is_planned ? "no frames" : "planning ...");
+    }
 }
 
 std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,

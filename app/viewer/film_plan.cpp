@@ -36,11 +36,12 @@ FilmPlan plan_film(const FilmWanted& wanted, session::SceneTimes& times) {
     try {
         if (const std::string problem = film_problem(wish.choice, wish.views.size());
             !problem.empty())
-            bad_input("film: " + problem);
+            bad_input(problem);
         check_frames(wish.choice.duration_s * wish.choice.fps);
         plan.scene = film_scene(wish);
         plan.film = film_job(wish, times, plan.note);
-        plan.job = scene::read_job_text(scene::film_job_text(plan.scene, plan.film, ""), "film", "");
+        plan.job =
+            scene::read_job_text(scene::film_job_text(plan.scene, plan.film, ""), "film", "");
         for (const scene::Axis& axis : plan.job.sweep)
             check_frames(static_cast<double>(axis.count().value_or(0)));
         plan.frames = scene::shots_of(

@@ -20,9 +20,9 @@ struct FilmWanted {
 /// The frames of a film, as `relevo run` draws them.
 struct FilmPlan {
     FilmWanted of;
-    scene::Scene scene;      ///< of the job
-    scene::FilmJob film;     ///< the job in words
-    scene::Job job;          ///< as it was read from the text of `film`
+    scene::Scene scene;   ///< of the job
+    scene::FilmJob film;  ///< the job in words
+    scene::Job job;       ///< as it was read from the text of `film`
     scene::Shots frames;
     std::string note;   ///< what it shows instead of what was asked for; empty: nothing
     std::string error;  ///< why there are no frames; empty: there are

@@ -112,8 +112,9 @@ void MainWindow::leave() {
 }
 
 bool MainWindow::repeats_frame() const {
-    const bool moves_scene =
-        is_open() && (hand_->is_busy() || state_.playing || film_->is_playing()) && !ImGui::GetIO().WantCaptureMouse;
+    const bool moves_scene = is_open() &&
+                             (hand_->is_busy() || state_.playing || film_->is_playing()) &&
+                             !ImGui::GetIO().WantCaptureMouse;
     return moves_scene && pacing_.repeats_frame(window_->buttons());
 }
 
@@ -131,7 +132,7 @@ scene::Insets MainWindow::panel_insets() const {
     if (!state_.settings.panels) return {};
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;     // the menu
+    insets.top = 1.5 * text_px / size().y;                                       // the menu
     insets.bottom = std::max(2.0 * text_px, double{state_.film_px}) / size().y;  // status line
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
@@ -183,7 +184,7 @@ void MainWindow::draw_over_image() {
     taken.push_back(north_place(size(), top));
     if (before) marks_before_.draw(before, window_->size_px(), 0, line, size(), taken);
     marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
-    draw_sun_path(state_, *picture_, size());
+    if (!film_->shows_frame()) draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
     draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
     legend_.draw();

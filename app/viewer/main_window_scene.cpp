@@ -15,10 +15,11 @@ sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun:
 }
 
 bool same(const Wanted& a, const Wanted& b) {
-    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.seconds == b.seconds && a.exposure_ev == b.exposure_ev &&
-           a.width_px == b.width_px && a.height_px == b.height_px && a.moving == b.moving &&
-           a.sun_moving == b.sun_moving && a.view->heading_deg == b.view->heading_deg &&
-           a.view->pitch_deg == b.view->pitch_deg && a.view->fov_y_rad == b.view->fov_y_rad &&
+    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.seconds == b.seconds &&
+           a.exposure_ev == b.exposure_ev && a.width_px == b.width_px &&
+           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
+           a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
+           a.view->fov_y_rad == b.view->fov_y_rad &&
            a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&
            a.view->eye->place.lon_rad == b.view->eye->place.lon_rad &&
            a.view->eye->place.height_m == b.view->eye->place.height_m;
@@ -244,7 +245,8 @@ void MainWindow::raise_eye() {
     state_.land.aim_m = picture_->aim_m;
     constexpr double kSame_m = 0.005;
     Pose& pose = state_.document.pose;
-    if (!film_->shows_frame() && is_image_of_now() && distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
+    if (!film_->shows_frame() && is_image_of_now() &&
+        distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
         pose.eye_m = picture_->camera.eye_m;
 }
 

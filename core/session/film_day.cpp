@@ -8,8 +8,7 @@ namespace relevo::session {
 namespace {
 
 /// Why the span of a day does not begin before it ends; empty: it does.
-std::string why_no_span(const scene::Scene& of, const scene::FilmJob::Day& day,
-                        SceneTimes& times) {
+std::string why_no_span(const scene::Scene& of, const scene::FilmJob::Day& day, SceneTimes& times) {
     const auto at = [&](const std::string& event) {
         scene::Scene scene = of;
         scene.time = {event, day.date, day.zone};

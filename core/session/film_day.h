@@ -16,8 +16,8 @@ struct FilmDay {
     scene::FilmJob::Day day;
     std::string note;  ///< why it is the whole day; empty: it is not
 };
-/// The times of a film of a day. Where the sun does not rise or set, or sets after midnight, that is
-/// the whole day.
+/// The times of a film of a day. Where the sun does not rise or set, or sets after midnight, that
+/// is the whole day.
 /// @param scene  whose DEM has the place
 /// @param date   "2026-06-21"
 /// @param zone   as TimeSpec::zone; empty: that of the place, by its name
