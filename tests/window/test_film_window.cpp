@@ -1,0 +1,169 @@
+// The film panel: its preview is the film's frames, and leaves the scene as it was.
+#include <gmock/gmock.h>
+
+#include "scene/job.h"
+#include "session/scene_times.h"
+#include "window/viewer_fixture.h"
+
+namespace relevo {
+namespace {
+
+class FilmWindow : public Viewer {
+  protected:
+    void open_film(const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{dem_, "--time", "2026-06-21T18:30:00Z", "--only",
+                                           "shadows"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        open(arguments);
+        act({"mousemove", "900", "300", "key", "f"});
+        ASSERT_TRUE(settles());
+    }
+    void click(int x, int y) {
+        act({"mousemove", std::to_string(x), std::to_string(y)});
+        settles(3);
+        act({"click", "1"});
+    }
+    /// Types a frame's number, from 1, into the time line.
+    void go_to_frame(int number) {
+        act({"mousemove", "900", std::to_string(kTimeLine)});
+        act({"keydown", "ctrl", "click", "1", "keyup", "ctrl"});
+        settles(3);
+        act({"key", "ctrl+a"});
+        act({"type", std::to_string(number)});
+        settles(3);
+        act({"key", "Return"});
+        act({"mousemove", "900", "300"});
+        settles();
+    }
+    /// Waits for a file in the working folder.
+    bool appears(const std::string& name) {
+        return wait([&] { return std::filesystem::exists(folder_ / name); });
+    }
+    /// The frames of the job that the panel saves.
+    scene::Shots frames_of_saved_job() {
+        const std::string name = fmt::format("relevo-{}.json", ++saved_);
+        click(kSaveJob, kButtons);
+        EXPECT_TRUE(appears(name)) << program_->output();
+        session::SceneTimes times;
+        return scene::shots_of(
+            scene::read_job(folder_ / name),
+            [&](const scene::Scene& scene) { return times.of(scene); }, 1000,
+            [&](const scene::Scene& scene) { return times.motion_ground(scene); });
+    }
+
+    // Places of the panel in a window of 1280 x 800.
+    static constexpr int kButtons = 676, kTimeLine = 706, kPlay = 424, kBack = 504;
+    static constexpr int kSaveFilm = 433, kSaveJob = 530, kLength = 722, kLengthRow = 598;
+};
+
+TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
+    open_film();
+    const scene::Shots film = frames_of_saved_job();
+    ASSERT_EQ(film.shots.size(), 300u);
+    go_to_frame(251);
+    const nlohmann::json seen = scene();
+    const scene::Shot& frame = film.shots[250];
+    EXPECT_EQ(sun::parse_time(seen["time"]["at"].get<std::string>(), sun::Zone()).utc, frame.utc);
+    const auto& eye = seen["camera"]["eye"];
+    EXPECT_NEAR(eye[0].get<double>(), frame.scene.view.eye->place.lat_rad * 180 / M_PI, 1e-9);
+    EXPECT_NEAR(eye[1].get<double>(), frame.scene.view.eye->place.lon_rad * 180 / M_PI, 1e-9);
+    EXPECT_NEAR(eye[2].get<double>(), frame.scene.view.eye->place.height_m, 1e-3);
+    // The picture is that of the frame in a picture of the window's size.
+    scene::Scene scene = frame.scene;
+    scene.width_px = 1280;
+    scene.height_px = 800;
+    std::ofstream(folder_ / "frame.json") << scene::scene_text(scene, "");
+    const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
+    act({"key", "F12"});
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
+    test::WindowedProgram capture(
+        display_, test::build_dir() / "bin/relevo",
+        {"-q", "capture", "--scene", (folder_ / "frame.json").string(), "-o", captured.string()});
+    ASSERT_EQ(capture.status(), 0) << capture.output();
+    EXPECT_LE(test::difference(image::read(taken), image::read(captured), 1), 2e-4);
+}
+
+TEST_F(FilmWindow, ItsEndLeavesSceneAndUndoAsTheyWere) {
+    open_film();
+    const nlohmann::json before = scene();
+    const image::Image8 picture = display_.screen();
+    go_to_frame(20);
+    go_to_frame(100);
+    EXPECT_NE(scene()["time"], before["time"]);
+    act({"key", "Escape"});
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene(), before);
+    act({"key", "ctrl+z"});
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene(), before) << "there is nothing to undo";
+    act({"key", "f"});
+    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), picture, 8) < 0.02; }));
+}
+
+TEST_F(FilmWindow, AnotherCommandActsOnTheSceneBefore) {
+    open_film();
+    const nlohmann::json before = scene();
+    go_to_frame(20);
+    act({"key", "bracketright"});  // half an hour later
+    ASSERT_TRUE(settles());
+    EXPECT_THAT(scene()["time"]["at"].get<std::string>(),
+                testing::StartsWith("2026-06-21T15:00:00"));
+    act({"key", "ctrl+z"});
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene(), before);
+}
+
+TEST_F(FilmWindow, PlaysAtItsOwnPaceToTheEnd) {
+    open_film();
+    const scene::Shots film = frames_of_saved_job();
+    const auto began = std::chrono::steady_clock::now();
+    act({"key", "space"});
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    const nlohmann::json middle = scene();
+    const double passed_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    const double day_s = film.shots.back().utc - film.shots.front().utc;
+    const double shown_s =
+        sun::parse_time(middle["time"]["at"].get<std::string>(), sun::Zone()).utc -
+        film.shots.front().utc;
+    EXPECT_GT(shown_s, 2.0 / 10 * day_s);
+    EXPECT_LE(shown_s, passed_s / 10 * day_s);
+    std::this_thread::sleep_for(std::chrono::seconds(9));
+    const nlohmann::json end = scene();
+    EXPECT_EQ(sun::parse_time(end["time"]["at"].get<std::string>(), sun::Zone()).utc,
+              film.shots.back().utc);
+}
+
+TEST_F(FilmWindow, AFilmIsDrawnInTheBackground) {
+    open_film();
+    click(kLength, kLengthRow);
+    act({"key", "ctrl+a"});
+    act({"type", "0.2"});
+    settles(3);
+    act({"key", "Return"});
+    ASSERT_TRUE(settles());
+    click(kSaveFilm, kButtons);
+    ASSERT_TRUE(appears("jacksboro_film.mp4")) << program_->output();
+    EXPECT_TRUE(wait([&] {
+        return program_->output().find("jacksboro_film.mp4: film saved, 6 frames, 0.2 s") !=
+               std::string::npos;
+    })) << program_->output();
+}
+
+TEST_F(FilmWindow, ClosingItAsksAboutAFilmInWork) {
+    open_film();
+    click(kSaveFilm, kButtons);
+    act({"mousemove", "900", "300"});
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    act({"key", "ctrl+q"});
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    EXPECT_TRUE(program_->is_running());
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0) << program_->output();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "jacksboro_film.mp4"));
+    for (const auto& file : std::filesystem::directory_iterator(folder_))
+        EXPECT_NE(file.path().extension(), ".mp4") << file.path();
+}
+
+}  // namespace
+}  // namespace relevo
