@@ -112,6 +112,8 @@ scene::Scene film_scene(const FilmWish& wish) {
     scene.width_px = wish.file.size_px.x;
     scene.height_px = wish.file.size_px.y;
     scene.transparent = false;
+    if (const std::string& zone = wish.zone.name(); !zone.starts_with("LMT"))
+        scene.time.zone = zone;  // so that the job says it
     if (wish.choice.camera == FilmChoice::Camera::AroundDem) scene.view = around_dem(scene.view);
     return scene;
 }

@@ -1,7 +1,10 @@
 // The film of the window without a window: what is asked for, its frames, its job and its command.
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -61,8 +64,8 @@ class Film : public testing::Test {
             std::make_shared<const dem::Source>(dem::Source::open(scene_.dems, scene_.dem)),
             scene_);
         wanted_.wish.scene = scene_;
-        wanted_.wish.utc = sun::parse_time(scene_.time.at, sun::Zone()).utc;
         wanted_.wish.zone = sun::Zone::named("America/New_York");
+        wanted_.wish.utc = sun::parse_time(scene_.time.at, wanted_.wish.zone).utc;
         times_.use(scene_, wanted_.dem);
         fs::current_path(folder_);
     }
@@ -239,7 +242,6 @@ TEST_F(Film, ItsCommandMakesTheSameJob) {
         choice().duration_s = 2;
         choice().ease = choice().camera != Camera::Still && !choice().ease;
         if (choice().camera == Camera::Still) {
-            choice().value = "shadows.softness";
             choice().value = "seconds";
         }
         if (choice().camera == Camera::Track)

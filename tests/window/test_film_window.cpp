@@ -35,6 +35,11 @@ class FilmWindow : public Viewer {
         act({"mousemove", "900", "300"});
         settles();
     }
+    static sun::Instant time_of(const nlohmann::json& scene) {
+        return sun::parse_time(scene["time"]["at"].get<std::string>(),
+                               sun::Zone::named("America/New_York"))
+            .utc;
+    }
     /// Waits for a file in the working folder.
     bool appears(const std::string& name) {
         return wait([&] { return std::filesystem::exists(folder_ / name); });
@@ -63,7 +68,7 @@ TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
     go_to_frame(251);
     const nlohmann::json seen = scene();
     const scene::Shot& frame = film.shots[250];
-    EXPECT_EQ(sun::parse_time(seen["time"]["at"].get<std::string>(), sun::Zone()).utc, frame.utc);
+    EXPECT_EQ(time_of(seen), frame.utc);
     const auto& eye = seen["camera"]["eye"];
     EXPECT_NEAR(eye[0].get<double>(), frame.scene.view.eye->place.lat_rad * 180 / M_PI, 1e-9);
     EXPECT_NEAR(eye[1].get<double>(), frame.scene.view.eye->place.lon_rad * 180 / M_PI, 1e-9);
@@ -72,7 +77,7 @@ TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
     scene::Scene scene = frame.scene;
     scene.width_px = 1280;
     scene.height_px = 800;
-    std::ofstream(folder_ / "frame.json") << scene::scene_text(scene, "");
+    std::ofstream(folder_ / "frame.json") << scene::scene_text(scene, folder_);
     const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
     act({"key", "F12"});
     ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
@@ -123,15 +128,12 @@ TEST_F(FilmWindow, PlaysAtItsOwnPaceToTheEnd) {
     const double passed_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     const double day_s = film.shots.back().utc - film.shots.front().utc;
-    const double shown_s =
-        sun::parse_time(middle["time"]["at"].get<std::string>(), sun::Zone()).utc -
-        film.shots.front().utc;
+    const double shown_s = time_of(middle) - film.shots.front().utc;
     EXPECT_GT(shown_s, 2.0 / 10 * day_s);
     EXPECT_LE(shown_s, passed_s / 10 * day_s);
     std::this_thread::sleep_for(std::chrono::seconds(9));
     const nlohmann::json end = scene();
-    EXPECT_EQ(sun::parse_time(end["time"]["at"].get<std::string>(), sun::Zone()).utc,
-              film.shots.back().utc);
+    EXPECT_EQ(time_of(end), film.shots.back().utc);
 }
 
 TEST_F(FilmWindow, AFilmIsDrawnInTheBackground) {
