@@ -48,12 +48,13 @@ scene::FilmJob::Flight flight_of(const FilmWish& wish) {
 
 /// The year of a film at the hour that the sun's clock shows now: clocks of the place are changed
 /// in spring.
-scene::FilmJob::Year year_of(const FilmWish& wish) {
-    const double lon_rad = wish.scene.view.eye ? wish.scene.view.eye->place.lon_rad : 0;
-    const sun::CivilTime wall = sun::Zone::mean_solar(lon_rad).local(wish.utc).wall;
-    return {.year = wish.zone.local(wish.utc).wall.date.year,
-            .at = fmt::format("{:02}:{:02}", wall.hour, wall.minute),
-            .zone = "solar"};
+scene::FilmJob::Year year_of(const FilmWish& wish, session::SceneTimes& times) {
+    const int year = wish.zone.local(wish.utc).wall.date.year;
+    scene::Scene noon = wish.scene;
+    noon.time = {"noon", fmt::format("{}-06-21", year), "solar"};
+    const sun::CivilTime wall = times.of(noon).zone.local(wish.utc).wall;
+    return {
+        .year = year, .at = fmt::format("{:02}:{:02}", wall.hour, wall.minute), .zone = "solar"};
 }
 
 std::string output_of(const FilmWish& wish) {
@@ -111,7 +112,9 @@ scene::Scene film_scene(const FilmWish& wish) {
     scene::Scene scene = wish.scene;
     scene.width_px = wish.file.size_px.x;
     scene.height_px = wish.file.size_px.y;
+    scene.samples = wish.file.samples;
     scene.transparent = false;
+    scene.stamps.date = scene.stamps.date || wish.file.has_date;
     if (const std::string& zone = wish.zone.name(); !zone.starts_with("LMT"))
         scene.time.zone = zone;  // so that the job says it
     if (wish.choice.camera == FilmChoice::Camera::AroundDem) scene.view = around_dem(scene.view);
@@ -132,7 +135,7 @@ scene::FilmJob film_job(const FilmWish& wish, session::SceneTimes& times, std::s
         job.day = std::move(day.day);
         note = std::move(day.note);
     }
-    if (choice.time == FilmChoice::Time::Year) job.year = year_of(wish);
+    if (choice.time == FilmChoice::Time::Year) job.year = year_of(wish, times);
     if (choice.is_orbit()) job.orbit = {choice.turns, choice.ease};
     if (choice.is_flight()) job.flight = flight_of(wish);
     if (!choice.value.empty()) job.value = {choice.value, choice.from, choice.to};

@@ -61,7 +61,9 @@ const std::vector<FilmPreset>& film_presets();
 struct FilmFile {
     glm::ivec2 size_px{1280, 720};
     std::string ending = "mp4";
-    int quality = 80;  ///< not of gif
+    int quality = 80;       ///< not of gif
+    int samples = 1;        ///< a pixel
+    bool has_date = false;  ///< date and time are stamped on every frame
     std::string name = "{dem}_film";
 
     bool operator==(const FilmFile&) const = default;

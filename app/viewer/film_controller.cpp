@@ -71,6 +71,16 @@ void FilmController::draw(glm::vec2 window_px, float left_px, float right_px) {
         action_ = action;
 }
 
+bool FilmController::is_planned() const {
+    return is_requested_ && work_.is_done() && plan_ && plan_ == work_.answer();
+}
+
+std::string FilmController::progress() const {
+    if (!film_) return {};
+    return fmt::format("drawing {}, {} of {} frames", printable(film_->file()), film_->drawn(),
+                       film_->frames());
+}
+
 FilmWish FilmController::wish() const {
     const Document& document = state_.document;
     const glm::dvec2 size(panel_.file().size_px);
@@ -92,12 +102,14 @@ FilmWish FilmController::wish() const {
     return wish;
 }
 
-bool FilmController::request(const Opened& opened) {
+bool FilmController::request(const Opened& opened, bool is_at_rest) {
     if (opened.dem->is_preview) {
         requested_.reset();
         work_.forget();
-        return false;
+        plan_.reset();
     }
+    is_requested_ = !opened.dem->is_preview && (preview_.is_on() || is_at_rest);
+    if (!is_requested_) return false;
     if (!preview_.is_on()) {
         const std::string missing = source_.missing_overlay();
         missing_ = missing.empty() ? "" : "the film is" + missing.substr(1);
@@ -120,18 +132,18 @@ bool FilmController::take_plan() {
     return true;
 }
 
-bool FilmController::update(const Opened& opened) {
+bool FilmController::update(const Opened& opened, bool is_at_rest) {
     if (!panel_.is_open()) {
         action_.reset();
         return false;
     }
-    bool has_changed = request(opened);
+    bool has_changed = request(opened, is_at_rest);
     has_changed = take_plan() || has_changed;
-    if (action_ && plan_) {
-        act(*std::exchange(action_, std::nullopt));
-        has_changed = true;
-    }
-    return has_changed;
+    const bool needs_plan =
+        action_ && *action_ != FilmAction::Cancel && *action_ != FilmAction::EndPreview;
+    if (!action_ || (needs_plan && !is_planned())) return has_changed;
+    act(*std::exchange(action_, std::nullopt));
+    return true;
 }
 
 void FilmController::act(FilmAction action) {
@@ -161,13 +173,14 @@ void FilmController::act(FilmAction action) {
 }
 
 void FilmController::save_film() {
-    if (film_ || !is_planned()) return;
+    if (film_) return;
     error_.clear();
     film_ = std::make_unique<FilmExport>(plan_, device_, &Window::wake);
 }
 
 bool FilmController::poll() {
-    if (!film_ || !film_->is_done()) return false;
+    if (!film_) return false;
+    if (!film_->is_done()) return std::exchange(shown_drawn_, film_->drawn()) != film_->drawn();
     try {
         messages_.report(film_->result());
     } catch (const Error& error) {
@@ -186,8 +199,7 @@ bool FilmController::draw_question(glm::vec2 window_px) {
     ImGui::Begin("Quit", nullptr,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings);
-    ImGui::Text("%s is being drawn, %d of %d frames.", printable(film_->file()).c_str(),
-                static_cast<int>(film_->drawn()), static_cast<int>(film_->frames()));
+    ImGui::TextUnformatted(progress().c_str());
     const bool quits = ImGui::Button("Quit without the film");
     ImGui::SameLine();
     if (ImGui::Button("Draw it to its end")) asks_to_quit_ = false;

@@ -46,13 +46,16 @@ class FilmController {
     /// Draws the panel. @param left_px, right_px  the free part of the window's lower edge
     void draw(glm::vec2 window_px, float left_px, float right_px);
     /// Plans the film, and does what the panel asks for. @returns whether panels have changed
-    bool update(const Opened& opened);
+    /// @param is_at_rest  neither camera nor sun moves
+    bool update(const Opened& opened, bool is_at_rest);
     /// The line of a flight that is to be shown on the ground; empty: none.
     std::string take_track() { return std::exchange(track_to_show_, {}); }
 
     bool draws_film() const { return film_ != nullptr; }
-    /// Reports a film that is done. @returns whether there is one
+    /// Reports a film that is done. @returns whether panels have changed
     bool poll();
+    /// "drawing day.mp4, 34 of 300 frames"; empty: none is drawn
+    std::string progress() const;
     /// Before the window closes while a film is drawn.
     void ask_to_quit() { asks_to_quit_ = true; }
     bool asks_to_quit() const { return asks_to_quit_; }
@@ -60,9 +63,10 @@ class FilmController {
     bool draw_question(glm::vec2 window_px);
 
   private:
-    bool is_planned() const { return requested_ && work_.is_done(); }
+    /// Whether plan_ is of what is chosen now.
+    bool is_planned() const;
     FilmWish wish() const;
-    bool request(const Opened& opened);
+    bool request(const Opened& opened, bool is_at_rest);
     bool take_plan();
     void act(FilmAction action);
     void save_film();
@@ -76,10 +80,12 @@ class FilmController {
     FilmPreview preview_;
     FilmWork work_;
     std::optional<FilmWish> requested_;
+    bool is_requested_ = false;             // requested_ is what is chosen now
     std::shared_ptr<const FilmPlan> plan_;  // the latest
     int shown_frame_ = -1;                  // of plan_; -1: none
     std::optional<FilmAction> action_;
     std::unique_ptr<FilmExport> film_;
+    std::size_t shown_drawn_ = 0;  // frames of film_
     std::string missing_, error_, track_to_show_;
     bool plans_again_ = false, asks_to_quit_ = false;
 };

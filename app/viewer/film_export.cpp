@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/files_in_use.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "session/batch.h"
 #include "session/film_batch.h"
@@ -29,6 +30,7 @@ FilmExport::FilmExport(std::shared_ptr<const FilmPlan> plan, std::string device,
       thread_([this] { run(); }) {}
 
 FilmExport::~FilmExport() {
+    if (!is_done_) log::warning(printable(file()) + ": cancelled, there is no film");
     cancel();
     thread_.join();
 }

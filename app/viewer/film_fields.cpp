@@ -222,9 +222,20 @@ void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
         rows.next("Quality", 5);
         ImGui::SliderInt("##quality", &file.quality, 0, 100);
     }
+    rows.next("Samples", 4);
+    if (ImGui::BeginCombo("##samples", fmt::format("{}", file.samples).c_str())) {
+        for (const int samples : {1, 4, 8, 16})
+            if (ImGui::Selectable(fmt::format("{}", samples).c_str(), samples == file.samples))
+                file.samples = samples;
+        ImGui::EndCombo();
+    }
+    tooltip("Samples a pixel: smoother edges, as many times the work");
     rows.next("Name", 9);
     ImGui::InputText("##name", &file.name);
     tooltip("{dem}, and {time:...} with the conversions of strftime");
+    rows.next("Date", ImGui::GetFrameHeight() / ImGui::GetFontSize());
+    ImGui::Checkbox("##date", &file.has_date);
+    tooltip("Stamps date and time on every frame");
     rows.next("Centred", ImGui::GetFrameHeight() / ImGui::GetFontSize());
     ImGui::Checkbox("##centred", &is_centred);
     tooltip("Centres the film on what the panels leave free of the window");

@@ -135,7 +135,9 @@ void FilmPanel::stamp(const State& state, const FilmClock& clock, const FilmStat
         ImGui::TextDisabled(
             "%s", fitting({drag + ", Ctrl and a click takes its number", drag, length}).c_str());
     } else {
-        ImGui::TextDisabled("%s", status.is_planned ? "no frames" : "planning ...");
+        ImGui::TextDisabled("%s", state.is_preview    ? "when all posts are read a film can be made"
+                                  : status.is_planned ? "no frames"
+                                                      : "planning ...");
     }
 }
 

@@ -172,6 +172,7 @@ void MainWindow::draw_panels() {
 std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return "opening " + short_name(opening_->next_scene().dems) + " ...   Esc cancels";
+    if (const std::string film = film_->progress(); !film.empty()) return film;
     return is_drawing() ? "drawing ..." : "";
 }
 
@@ -216,8 +217,8 @@ void MainWindow::hand_over_scene() {
         history_.add(state_.document);
         pacing_.need_frames(2);
     }
-    if (film_->update(opened)) pacing_.need_frames(2);
-    point_->update(opened, unit());
+    if (film_->update(opened, pacing_.is_at_rest())) pacing_.need_frames(2);
+    if (!film_->shows_frame()) point_->update(opened, unit());
     if (overlay_->update(opened, thread)) pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())
         comparison_->start(whole_scene(), opened, wanted_now(),

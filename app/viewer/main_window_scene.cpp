@@ -105,7 +105,7 @@ void MainWindow::poll_threads() {
         pacing_.need_frames(2);
     }
     if (point_->poll()) pacing_.need_frames(2);
-    if (film_->poll() || film_->draws_film()) pacing_.need_frames(2);
+    if (film_->poll()) pacing_.need_frames(2);
     poll_picture_export();
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }

@@ -1,6 +1,11 @@
 // The film panel: its preview is the film's frames, and leaves the scene as it was.
+#include <chrono>
+#include <fstream>
+#include <thread>
+
 #include <gmock/gmock.h>
 
+#include "base/units.h"
 #include "scene/job.h"
 #include "session/scene_times.h"
 #include "window/viewer_fixture.h"
@@ -56,6 +61,28 @@ class FilmWindow : public Viewer {
             [&](const scene::Scene& scene) { return times.motion_ground(scene); });
     }
 
+    /// The window shows a frame: its values, and its picture in the window's size.
+    void expect_frame(const scene::Shot& frame) {
+        const nlohmann::json seen = this->scene();
+        EXPECT_EQ(time_of(seen), frame.utc);
+        const geo::Geodetic& eye = frame.scene.view.eye->place;
+        EXPECT_NEAR(seen["camera"]["eye"][0].get<double>(), degrees(eye.lat_rad), 1e-9);
+        EXPECT_NEAR(seen["camera"]["eye"][1].get<double>(), degrees(eye.lon_rad), 1e-9);
+        EXPECT_NEAR(seen["camera"]["eye"][2].get<double>(), eye.height_m, 1e-3);
+        scene::Scene scene = frame.scene;
+        scene.width_px = 1280;
+        scene.height_px = 800;
+        std::ofstream(folder_ / "frame.json") << scene::scene_text(scene, folder_);
+        const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
+        act({"key", "F12"});
+        ASSERT_TRUE(appears(taken)) << program_->output();
+        test::WindowedProgram capture(display_, test::build_dir() / "bin/relevo",
+                                      {"-q", "capture", "--scene",
+                                       (folder_ / "frame.json").string(), "-o", captured.string()});
+        ASSERT_EQ(capture.status(), 0) << capture.output();
+        EXPECT_LE(test::difference(image::read(taken), image::read(captured), 1), 2e-4);
+    }
+
     // Places of the panel in a window of 1280 x 800.
     static constexpr int kButtons = 676, kTimeLine = 706, kPlay = 424, kBack = 504;
     static constexpr int kSaveFilm = 433, kSaveJob = 530, kLength = 722, kLengthRow = 598;
@@ -66,26 +93,20 @@ TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
     const scene::Shots film = frames_of_saved_job();
     ASSERT_EQ(film.shots.size(), 300u);
     go_to_frame(251);
-    const nlohmann::json seen = scene();
-    const scene::Shot& frame = film.shots[250];
-    EXPECT_EQ(time_of(seen), frame.utc);
-    const auto& eye = seen["camera"]["eye"];
-    EXPECT_NEAR(eye[0].get<double>(), frame.scene.view.eye->place.lat_rad * 180 / M_PI, 1e-9);
-    EXPECT_NEAR(eye[1].get<double>(), frame.scene.view.eye->place.lon_rad * 180 / M_PI, 1e-9);
-    EXPECT_NEAR(eye[2].get<double>(), frame.scene.view.eye->place.height_m, 1e-3);
-    // The picture is that of the frame in a picture of the window's size.
-    scene::Scene scene = frame.scene;
-    scene.width_px = 1280;
-    scene.height_px = 800;
-    std::ofstream(folder_ / "frame.json") << scene::scene_text(scene, folder_);
-    const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
-    act({"key", "F12"});
-    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
-    test::WindowedProgram capture(
-        display_, test::build_dir() / "bin/relevo",
-        {"-q", "capture", "--scene", (folder_ / "frame.json").string(), "-o", captured.string()});
-    ASSERT_EQ(capture.status(), 0) << capture.output();
-    EXPECT_LE(test::difference(image::read(taken), image::read(captured), 1), 2e-4);
+    expect_frame(film.shots[250]);
+}
+
+TEST_F(FilmWindow, SoIsOneWhoseCameraMoves) {
+    open_film();
+    click(520, 572);  // the films
+    settles(3);
+    click(520, 659);  // a day in 15 s, half-way around
+    settles();
+    const scene::Shots film = frames_of_saved_job();
+    ASSERT_EQ(film.shots.size(), 450u);
+    ASSERT_TRUE(film.shots[200].scene.view.look_at);
+    go_to_frame(201);
+    expect_frame(film.shots[200]);
 }
 
 TEST_F(FilmWindow, ItsEndLeavesSceneAndUndoAsTheyWere) {
@@ -150,6 +171,19 @@ TEST_F(FilmWindow, AFilmIsDrawnInTheBackground) {
         return program_->output().find("jacksboro_film.mp4: film saved, 6 frames, 0.2 s") !=
                std::string::npos;
     })) << program_->output();
+}
+
+TEST_F(FilmWindow, NoEncoderIsAMessageAndNothingIsLost) {
+    environment_ = {std::string("LD_PRELOAD=") + RELEVO_TEST_SHIM, "RELEVO_SHIM=encoders"};
+    open_film();
+    const nlohmann::json before = scene();
+    click(kSaveFilm, kButtons);
+    EXPECT_TRUE(wait([&] {
+        return program_->output().find("has none of the encoders libx264, libopenh264") !=
+               std::string::npos;
+    })) << program_->output();
+    EXPECT_EQ(scene(), before);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "jacksboro_film.mp4"));
 }
 
 TEST_F(FilmWindow, ClosingItAsksAboutAFilmInWork) {
