@@ -19,7 +19,7 @@ namespace relevo::viewer {
 
 /// What the window requests. The latest request replaces earlier ones.
 struct Wanted {
-    std::optional<scene::View> view;    ///< nullopt: the scene's
+    std::optional<scene::View> view;  ///< nullopt: the scene's
     /// Least height of the eye above the drawn ground [m]; nullopt: not raised.
     std::optional<double> keep_above_m = 0;
     std::optional<sun::Instant> utc;    ///< nullopt: the scene's
