@@ -74,7 +74,7 @@ const std::vector<FilmPreset>& film_presets() {
         {"A year in 12 s, at this hour", {.time = Time::Year, .duration_s = 12}},
         {"Once around in 12 s",
          {.time = Time::Still, .camera = Camera::AroundMiddle, .duration_s = 12}},
-        {"A day in 15 s, half-way around",
+        {"A day, half-way around",
          {.camera = Camera::AroundMiddle, .turns = 0.5, .duration_s = 15}},
         {"Through the saved views in 15 s",
          {.time = Time::Still, .camera = Camera::Views, .ease = true, .duration_s = 15}},

@@ -71,6 +71,12 @@ void FilmController::draw(glm::vec2 window_px, float left_px, float right_px) {
         action_ = action;
 }
 
+void FilmController::draw_edges(glm::vec2 window_px) const {
+    if (!preview_.is_on() || !plan_) return;
+    const glm::dvec2 film(plan_->of.wish.file.size_px);
+    draw_film_edges(film.x / film.y, window_px);
+}
+
 bool FilmController::is_planned() const {
     return is_requested_ && work_.is_done() && plan_ && plan_ == work_.answer();
 }

@@ -45,6 +45,8 @@ class FilmController {
     bool advance(double passed_s);
     /// Draws the panel. @param left_px, right_px  the free part of the window's lower edge
     void draw(glm::vec2 window_px, float left_px, float right_px);
+    /// Draws over the image of a frame what is not in the film.
+    void draw_edges(glm::vec2 window_px) const;
     /// Plans the film, and does what the panel asks for. @returns whether panels have changed
     /// @param is_at_rest  neither camera nor sun moves
     bool update(const Opened& opened, bool is_at_rest);

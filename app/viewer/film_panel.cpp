@@ -147,7 +147,9 @@ std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
     if (!is_open_) return std::nullopt;
     const float below = kStatus_em * ImGui::GetFontSize();
     ImGui::SetNextWindowPos({left_px, window_px.y - below}, ImGuiCond_Always, {0, 1});
-    ImGui::SetNextWindowSize({right_px - left_px, 0}, ImGuiCond_Always);
+    const float width = right_px - left_px, menu = 2 * ImGui::GetFrameHeight();
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, window_px.y - below - menu});
+    ImGui::SetNextWindowSize({width, 0}, ImGuiCond_Always);
     const bool shows = ImGui::Begin(
         "Film", &is_open_,
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -171,6 +173,16 @@ std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
     }
     ImGui::End();
     return std::exchange(action_, std::nullopt);
+}
+
+void draw_film_edges(double aspect, glm::vec2 size_px) {
+    const float width = size_px.y * static_cast<float>(aspect);
+    const float beside = (size_px.x - width) / 2;
+    if (beside < 1) return;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
+    list.AddRectFilled({0, 0}, {beside, size_px.y}, kShade);
+    list.AddRectFilled({size_px.x - beside, 0}, {size_px.x, size_px.y}, kShade);
 }
 
 }  // namespace relevo::viewer

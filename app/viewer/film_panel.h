@@ -54,4 +54,8 @@ class FilmPanel {
     std::optional<FilmAction> action_;
 };
 
+/// Darkens what a window shows at both sides of a film that is narrower.
+/// @param aspect  of the film, width over height
+void draw_film_edges(double aspect, glm::vec2 size_px);
+
 }  // namespace relevo::viewer

@@ -148,6 +148,7 @@ void MainWindow::draw_panels() {
         return;
     }
     if (picture_) draw_over_image();
+    film_->draw_edges(size());
     if (state_.settings.panels) {
         menu_bar(state_);
         draw_film();

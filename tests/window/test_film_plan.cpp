@@ -141,6 +141,7 @@ TEST_F(Film, EveryPresetHasTheFramesOfItsSavedJob) {
             choice().track = line("36.30,-84.28\n36.33,-84.24\n36.36,-84.20\n");
         const FilmPlan film = plan();
         ASSERT_EQ(film.frames.shots.size(), static_cast<std::size_t>(2 * choice().duration_s));
+        EXPECT_EQ(times_.loaded(film.frames.shots.back().scene), wanted_.dem) << "was read again";
         const std::string message = save_film_job(film.scene, film.film);
         const fs::path job = message.substr(0, message.find(':'));
         const scene::Shots saved = frames_of(job);
