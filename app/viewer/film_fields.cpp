@@ -76,8 +76,9 @@ void preset(FilmChoice& choice) {
 void track_fields(FilmChoice& choice, WidgetRows& rows) {
     rows.next("Track", 14);
     std::string track = choice.track;  // not read before all of it is typed
-    if (ImGui::InputTextWithHint("##track", "GPX, CSV, GeoJSON; then Enter", &track,
-                                 ImGuiInputTextFlags_EnterReturnsTrue))
+    if (ImGui::InputTextWithHint(
+            "##track", "GPX, CSV, GeoJSON; then Enter", &track,
+            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
         choice.track = track.empty() ? "" : std::filesystem::absolute(track).string();
     if (!choice.track.empty()) tooltip(printable(choice.track).c_str());
     rows.next("Above ground", 5);
@@ -231,7 +232,7 @@ void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
     }
     tooltip("Samples a pixel: smoother edges, as many times the work");
     rows.next("Name", 9);
-    ImGui::InputText("##name", &file.name);
+    ImGui::InputText("##name", &file.name, ImGuiInputTextFlags_AutoSelectAll);
     tooltip("{dem}, and {time:...} with the conversions of strftime");
     rows.next("Date", ImGui::GetFrameHeight() / ImGui::GetFontSize());
     ImGui::Checkbox("##date", &file.has_date);

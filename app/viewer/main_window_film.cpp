@@ -12,6 +12,8 @@ bool only_looks(Command command) {
         case Command::TakePicture:
         case Command::CopyCommand:
         case Command::SaveScene:
+        case Command::EndMeasuring:
+        case Command::DropCorner:
         case Command::Film:
         case Command::Play:  // of the film
             return true;

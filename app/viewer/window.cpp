@@ -385,7 +385,31 @@ void Window::draw(const std::function<void()>& panels) {
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
     if (ImGui::GetIO().WantTextInput) keys.clear();
+    if (!panels_have_keys()) return keys;
+    // Esc first closes what is open in the panels.
+    const bool is_inside =
+        ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    std::erase_if(keys, [&](const KeyPress& press) {
+        const bool is_function = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
+        const bool leaves = press.key == GLFW_KEY_ESCAPE && !is_inside;
+        if (leaves) take_keys_back();
+        return !press.control && !is_function;
+    });
     return keys;
+}
+
+void Window::give_keys_to(const char* panel) {
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(panel);
+}
+
+void Window::take_keys_back() {
+    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(nullptr);
+}
+
+bool Window::panels_have_keys() const {
+    return (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0;
 }
 
 std::vector<std::string> Window::take_dropped_files() {
@@ -412,7 +436,7 @@ glm::vec2 Window::size() const {
 }
 
 bool Window::is_down(int key) const {
-    return !ImGui::GetIO().WantTextInput && impl_->held.contains(key);
+    return !ImGui::GetIO().WantTextInput && !panels_have_keys() && impl_->held.contains(key);
 }
 
 void Window::copy(const std::string& text) {
