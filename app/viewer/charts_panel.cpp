@@ -16,7 +16,12 @@ namespace relevo::viewer {
 namespace {
 
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
-constexpr float kHeight_units = 300, kLeast_units = 220;
+constexpr float kHeight_units = 300;
+
+/// Height of the status line.
+float status_px() {
+    return 2 * ImGui::GetFontSize() + 4;
+}
 
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
@@ -40,13 +45,6 @@ std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px)
                                state.land.frame->to_local(place), double{size_px.x} / size_px.y);
     if (!at) return std::nullopt;
     return in_window(*at, size_px);
-}
-
-/// Whether the film panel leaves room for charts. It takes the place of docked ones.
-bool room_beside_film(const State& state, glm::vec2 size_px, float px_a_unit) {
-    if (state.film_px == 0) return true;
-    const float room_px = size_px.y - state.film_px - 2 * ImGui::GetFrameHeight();
-    return !state.settings.charts_are_docked && room_px > kLeast_units * px_a_unit;
 }
 
 }  // namespace
@@ -101,18 +99,9 @@ void ChartsPanel::year(State& state) {
     state.step = true;
 }
 
-void ChartsPanel::stay_above_film(const State& state, glm::vec2 size_px) {
-    const float top = ImGui::GetFrameHeight() + 10, lowest = size_px.y - state.film_px - 5;
-    if (state.film_px == 0 || at_px_.y + extent_px_.y <= lowest) return;
-    at_px_.y = std::max(top, lowest - extent_px_.y);
-    extent_px_.y = std::min(extent_px_.y, lowest - at_px_.y);
-    ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
-    ImGui::SetNextWindowSize({extent_px_.x, extent_px_.y});
-}
-
 void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
-    ImGui::SetNextWindowSizeConstraints({360 * unit, kLeast_units * unit}, {size_px.x, size_px.y});
-    if (std::exchange(is_open_, true)) return stay_above_film(state, size_px);
+    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
+    if (std::exchange(is_open_, true)) return;
     if (extent_px_.x == 0) {
         const float left = 400 * unit;
         extent_px_ = {std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit)),
@@ -120,7 +109,6 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         at_px_ = {std::max(0.0f, size_px.x - 10 - extent_px_.x),
                   size_px.y - 64 * unit - extent_px_.y};
     }
-    stay_above_film(state, size_px);
     if (const auto point = chosen_in_window(state, size_px)) {
         const glm::vec2 from = *point - at_px_;
         const bool is_under =
@@ -128,7 +116,9 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         if (is_under) {
             // At the edge with more room, upper or lower.
             const float top = ImGui::GetFrameHeight() + 10;
-            at_px_.y = point->y - top > size_px.y - point->y ? top : size_px.y - extent_px_.y;
+            at_px_.y = point->y - top > size_px.y - point->y
+                           ? top
+                           : size_px.y - extent_px_.y - status_px();
         }
     }
     ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
@@ -140,10 +130,9 @@ void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
     // On the right of the side panel unless that is at the right edge.
     const bool is_left = sides.x + sides.y < size_px.x;
     const float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
-    const float status_px = 2 * ImGui::GetFontSize() + 4;
     if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
     docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
-    ImGui::SetNextWindowPos({left, size_px.y - status_px}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowPos({left, size_px.y - status_px()}, ImGuiCond_Always, {0, 1});
     ImGui::SetNextWindowSize({std::max(360 * unit, right - left), docked_px_});
     state.docked_px = docked_px_;
     is_open_ = false;  // place() begins anew
@@ -176,8 +165,7 @@ void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
     year_.take(state.point ? state.point->year : nullptr);
     state.chart_px = {0, 0};
     state.docked_px = 0;
-    const bool has_room = room_beside_film(state, size_px, static_cast<float>(px_a_unit));
-    if (!state.settings.charts || !state.chosen || !has_room) {
+    if (!state.settings.charts || !state.chosen) {
         is_open_ = false;
         return;
     }

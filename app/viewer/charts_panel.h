@@ -25,7 +25,6 @@ class ChartsPanel {
 
     /// Sets the panel's initial position: the last one, moved clear of the point.
     void place(const State& state, glm::vec2 size_px, float unit);
-    void stay_above_film(const State& state, glm::vec2 size_px);
     /// At the lower edge, next to the side panel, with a height that the user can change.
     void dock(State& state, glm::vec2 size_px, float unit);
     void tabs(State& state);

@@ -163,10 +163,12 @@ void MainWindow::draw_panels() {
     if (state_.settings.panels) {
         menu_bar(state_);
         draw_film();
-        if (!film_->shows_frame()) {
-            side_panel(state_, size(), unit());
+        if (!film_->shows_frame()) side_panel(state_, size(), unit());
+        // The film panel takes the place of the charts.
+        if (film_->is_open())
+            state_.docked_px = 0;
+        else
             charts_.draw(state_, size(), unit());
-        }
     }
     if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
