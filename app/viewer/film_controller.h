@@ -31,7 +31,6 @@ class FilmController {
     void toggle() { panel_.toggle(); }
     void close() { panel_.close(); }
     bool is_open() const { return panel_.is_open(); }
-    float height_px() const { return panel_.height_px(); }
     void play_or_pause();
     bool is_playing() const { return preview_.is_on() && clock_.is_playing(); }
     /// Whether the document is that of a frame.

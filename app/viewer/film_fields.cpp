@@ -239,7 +239,7 @@ void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
     tooltip("Stamps date and time on every frame");
     rows.next("Centred", ImGui::GetFrameHeight() / ImGui::GetFontSize());
     ImGui::Checkbox("##centred", &is_centred);
-    tooltip("Centres the film on what the panels leave free of the window");
+    tooltip("Centres the film on what the side panel leaves free of the window");
 }
 
 }  // namespace relevo::viewer

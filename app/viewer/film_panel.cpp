@@ -154,7 +154,6 @@ std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
         "Film", &is_open_,
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
             ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
-    height_px_ = ImGui::GetWindowHeight() + below;
     if (shows) {
         if (!status.shows_frame) {
             film_choice_fields(choice_, state);

@@ -39,8 +39,6 @@ class FilmPanel {
     /// @param left_px, right_px  the part of the window's lower edge that is free
     std::optional<FilmAction> draw(const State& state, FilmClock& clock, const FilmStatus& status,
                                    glm::vec2 window_px, float left_px, float right_px);
-    /// Height that it covers above the window's lower edge [px]; 0: closed.
-    float height_px() const { return is_open_ ? height_px_ : 0; }
 
   private:
     void time_line(FilmClock& clock, const FilmStatus& status);
@@ -48,7 +46,6 @@ class FilmPanel {
     void buttons(const FilmStatus& status);
 
     bool is_open_ = false, is_centred_ = true;
-    float height_px_ = 0;
     FilmChoice choice_ = film_presets().front().choice;
     FilmFile file_;
     std::optional<FilmAction> action_;

@@ -133,9 +133,8 @@ scene::Insets MainWindow::panel_insets() const {
     if (!state_.settings.panels) return {};
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;  // the menu
-    const float bottom_px = std::max(2 * text_px + state_.docked_px, state_.film_px);
-    insets.bottom = bottom_px / size().y;  // the status line, and what is docked
+    insets.top = 1.5 * text_px / size().y;                          // the menu
+    insets.bottom = (2.0 * text_px + state_.docked_px) / size().y;  // the status line
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;

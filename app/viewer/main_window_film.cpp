@@ -69,7 +69,6 @@ void MainWindow::draw_film() {
     const auto left = static_cast<float>(side.left) * size().x;
     const auto right = static_cast<float>(1 - side.right) * size().x;
     film_->draw(size(), std::max(left, kBeside_px), std::min(right, size().x - kBeside_px));
-    state_.film_px = film_->height_px();
 }
 
 }  // namespace relevo::viewer

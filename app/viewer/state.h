@@ -81,7 +81,6 @@ struct State {
     float point_room_px = 0;  ///< height of the point's text
     float docked_px = 0;      ///< height of what is docked above the status line
     glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
-    float film_px = 0;        ///< height of the film panel at the lower edge; 0: closed
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo
     std::optional<scene::Effects> asked_effects;
