@@ -69,7 +69,7 @@ chart::Rect north_place(glm::vec2 size_px, float top_px) {
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
     // True north at the eye, as if the arrow lay on level ground.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);

@@ -237,6 +237,9 @@ struct Window::Impl {
         ImGuiStyle& style = ImGui::GetStyle();
         style = ImGuiStyle();
         light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+        // Text is not read through text.
+        style.Colors[ImGuiCol_WindowBg].w = 0.97f;
+        style.Colors[ImGuiCol_PopupBg].w = 1;
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
         style.FrameRounding = 3 * scale;
@@ -384,7 +387,9 @@ void Window::draw(const std::function<void()>& panels) {
 
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
-    if (ImGui::GetIO().WantTextInput) keys.clear();
+    // Esc closes the sheet of a text field.
+    if (ImGui::GetIO().WantTextInput)
+        std::erase_if(keys, [](const KeyPress& press) { return press.key != GLFW_KEY_ESCAPE; });
     if (!panels_have_keys()) return keys;
     // Esc first closes what is open in the panels.
     const bool is_inside =
