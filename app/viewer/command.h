@@ -18,6 +18,7 @@ enum class Command {
     CopyCommand,
     SaveScene,
     SaveJob,
+    Film,  ///< its panel
     Quit,
     Undo,
     Redo,

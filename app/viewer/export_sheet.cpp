@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "scene/name_template.h"
 #include "scene/scene_words.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
 namespace {
@@ -43,15 +44,6 @@ constexpr std::array<Size, 6> kSizes = {{{"window", {0, 0}},
                                          {"A2 at 300 dpi", {7016, 4961}}}};
 
 constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
-
-/// A name in the working folder that no file has.
-std::string free_name(const std::string& stem, const std::string& ending) {
-    std::string name = stem + "." + ending;
-    std::error_code ignored;
-    for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
-        name = fmt::format("{}-{}.{}", stem, n, ending);
-    return name;
-}
 
 }  // namespace
 

@@ -44,6 +44,7 @@ void MainWindow::process_keys() {
     }
     for (const Command command : std::exchange(state_.commands, {}))
         if (!run_program_command(command) && is_open()) run_scene_command(command);
+    if (state_.view_to_go_to && is_open()) film_->end_preview();
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
     if (const auto place = find_sheet_.take(); place && is_open()) go_to_place(*place);
@@ -82,7 +83,7 @@ bool MainWindow::run_program_command(Command command) {
             if (window_->panels_have_keys())
                 window_->take_keys_back();
             else
-                window_->give_keys_to("Relevo");
+                window_->give_keys_to(film_->is_open() ? "Film" : "Relevo");
             state_.opens_menu = command == Command::MenuKeys && window_->panels_have_keys();
             return true;
         case Command::Charts:
@@ -103,7 +104,10 @@ bool MainWindow::run_program_command(Command command) {
 }
 
 void MainWindow::run_scene_command(Command command) {
+    end_film_preview(command);
     switch (command) {
+        case Command::Film:
+            return film_->toggle();
         case Command::ReadAgain:
             return reload_effects();
         case Command::TakePicture:
@@ -140,6 +144,7 @@ void MainWindow::run_scene_command(Command command) {
         case Command::GiveUpSaving:
             return overlay_->cancel_export();
         case Command::Play:
+            if (film_->is_open()) return film_->play_or_pause();
             state_.playing = !state_.playing;
             return;
         case Command::Undo:
@@ -162,6 +167,7 @@ void MainWindow::close_dialogs() {
     import_sheet_.close();
     find_sheet_.close();
     export_sheet_.close();
+    film_->close();
     closes_menus_ = true;
     state_.message.clear();
 }
@@ -341,14 +347,17 @@ void MainWindow::take_picture() {
     });
 }
 
-scene::Scene MainWindow::scene_to_export() const {
-    Document document = state_.document;
-    if (export_sheet_.is_centred())
+scene::Scene MainWindow::scene_for(Document document, bool is_centred, double aspect) const {
+    if (is_centred)
         document.pose = centred(document.pose, state_.land, panel_insets(),
-                                static_cast<double>(size().x) / size().y, export_sheet_.aspect());
+                                static_cast<double>(size().x) / size().y, aspect);
     scene::Scene scene = viewer::whole_scene(document, state_.land, window_->size_px());
     overlay_->add_to(scene);
     return scene;
+}
+
+scene::Scene MainWindow::scene_to_export() const {
+    return scene_for(state_.document, export_sheet_.is_centred(), export_sheet_.aspect());
 }
 
 void MainWindow::start_picture_export() {

@@ -21,7 +21,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 35> kKeys = {{
+constexpr std::array<Key, 36> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -35,6 +35,7 @@ constexpr std::array<Key, 35> kKeys = {{
     {GLFW_KEY_Z, true, Command::Undo},
     {GLFW_KEY_Y, true, Command::Redo},
     {GLFW_KEY_F, true, Command::Find},
+    {GLFW_KEY_F, false, Command::Film},
     {GLFW_KEY_HOME, false, Command::Whole},
     {GLFW_KEY_N, false, Command::NorthUp},
     {GLFW_KEY_T, false, Command::FromAbove},
@@ -92,6 +93,7 @@ void file_menu(State& state) {
     item(state, "Export overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
     item(state, "Save the day as a job", "Ctrl+J", Command::SaveJob);
+    item(state, "Film...", "F", Command::Film);
     ImGui::Separator();
     item(state, "Quit", "Ctrl+Q", Command::Quit);
     ImGui::EndMenu();

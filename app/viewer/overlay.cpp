@@ -111,7 +111,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 35> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 36> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -138,6 +138,7 @@ void key_sheet() {
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "export the sun overlay as GeoTIFF"},
         {"Ctrl + J", "save the day's hours as a job"},
+        {"F", "film: a day, a year, orbits and flights, on a time line"},
         {"Ctrl + O", "open a DEM, scene, photograph, track ...; files can be dropped too"},
         {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
         {"B, then 1 to 9", "save the view; go to a saved view"},

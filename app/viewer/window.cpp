@@ -292,6 +292,10 @@ void Window::close() {
     glfwSetWindowShouldClose(impl_->handle, GLFW_TRUE);
 }
 
+void Window::keep_open() {
+    glfwSetWindowShouldClose(impl_->handle, GLFW_FALSE);
+}
+
 void Window::hide() {
     glfwHideWindow(impl_->handle);
     glfwPollEvents();

@@ -39,6 +39,7 @@ class Window {
 
     bool should_close() const;
     void close();
+    void keep_open();  ///< after a request to close it
     /// Hides the window; the program continues.
     void hide();
     void set_title(const std::string& title);
