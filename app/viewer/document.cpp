@@ -194,7 +194,7 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
         if (!scene.time.date.empty()) command.option("--date", scene.time.date);
         if (!scene.time.zone.empty()) command.option("--tz", scene.time.zone);
     }
-    add_view(command, scene.view);
+    if (!scene.ortho) add_view(command, scene.view);
     add_stamps(command, scene.stamps);
     add_options(command, scene);
     if (scene.overlay) add_overlay(command, *scene.overlay);
@@ -209,7 +209,8 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
         command.option("--plugin-path", folder);
     for (const effect::Setting& setting : effects.settings)
         command.option("--set", setting.address + "=" + setting.text);
-    command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
+    if (!scene.ortho || scene.resolution == 0)
+        command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
     command.option("-o", output);
     return command.take();
 }

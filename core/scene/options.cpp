@@ -147,6 +147,16 @@ constexpr Option kOptions[] = {
      "avif, tif, exr", Kind::Flag, 0, 0, {},
      [](const Scene& s) { return flag(s.transparent); },
      [](Scene& s, const Value& v) { s.transparent = v.boolean; }},
+    {"picture", "ortho", "--ortho", "Options",
+     "Orthographic top view of all of the DEM that lies on its CRS: tif as GeoTIFF, the others with "
+     "a world file; --size is the most that it may have; not in the window", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.ortho); },
+     [](Scene& s, const Value& v) { s.ortho = v.boolean; }},
+    {"picture", "resolution", "--resolution", "Options",
+     "Side of a pixel of --ortho in units of the DEM's CRS, instead of --size", Kind::Number, 1e-9,
+     1e9, {},
+     [](const Scene& s) { return number(s.resolution); },
+     [](Scene& s, const Value& v) { s.resolution = v.number; }},
 };
 // clang-format on
 

@@ -75,7 +75,8 @@ RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
     const int samples = samples_of(scene);
     return {.deep = samples > 1 || format.bits > 8,
             .antialias = samples < kEnoughSamples,
-            .data = !format.layers.empty()};
+            .data = !format.layers.empty(),
+            .orthographic = scene.ortho};
 }
 
 int samples_of(const scene::Scene& scene) {
@@ -102,6 +103,8 @@ PictureMaker::PictureMaker(Session::Impl& impl)
       format_(*impl.options.format),
       linear_(impl.options.radiance),
       picture_px_(scene_.width_px, scene_.height_px) {
+    if (scene_.ortho && std::ranges::find(format_.layers, DataLayer::Depth) != format_.layers.end())
+        bad_input("--layers: depth: a map of --ortho has no eye to measure from; name the others");
     const int max_side_px = impl.context->info().max_picture_size;
     if (fits(scene_, format_, max_side_px)) {
         const PictureRect all{{0, 0}, picture_px_};
