@@ -64,6 +64,11 @@ void fit_map(Scene& scene, const dem::Grid& grid) {
     if (!scene.ortho && scene.resolution > 0)
         bad_input("--resolution: needs --ortho; --size is the size of other pictures");
     if (!scene.ortho) return;
+    if (scene.stamps.margin) {
+        if (scene.resolution > 0)
+            bad_input("--margin and --resolution exclude each other; use --size");
+        return;  // the map is as large as its margins allow
+    }
     const glm::ivec2 size = map_size(grid, scene.resolution, {scene.width_px, scene.height_px});
     scene.width_px = size.x;
     scene.height_px = size.y;

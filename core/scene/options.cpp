@@ -125,6 +125,11 @@ constexpr Option kOptions[] = {
      "Attribution of the data on the picture", Kind::Text, 0, 0, {},
      [](const Scene& s) { return text(s.stamps.attribution_text); },
      [](Scene& s, const Value& v) { s.stamps.attribution_text = printable(v.text); }},
+    {"stamps", "margin", "--margin", "Stamps",
+     "White border around the view in which legends and stamps stand, so that nothing lies on it; part "
+     "of --size", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.stamps.margin); },
+     [](Scene& s, const Value& v) { s.stamps.margin = v.boolean; }},
     {"picture", "exposure", "--exposure", "Options",
      "Brighter than the default by this many stops, EV", Kind::Number, -20, 20, {},
      [](const Scene& s) { return number(s.exposure_ev); },

@@ -52,6 +52,7 @@ struct Stamps {
     bool legend = true;  ///< of what colours mean, where there is something to tell
     bool title = false, scale = false, north = false, graticule = false, date = false, sun = false,
          attribution = false;
+    bool margin = false;           ///< they stand around the view, not on it
     std::string title_text;        ///< empty: the DEM's name
     std::string attribution_text;  ///< needed with `attribution`
 

@@ -7,7 +7,11 @@ namespace relevo::session {
 std::optional<output::Georeference> georeference_of(const Session& session) {
     const auto& map = session.camera().map;
     if (!map) return std::nullopt;
-    return output::Georeference{map->area().geotransform(), map->grid().crs().text()};
+    scene::MapArea area = map->area();
+    const glm::dvec2 margin(session.map_corner_px());
+    area.left -= margin.x * area.pixel_x;
+    area.top += margin.y * area.pixel_y;
+    return output::Georeference{area.geotransform(), map->grid().crs().text()};
 }
 
 std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
