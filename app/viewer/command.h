@@ -29,7 +29,10 @@ enum class Command {
     StandHere,  ///< at the chosen point
     LookThere,  ///< to the chosen point
     SaveView,
-    Measure,
+    Measure,  ///< begins or ends a line
+    EndMeasuring,
+    DropCorner,  ///< of the measured line
+    SaveProfile,
     Compare,
     Play,
     Earlier,

@@ -20,7 +20,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 30> kKeys = {{
+constexpr std::array<Key, 33> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -40,6 +40,9 @@ constexpr std::array<Key, 30> kKeys = {{
     {GLFW_KEY_G, false, Command::Walk},
     {GLFW_KEY_B, false, Command::SaveView},
     {GLFW_KEY_M, false, Command::Measure},
+    {GLFW_KEY_ENTER, false, Command::EndMeasuring},
+    {GLFW_KEY_KP_ENTER, false, Command::EndMeasuring},
+    {GLFW_KEY_BACKSPACE, false, Command::DropCorner},
     {GLFW_KEY_C, false, Command::Compare},
     {GLFW_KEY_SPACE, false, Command::Play},
     {GLFW_KEY_LEFT_BRACKET, false, Command::Earlier},
