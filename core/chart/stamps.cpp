@@ -93,16 +93,19 @@ struct Panels {
     }
 };
 
+bool overlap(const Rect& a, const Rect& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
+           b.y < a.y + a.height;
+}
+
 enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
 
 /// Gives out the room of a picture, from its corners on.
 class Layout {
   public:
-    /// @param map  that nothing may lie on
+    /// @param map  that no panel may lie on
     Layout(image::Image8& picture, const std::optional<Rect>& map)
-        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)) {
-        if (map) taken_.push_back(*map);
-    }
+        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)), map_(map) {}
 
     double unit_px() const { return unit_px_; }
 
@@ -125,7 +128,7 @@ class Layout {
     bool put(const Drawing& drawing, double x, double y) {
         const Rect at{std::round(x), std::round(y), drawing.width() * unit_px_,
                       drawing.height() * unit_px_};
-        if (!is_free(at, 0)) return false;
+        if (!is_free(at, 0) || (map_ && overlap(at, *map_))) return false;
         taken_.push_back(at);
         paint(drawing, static_cast<int>(at.x), static_cast<int>(at.y), unit_px_, picture_);
         return true;
@@ -136,10 +139,7 @@ class Layout {
         if (at.x < margin_px || at.y < margin_px || at.x + at.width > picture_.width - margin_px ||
             at.y + at.height > picture_.height - margin_px)
             return false;
-        return std::ranges::none_of(taken_, [&](const Rect& other) {
-            return at.x < other.x + other.width && other.x < at.x + at.width &&
-                   at.y < other.y + other.height && other.y < at.y + at.height;
-        });
+        return std::ranges::none_of(taken_, [&](const Rect& other) { return overlap(at, other); });
     }
 
     void take(const Rect& at) { taken_.push_back(at); }
@@ -148,6 +148,7 @@ class Layout {
   private:
     image::Image8& picture_;
     double unit_px_;
+    std::optional<Rect> map_;
     std::array<double, 4> used_{};  // of each corner, upwards or downwards
     std::vector<Rect> taken_;
 };
