@@ -1,6 +1,7 @@
 //! provides  the geometry pass: what is where, for terrain.frag.glsl to shade each visible pixel once
 //! writes    gbuffer: column and row of the post, height [m], view depth [m]; with HEIGHT_STEPS, the number
-//!           of an output, also how the height changes from pixel to pixel [m/px]
+//!           of an output, also how the height changes from pixel to pixel [m/px]; with ORTHOGRAPHIC, another
+//!           one, its position [m, relative to the eye], and 1
 //!
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
@@ -12,6 +13,7 @@ in vec2 post;
 in float height_m;
 in float height_from_eye_m;
 in vec3 vertex_normal;
+in vec3 place_m;
 
 layout(location = 0) out uvec4 gbuffer_out;
 #ifdef HEIGHT_STEPS
@@ -27,7 +29,14 @@ vec2 height_steps() {
 }
 #endif
 
+#ifdef ORTHOGRAPHIC
+layout(location = ORTHOGRAPHIC) out vec4 ground_place_out;
+#endif
+
 void main() {
+#ifdef ORTHOGRAPHIC
+    ground_place_out = vec4(place_m, 1.0);
+#endif
 #ifdef TERRAIN_NORMAL_VERTEX
     vec3 n = normalize(vertex_normal);
     uvec2 normal_source = uvec2(packSnorm2x16(normal_octahedral(n)), packUnorm2x16(post * frame.posts.zw));

@@ -22,6 +22,7 @@
 uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
 uniform sampler2D instance_colour;  // from instance.frag.glsl, where a plugin has instances
 uniform sampler2D instance_direction;
+uniform sampler2D ground_place;  // from geometry.frag.glsl, of a map
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 light_out;
@@ -42,6 +43,25 @@ vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) 
     float slant = min(dot(beside, normal), -0.02 * length(ray));
     return beside * (min(dot(position, normal), -0.02 * length(position)) / slant) - position;
 }
+
+#ifdef ORTHOGRAPHIC
+/// The step to the neighbouring pixel of a map on level ground.
+/// @param step_m  what it is in the middle of the map
+vec3 ground_map_step(in ivec2 pixel, in ivec2 axis, in vec3 here, in vec3 up, in vec3 step_m) {
+    ivec2 last = ivec2(frame.viewport.xy) - 1;
+    vec4 after = texelFetch(ground_place, min(pixel + axis, last), 0);
+    vec4 before = texelFetch(ground_place, max(pixel - axis, ivec2(0)), 0);
+    vec3 found = after.a > 0.0 && pixel + axis == min(pixel + axis, last) ? after.xyz - here
+                 : before.a > 0.0 && pixel - axis == max(pixel - axis, ivec2(0)) ? here - before.xyz
+                                                                                : step_m;
+    return found - dot(found, up) * up;
+}
+
+/// The same on the plane of the point, which parallel rays meet.
+vec3 ground_map_footprint(in vec3 level_m, in vec3 normal, in vec3 up) {
+    return level_m - up * (dot(level_m, normal) / max(dot(up, normal), 0.02));
+}
+#endif
 
 /// A step over the drawn ground as one over the DEM's own.
 vec3 unexaggerated(in vec3 step_m, in vec3 up) {
@@ -90,7 +110,11 @@ void main() {
     vec3 ray = pixel_ray_at(gl_FragCoord.xy);
 
     Surface s;
+#ifdef ORTHOGRAPHIC
+    s.position_m = texelFetch(ground_place, pixel, 0).xyz;
+#else
     s.position_m = ray * depth;
+#endif
     s.height_m = uintBitsToFloat(what.z);
     s.height_unit = height_unit_of(s.height_m);
     s.up = up_at(s.position_m);
@@ -100,7 +124,12 @@ void main() {
     vec3 east = east_at(s.up);
     vec3 north = cross(s.up, east);
 
+#ifdef ORTHOGRAPHIC
+    float pixel_m = sqrt(length(frame.pixel_ray_dx.xyz) * length(frame.pixel_ray_dy.xyz)) * depth;
+    float across = pixel_m * frame.normal_texels_per_m;
+#else
     float across = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
+#endif
 #ifdef TERRAIN_NORMAL_VERTEX
     s.post = unpackUnorm2x16(what.y) * frame.posts.xy;
     s.geometric_normal = normal_from_octahedral(unpackSnorm2x16(what.x));
@@ -122,8 +151,15 @@ void main() {
     s.bitangent = cross(s.geometric_normal, s.tangent);
     s.normal = s.geometric_normal;
 
+#ifdef ORTHOGRAPHIC
+    vec3 level_x = ground_map_step(pixel, ivec2(1, 0), s.position_m, s.up, depth * frame.pixel_ray_dx.xyz);
+    vec3 level_y = ground_map_step(pixel, ivec2(0, 1), s.position_m, s.up, depth * frame.pixel_ray_dy.xyz);
+    vec3 dx = ground_map_footprint(level_x, s.geometric_normal, s.up);
+    vec3 dy = ground_map_footprint(level_y, s.geometric_normal, s.up);
+#else
     vec3 dx = footprint(s.position_m, s.geometric_normal, ray, frame.pixel_ray_dx.xyz);
     vec3 dy = footprint(s.position_m, s.geometric_normal, ray, frame.pixel_ray_dy.xyz);
+#endif
     float longest = max(length(dx), length(dy));
     float shortest = min(length(dx), length(dy));
     float most = max(shortest * frame.footprint_limit, 1e-6);
@@ -170,7 +206,11 @@ void main() {
 
     vec3 to_sun;
     vec3 irradiance = sun_light(s.up, to_sun);
+#ifdef ORTHOGRAPHIC
+    vec3 view = -s.up;
+#else
     vec3 view = s.position_m / s.distance_m;
+#endif
     float lit = 1.0;
     hook_facing(s, to_sun, lit);
 #ifdef AUDITED

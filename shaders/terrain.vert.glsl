@@ -14,6 +14,7 @@ out vec2 post;
 out float height_m;
 out float height_from_eye_m;  // of the DEM's heights: near the eye small, and so exact
 out vec3 vertex_normal;
+out vec3 place_m;  // of a map, relative to the eye
 
 void main() {
     vec2 limit = net_quads();
@@ -29,6 +30,9 @@ void main() {
 #endif
     vec2 height = morphed(levels, morph);
     bool skirt = grid != clamp(grid, 0.0, 64.0);
+#ifdef ORTHOGRAPHIC
+    skirt = skirt && !any(net_leaves_dem(grid, clamp(vertex, vec2(0.0), limit)));
+#endif
 #ifndef TERRAIN_DEPTH
     height.r -= skirt ? kSkirt_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
 #endif
@@ -71,6 +75,11 @@ void main() {
 #ifdef HEIGHT_STEPS
     height_from_eye_m = height.r - frame.eye_m.w / frame.height_range.z;
 #endif
+#ifdef ORTHOGRAPHIC
+    place_m = v.position_m;
+    gl_Position = net_on_map(net_map_post(grid, vertex), v.position_m);
+#else
     gl_Position = clipped(v.position_m);
+#endif
     gl_ClipDistance[0] = height.g - 0.5;
 }

@@ -26,6 +26,7 @@
 #include "session/batch.h"
 #include "session/picture_file.h"
 #include "session/record.h"
+#include "session/scene_times.h"
 #include "session/session.h"
 
 namespace relevo::cli {
@@ -192,7 +193,8 @@ void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.format.named(arguments.output);
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
     const session::PictureFormat format = arguments.format.picture();
-    const auto [scene, compared] = wanted(arguments);
+    auto [scene, compared] = wanted(arguments);
+    session::SceneTimes().fit_map(scene);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");
     image::check_encoding(output, encoding,
@@ -224,12 +226,19 @@ void capture(const Arguments& arguments) {
     const session::SceneIn scene_in = session::scene_in(output, hashed);
     const bool sidecar =
         arguments.sidecar || arguments.audit || scene_in == session::SceneIn::Sidecar;
+    const std::vector<std::filesystem::path> beside = session::files_beside(scene, output);
+    if (arguments.format.is_standard_output(arguments.output) && !beside.empty())
+        bad_usage(
+            "-o -: the place of a map is in a file next to it; name a file, or add --format tif");
     if (arguments.format.is_standard_output(arguments.output) && (sidecar || arguments.watch))
         bad_usage(
             "-o -: --sidecar, --audit, --watch and scenes that are too long for the format "
             "need a file; name one");
     OutputFile* const sidecar_file =
         open(sidecar ? session::sidecar_to_write(output).string() : "", "--sidecar");
+    std::vector<OutputFile*> beside_files;
+    for (const std::filesystem::path& path : beside)
+        beside_files.push_back(open(path.string(), "--ortho"));
 
     session::Options options{.device = arguments.device,
                              .radiance = linear,
@@ -263,6 +272,8 @@ void capture(const Arguments& arguments) {
     if (picture) check_shows_ground(arguments, session);
     session::write_picture(session, picture, picture_file, metadata, encoding);
     if (!picture) check_shows_ground(arguments, session);
+    if (const auto where = session::georeference_of(session))
+        session::write_beside(beside_files, *where);
     timings.add("write", milliseconds_since(write_began));
     for (const std::string& note : session.stamp_notes())
         log::info(note);

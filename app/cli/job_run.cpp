@@ -65,8 +65,10 @@ void JobRun::read(const JobArguments& arguments) {
             trusted.check_names(scene);
             return times.motion_ground(scene);
         });
-    for (scene::Shot& shot : drawn_up.shots)
+    for (scene::Shot& shot : drawn_up.shots) {
         trusted.keep_folders(shot.scene.effects);
+        times.fit_map(shot.scene);
+    }
     trusted.tell();
     warn_of_skipped(drawn_up.left_out);
     shots = std::move(drawn_up.shots);

@@ -21,6 +21,7 @@
 #include "scene/job.h"
 #include "session/batch.h"
 #include "session/made.h"
+#include "session/picture_file.h"
 #include "session/record.h"
 #include "session/scene_inputs.h"
 
@@ -135,8 +136,8 @@ class Run {
         std::vector<fs::path> outputs;
         for (const scene::Shot& shot : shots_) {
             inputs_.add_to(files_, shot.scene);
-            outputs.push_back(shot.output);
-            if (has_sidecar(shot)) outputs.push_back(session::sidecar_of(shot.output));
+            for (const fs::path& path : files_of(shot))
+                outputs.push_back(path);
         }
         files_.check_planned(outputs, "run");
     }
@@ -145,12 +146,20 @@ class Run {
         return wants_sidecar() || beside_.contains(shot.output);
     }
 
+    /// The files of a picture.
+    std::vector<fs::path> files_of(const scene::Shot& shot) const {
+        std::vector<fs::path> files{shot.output};
+        if (has_sidecar(shot)) files.push_back(session::sidecar_of(shot.output));
+        for (const fs::path& path : session::files_beside(shot.scene, shot.output))
+            files.push_back(path);
+        return files;
+    }
+
     /// @returns why the pictures cannot be made because files have their names; empty if they can
     std::string what_is_in_the_way() {
         std::string first;
         for (const scene::Shot& shot : shots_) {
-            std::vector<fs::path> names{shot.output};
-            if (has_sidecar(shot)) names.push_back(session::sidecar_of(shot.output));
+            const std::vector<fs::path> names = files_of(shot);
             const auto taken = std::ranges::find_if(names, [](const fs::path& name) {
                 std::error_code missing;
                 return fs::exists(fs::symlink_status(name, missing));

@@ -96,12 +96,23 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     if (values.has("--fov") && values.has("--focal-length"))
         bad_usage("--fov and --focal-length exclude each other; use one");
     values.apply_to(result);
+    check_map();
     apply_stamps_to(result.stamps);
     if (!size.empty()) {
+        result.resolution = 0;
         const glm::ivec2 sides = parse_size(size);
         result.width_px = sides.x;
         result.height_px = sides.y;
     }
+}
+
+void SceneArguments::check_map() const {
+    if (values.has("--resolution") && !size.empty())
+        bad_usage("--resolution and --size exclude each other; use one");
+    if (values.has("--ortho") && view.any())
+        bad_usage(
+            "--ortho and the camera of --view, --eye, --look-at, --heading or --pitch exclude each "
+            "other; --view top is a picture from above that has a camera");
 }
 
 void SceneArguments::apply_stamps_to(scene::Stamps& result) const {

@@ -42,6 +42,8 @@ struct SceneArguments {
     scene::Scene scene() const;
 
   private:
+    /// @throws Error (Usage) for options that exclude each other
+    void check_map() const;
     void apply_stamps_to(scene::Stamps& result) const;
 };
 

@@ -151,6 +151,10 @@ void ViewArguments::add_to(CLI::App& verb) {
         ->group("View");
 }
 
+bool ViewArguments::any() const {
+    return !view.empty() || !eye.empty() || !look_at.empty() || heading_deg || pitch_deg;
+}
+
 void ViewArguments::apply_to(scene::Scene& scene) const {
     scene::View& result = scene.view;
     if (!view.empty() && !eye.empty()) bad_usage("--view and --eye exclude each other; use one");

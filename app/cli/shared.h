@@ -81,6 +81,7 @@ struct ViewArguments {
     std::optional<double> heading_deg, pitch_deg;
 
     void add_to(CLI::App& verb);
+    bool any() const;  ///< whether one is given
     /// Puts what was given in the place of what a scene says. @throws Error (Usage)
     void apply_to(scene::Scene& scene) const;
 };

@@ -211,12 +211,13 @@ void add_time(Command& command, const scene::TimeSpec& time) {
 
 /// The rest of a scene, for any verb that draws it.
 void add_scene(Command& command, const scene::Scene& scene) {
-    add_view(command, scene.view);
+    if (!scene.ortho) add_view(command, scene.view);
     add_stamps(command, scene.stamps);
     add_options(command, scene);
     if (scene.overlay) add_overlay(command, *scene.overlay);
     add_effects(command, scene.effects);
-    command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
+    if (!scene.ortho || scene.resolution == 0)
+        command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
 }
 
 /// What moves: --motion and its options.

@@ -56,7 +56,10 @@ void ExportSheet::size_fields(glm::vec2 window_px) {
     }
     if (ImGui::InputInt2("Pixels", &size_px_.x))
         size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
-    ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
+    bool is_map = is_map_.value_or(false);
+    if (ImGui::Checkbox("Map: all of the DEM from above, with georeference", &is_map))
+        is_map_ = is_map;
+    if (!is_map) ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
 }
 
 void ExportSheet::format_fields() {
@@ -101,6 +104,8 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.samples = samples_;
     order.scene.transparent = is_transparent_ && format.has_alpha;
     order.scene.stamps = stamps_.value_or(scene.stamps);
+    order.scene.ortho = is_map_.value_or(scene.ortho);
+    order.scene.resolution = 0;  // the sheet has a size
     order.encoding.bits = format.bits;
     if (format.has_quality) order.encoding.quality = quality_;
     const std::string dem = std::filesystem::path(scene.dems.front()).stem().string();
@@ -139,6 +144,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
     if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushItemWidth(-4 * line);
+        if (!is_map_) is_map_ = scene.ortho;
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);

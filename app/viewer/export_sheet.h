@@ -43,6 +43,7 @@ class ExportSheet {
     glm::ivec2 size_px_{1920, 1080};
     int format_ = 0, samples_ = 4, quality_ = image::kQuality;
     std::optional<scene::Stamps> stamps_;  // nullopt: the scene's
+    std::optional<bool> is_map_;           // the same
     std::string name_ = "{dem}_{time:%Y%m%dT%H%M}";
     std::optional<PictureOrder> order_;
 };

@@ -10,6 +10,7 @@
 #include "base/files_in_use.h"
 #include "base/text.h"
 #include "dem/files_of.h"
+#include "scene/map_view.h"
 #include "session/picture_file.h"
 #include "session/record.h"
 #include "viewer/document.h"
@@ -56,7 +57,8 @@ void PictureExport::run() {
 }
 
 std::string PictureExport::write() {
-    const scene::Scene& scene = order_.scene;
+    scene::Scene scene = order_.scene;
+    scene::fit_map(scene, dem_->source->grid());
     const std::filesystem::path path = order_.path;
     FilesInUse files;
     dem::add_named(scene.dems, files);
@@ -66,6 +68,9 @@ std::string PictureExport::write() {
         scene_in == session::SceneIn::Sidecar
             ? &files.open_output(session::sidecar_to_write(path), /*overwrite=*/false, "export")
             : nullptr;
+    std::vector<OutputFile*> beside;
+    for (const std::filesystem::path& file_beside : session::files_beside(scene, path))
+        beside.push_back(&files.open_output(file_beside, /*overwrite=*/false, "export"));
     const session::PictureFormat format{.bits = order_.encoding.bits};
     const bool linear = image::holds_linear_light(path);
     const bool in_bands = session::needs_bands(scene, format, linear);
@@ -81,6 +86,7 @@ std::string PictureExport::write() {
                            session::metadata_of(session, inputs, scene_in,
                                                 session::format_text(order_.encoding, format)),
                            order_.encoding);
+    if (const auto where = session::georeference_of(session)) session::write_beside(beside, *where);
     if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
     files.finish_outputs();
     std::string text = fmt::format("{}: picture saved, {} x {}", printable(order_.path),

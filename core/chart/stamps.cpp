@@ -12,6 +12,7 @@ namespace {
 
 constexpr Color kInk{0x202020}, kPanel{0xffffff, 0.82}, kEdge{0x303030};
 constexpr double kLetters = 11, kTitle = 17, kPadding = 8, kMargin = 12, kGap = 6;
+constexpr double kLabelGap = 9;  // around labels of the graticule
 constexpr double kMostBar = 200, kMostOfWidth = 0.4;
 
 /// Words on a panel, a line below the other.
@@ -72,13 +73,39 @@ Drawing north_panel(const glm::dvec2& north) {
     return drawing;
 }
 
+/// All but the labels of the graticule.
+struct Panels {
+    std::vector<Drawing> legends;
+    std::optional<Drawing> title, scale, attribution, lines, north;
+
+    /// @param width_px  of the picture
+    Panels(const Stamps& stamps, double width_px, double unit_px) {
+        for (const Legend& one : stamps.legends)
+            legends.push_back(legend(one));
+        if (!stamps.title.empty()) title = lines_panel({stamps.title}, kTitle, true);
+        if (stamps.scale) scale = scale_panel(*stamps.scale, width_px, unit_px);
+        if (!stamps.attribution.empty())
+            attribution =
+                lines_panel(wrapped(stamps.attribution, 0.85 * kLetters, 0.45 * width_px / unit_px),
+                            0.85 * kLetters, false);
+        if (!stamps.lines.empty()) lines = lines_panel(stamps.lines, kLetters, false);
+        if (stamps.north) north = north_panel(*stamps.north);
+    }
+};
+
+bool overlap(const Rect& a, const Rect& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
+           b.y < a.y + a.height;
+}
+
 enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
 
 /// Gives out the room of a picture, from its corners on.
 class Layout {
   public:
-    explicit Layout(image::Image8& picture)
-        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)) {}
+    /// @param map  that no panel may lie on
+    Layout(image::Image8& picture, const std::optional<Rect>& map)
+        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)), map_(map) {}
 
     double unit_px() const { return unit_px_; }
 
@@ -90,11 +117,19 @@ class Layout {
         const bool right = corner == Corner::TopRight || corner == Corner::BottomRight;
         const bool below = corner == Corner::BottomLeft || corner == Corner::BottomRight;
         const double from = margin + used;
-        const Rect at{std::round(right ? picture_.width - margin - width : margin),
-                      std::round(below ? picture_.height - from - height : from), width, height};
-        if (!is_free(at, 0)) return false;
-        taken_.push_back(at);
+        if (!put(drawing, right ? picture_.width - margin - width : margin,
+                 below ? picture_.height - from - height : from))
+            return false;
         used += height + kGap * unit_px_;
+        return true;
+    }
+
+    /// The same at a place [px].
+    bool put(const Drawing& drawing, double x, double y) {
+        const Rect at{std::round(x), std::round(y), drawing.width() * unit_px_,
+                      drawing.height() * unit_px_};
+        if (!is_free(at, 0) || (map_ && overlap(at, *map_))) return false;
+        taken_.push_back(at);
         paint(drawing, static_cast<int>(at.x), static_cast<int>(at.y), unit_px_, picture_);
         return true;
     }
@@ -104,10 +139,7 @@ class Layout {
         if (at.x < margin_px || at.y < margin_px || at.x + at.width > picture_.width - margin_px ||
             at.y + at.height > picture_.height - margin_px)
             return false;
-        return std::ranges::none_of(taken_, [&](const Rect& other) {
-            return at.x < other.x + other.width && other.x < at.x + at.width &&
-                   at.y < other.y + other.height && other.y < at.y + at.height;
-        });
+        return std::ranges::none_of(taken_, [&](const Rect& other) { return overlap(at, other); });
     }
 
     void take(const Rect& at) { taken_.push_back(at); }
@@ -116,9 +148,61 @@ class Layout {
   private:
     image::Image8& picture_;
     double unit_px_;
+    std::optional<Rect> map_;
     std::array<double, 4> used_{};  // of each corner, upwards or downwards
     std::vector<Rect> taken_;
 };
+
+/// Names what had no room.
+class Missing {
+  public:
+    void note(bool there_was_room, const char* name) {
+        if (!there_was_room) names.emplace_back(name);
+    }
+    std::vector<std::string> names;
+};
+
+void add_to_corners(const Panels& panels, Layout& layout, Missing& missing) {
+    const auto add = [&](const std::optional<Drawing>& drawing, Corner corner, const char* name) {
+        if (drawing) missing.note(layout.add(*drawing, corner), name);
+    };
+    for (const Drawing& one : panels.legends)
+        add(one, Corner::TopRight, "legend");
+    add(panels.title, Corner::TopLeft, "title");
+    add(panels.scale, Corner::BottomLeft, "scale");
+    add(panels.attribution, Corner::BottomRight, "attribution");
+    add(panels.lines, Corner::BottomRight, "date and sun");
+    add(panels.north, Corner::BottomLeft, "north");
+}
+
+void add_around(const Panels& panels, const Rect& map, const image::Image8& picture, Layout& layout,
+                Missing& missing) {
+    const double unit = layout.unit_px(), margin = kMargin * unit, gap = kGap * unit;
+    const auto put = [&](const Drawing& drawing, double x, double y, const char* name) {
+        missing.note(layout.put(drawing, x, y), name);
+    };
+    if (panels.title) put(*panels.title, map.x, margin, "title");
+    double y = map.y;
+    for (const Drawing& one : panels.legends) {
+        put(one, picture.width - margin - one.width() * unit, y, "legend");
+        y += one.height() * unit + gap;
+    }
+    double x = map.x;
+    for (const auto& [drawing, name] :
+         {std::pair(&panels.north, "north"), std::pair(&panels.scale, "scale")}) {
+        if (!*drawing) continue;
+        put(**drawing, x, picture.height - margin - (*drawing)->height() * unit, name);
+        x += (*drawing)->width() * unit + gap;
+    }
+    double from = picture.height - margin;
+    for (const auto& [drawing, name] : {std::pair(&panels.attribution, "attribution"),
+                                        std::pair(&panels.lines, "date and sun")}) {
+        if (!*drawing) continue;
+        from -= (*drawing)->height() * unit;
+        put(**drawing, map.x + map.width - (*drawing)->width() * unit, from, name);
+        from -= gap;
+    }
+}
 
 /// @returns how many labels had no room
 int add_labels(const std::vector<Stamps::Label>& labels, Layout& layout, image::Image8& picture) {
@@ -165,34 +249,44 @@ double stamp_scale(int width_px, int height_px) {
     return std::clamp(std::min(width_px, height_px) / 900.0, 0.8, 16.0);
 }
 
-std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
-                               std::vector<Rect>* taken) {
-    Layout layout(picture);
-    std::vector<std::string> left_out;
-    const auto add = [&](const Drawing& drawing, Corner corner, const char* name) {
-        if (!layout.add(drawing, corner)) left_out.emplace_back(name);
+Margins margins_for(const Stamps& stamps, int width_px, int height_px) {
+    const double unit = stamp_scale(width_px, height_px);
+    const Panels panels(stamps, width_px, unit);
+    const auto height = [](const std::optional<Drawing>& drawing) {
+        return drawing ? drawing->height() : 0.0;
     };
-    for (const Legend& one : stamps.legends)
-        add(legend(one), Corner::TopRight, "legend");
-    if (!stamps.title.empty())
-        add(lines_panel({stamps.title}, kTitle, true), Corner::TopLeft, "title");
-    if (stamps.scale)
-        add(scale_panel(*stamps.scale, picture.width, layout.unit_px()), Corner::BottomLeft,
-            "scale");
-    if (!stamps.attribution.empty())
-        add(lines_panel(wrapped(stamps.attribution, 0.85 * kLetters,
-                                0.45 * picture.width / layout.unit_px()),
-                        0.85 * kLetters, false),
-            Corner::BottomRight, "attribution");
-    if (!stamps.lines.empty())
-        add(lines_panel(stamps.lines, kLetters, false), Corner::BottomRight, "date and sun");
-    if (stamps.north) add(north_panel(*stamps.north), Corner::BottomLeft, "north");
+    double legends = 0, labels = 0;
+    for (const Drawing& one : panels.legends)
+        legends = std::max(legends, one.width() + kGap);
+    for (const Stamps::Label& label : stamps.graticule)
+        labels = std::max(labels, text_width(label.words, kLetters) + kLabelGap);
+    const double right = height(panels.lines) + height(panels.attribution) +
+                         (panels.lines && panels.attribution ? kGap : 0);
+    const double below = std::max({height(panels.north), height(panels.scale), right});
+    const double above = height(panels.title);
+    const auto px = [&](double length) { return static_cast<int>(std::ceil(length * unit)); };
+    return {.left = px(kMargin + labels),
+            .top = px(kMargin + above + (above > 0 ? kGap : 0)),
+            .right = px(kMargin + legends),
+            .bottom = px(kMargin + below + (below > 0 ? kGap : 0) +
+                         (labels > 0 ? kLetters + kLabelGap : 0))};
+}
+
+std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
+                               std::vector<Rect>* taken, const std::optional<Rect>& map) {
+    Layout layout(picture, map);
+    Missing missing;
+    const Panels panels(stamps, picture.width, layout.unit_px());
+    if (map)
+        add_around(panels, *map, picture, layout, missing);
+    else
+        add_to_corners(panels, layout, missing);
     const int labels = add_labels(stamps.graticule, layout, picture);
     if (labels > 0)
-        left_out.push_back(
+        missing.names.push_back(
             fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
     if (taken) *taken = layout.taken();
-    return left_out;
+    return std::move(missing.names);
 }
 
 }  // namespace relevo::chart

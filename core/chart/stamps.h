@@ -42,12 +42,25 @@ ScaleBar scale_bar(double px_per_m, double most_px);
 /// Pixels of a unit of what is stamped: letters are 11 units tall.
 double stamp_scale(int width_px, int height_px);
 
+/// Room around a map [px].
+struct Margins {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// The room that stamps take around a map: title above, legends on the right, the others below.
+/// @param stamps  with a scale, north and the longest label of the graticule, if there will be any
+/// @param width_px, height_px  of the whole picture
+Margins margins_for(const Stamps& stamps, int width_px, int height_px);
+
 /// Puts them on a picture, RGB, each whole and over none of the others.
 /// @param taken  if not null, receives the rectangles where they stand
+/// @param map    where the map is in the picture: they stand around it. nullopt: in the corners of
+///     the picture
 /// @returns what had no room: "title", "legend", "scale", "north", "date and sun", "attribution",
 ///          "2 labels of the graticule"
 /// @throws Error (Failed) as paint()
 std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
-                               std::vector<Rect>* taken = nullptr);
+                               std::vector<Rect>* taken = nullptr,
+                               const std::optional<Rect>& map = std::nullopt);
 
 }  // namespace relevo::chart

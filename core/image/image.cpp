@@ -140,30 +140,14 @@ class EncoderAtWork {
 thread_local const std::string* EncoderAtWork::at_work = nullptr;
 
 template <typename T>
-void check_holds(const OutputFile& file, const Format& format, const Pixels<T>& image) {
+void check_holds(const std::filesystem::path& path, const Format& format, const Pixels<T>& image) {
     if (format.linear != std::is_same_v<T, float>)
-        failed(fmt::format("image: {}: {} holds {}", printable(file.path().string()), format.name,
+        failed(fmt::format("image: {}: {} holds {}", printable(path.string()), format.name,
                            format.linear ? "linear light" : "8-bit sRGB"));
     Encoding encoding{.format = format.ending + 1};
     if constexpr (!std::is_same_v<T, float>) encoding.bits = 8 * sizeof(T);
-    check_encoding(file.path(), encoding,
+    check_encoding(path, encoding,
                    {image.width, image.height, image.channels == 2 || image.channels == 4, false});
-}
-
-/// Writes formats of the module.
-void write_other(OutputFile& file, const Format& format, const Picture& picture,
-                 const Metadata& metadata, const Encoding& encoding) {
-    const FormatsModule& module = formats_module(file.path());
-    std::vector<std::byte> bytes;
-    std::string reason;
-    {
-        const EncoderAtWork at_work(file.path());
-        reason = module.encode(bytes, format.name, picture, metadata,
-                               encoding.quality.value_or(kQuality));
-    }
-    if (!reason.empty())
-        failed(fmt::format("image: {}: {}", printable(file.path().string()), reason));
-    file.write(bytes);
 }
 
 /// A file's bytes, as many of them as a picture may have.
@@ -236,14 +220,30 @@ void load_format(const std::filesystem::path& path) {
             fmt::format("image: {}: {}, or name another format", printable(path.string()), reason));
 }
 
+std::vector<std::byte> encoded(const std::filesystem::path& path, const Picture& picture,
+                               const Metadata& metadata, const Encoding& encoding) {
+    const Format& format = known_format(path, encoding);
+    assert(!is_png(format));
+    std::visit([&](const auto& image) { check_holds(path, format, image); }, picture.pixels);
+    const FormatsModule& module = formats_module(path);
+    std::vector<std::byte> bytes;
+    std::string reason;
+    {
+        const EncoderAtWork at_work(path);
+        reason = module.encode(bytes, format.name, picture, metadata,
+                               encoding.quality.value_or(kQuality));
+    }
+    if (!reason.empty()) failed(fmt::format("image: {}: {}", printable(path.string()), reason));
+    return bytes;
+}
+
 void write(OutputFile& file, const Picture& picture, const Metadata& metadata,
            const Encoding& encoding) {
     const Format& format = known_format(file.path(), encoding);
-    std::visit([&](const auto& image) { check_holds(file, format, image); }, picture.pixels);
+    if (!is_png(format)) return file.write(encoded(file.path(), picture, metadata, encoding));
+    std::visit([&](const auto& image) { check_holds(file.path(), format, image); }, picture.pixels);
     const auto* const deep = std::get_if<Image16>(&picture.pixels);
-    if (!is_png(format))
-        write_other(file, format, picture, metadata, encoding);
-    else if (deep)
+    if (deep)
         write_png(file, *deep, metadata);
     else
         write_png(file, std::get<Image8>(picture.pixels), metadata);

@@ -117,6 +117,11 @@ void write(OutputFile& file, const Picture& picture, const Metadata& metadata = 
            const Encoding& encoding = {});
 void write(OutputFile& file, Image8 image, const Metadata& metadata = {});
 
+/// The bytes that write() would write, of a format other than PNG.
+/// @param path  of the file, for messages, and for the format unless `encoding` names it
+std::vector<std::byte> encoded(const std::filesystem::path& path, const Picture& picture,
+                               const Metadata& metadata, const Encoding& encoding);
+
 /// The same for a path. The file appears under its name only when it is whole; an existing one is
 /// replaced only with `overwrite`.
 /// @throws Error as OutputFile and write

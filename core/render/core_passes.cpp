@@ -146,6 +146,7 @@ class Declaration {
             add(Resource{.name = "instance_direction", .format = RG8});
         }
         if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
+        if (facts_.orthographic) add(Resource{.name = kGroundPlaceTexture, .format = RGBA32F});
         if (facts_.radiance)
             add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});
         if (facts_.radiance && facts_.overlays)
@@ -237,6 +238,7 @@ class Declaration {
                   }};
         if (facts_.varying_targets > 0) pass.colours.push_back({shader::StoredVaryings::kTexture});
         if (facts_.height_steps) pass.colours.push_back({kHeightStepsTexture});
+        if (facts_.orthographic) pass.colours.push_back({kGroundPlaceTexture, kNothing});
         add(std::move(pass));
     }
 
@@ -354,13 +356,18 @@ class Declaration {
     void ground_defines(shader::ProgramRecipe& recipe) const {
         if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         if (facts_.displaced) recipe.defines.push_back({"DISPLACED", ""});
-        if (!facts_.height_steps) return;
-        if (facts_.varying_targets >= kMaxStored)
-            bad_input("render: height_dx_m and height_dy_m: expected varyings of up to " +
-                      std::to_string(4 * (kMaxStored - 1)) + " floats in addition but got " +
-                      std::to_string(facts_.varying_targets) +
-                      " textures of four; switch an effect off");
-        recipe.defines.push_back({kHeightStepsDefine, std::to_string(1 + facts_.varying_targets)});
+        int output = 1 + facts_.varying_targets;
+        const auto store = [&](const char* define, const char* what) {
+            if (output > kMaxStored)
+                bad_input(
+                    fmt::format("render: {}: expected varyings of up to {} floats in addition "
+                                "but got {} textures of four; switch an effect off",
+                                what, 4 * (kMaxStored - (output - facts_.varying_targets)),
+                                facts_.varying_targets));
+            recipe.defines.push_back({define, std::to_string(output++)});
+        };
+        if (facts_.height_steps) store(kHeightStepsDefine, "height_dx_m and height_dy_m");
+        if (facts_.orthographic) store(kOrthographicDefine, "--ortho");
     }
 
     const char* outside_word() const {
@@ -407,6 +414,7 @@ class Declaration {
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
                   .after = {covering_},
                   .body = [](PassContext& frame) {
+                      if (frame.inputs.camera.map) return;  // nothing of them is seen from above
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
                   }};
         if (has_overlay()) pass.colours.push_back({.resource = "overlay", .updates = true});

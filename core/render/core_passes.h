@@ -22,6 +22,11 @@ inline constexpr const char* kOutsideWord = "outside";
 inline constexpr const char* kHeightStepsTexture = "height_steps";
 inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
 
+/// Of a map, whose rays do not tell where ground is: the position of each pixel's ground, from the
+/// geometry to the terrain program, and the define with the number of the output.
+inline constexpr const char* kGroundPlaceTexture = "ground_place";
+inline constexpr const char* kOrthographicDefine = "ORTHOGRAPHIC";
+
 /// What passes of plugins read of the shaded ground, and the define with the number of the output.
 /// Present if a plugin reads it.
 inline constexpr const char* kSurfaceTexture = "surface";
@@ -48,6 +53,7 @@ struct FrameFacts {
     bool displaced = false;              ///< effects displace the ground
     bool software = false;               ///< the device is a software renderer
     bool height_steps = false;           ///< hooks read height_dx_m or height_dy_m
+    bool orthographic = false;           ///< frames are of Camera::map
     int varying_targets = 0;             ///< layers of stored varyings (shader::Stitched)
     std::vector<std::string> natives{};  ///< ids of native effects, in their order
     std::vector<shader::PluginPass> plugin_passes{};

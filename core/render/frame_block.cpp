@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "geo/ellipsoid.h"
+#include "scene/map_view.h"
 #include "sun/daylight.h"
 
 namespace relevo::render {
@@ -29,6 +30,29 @@ glm::dvec4 light_at(const SunLight& sun, double sine) {
             cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
 }
 
+/// Half of the width and of the height of the picture, at view depth 1.
+glm::dvec2 half_picture(const scene::Camera& camera, int width_px, int height_px) {
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const double aspect =
+        camera.map ? camera.map_aspect : static_cast<double>(width_px) / height_px;
+    return {tan_y * aspect, tan_y};
+}
+
+/// Where posts are in clip space, of a map.
+void write_map(const FrameInputs& inputs, int width_px, int height_px, FrameBlock& block) {
+    const scene::MapView& map = *inputs.camera.map;
+    glm::dmat4 part(1.0);
+    if (inputs.part) part = part_matrix(*inputs.part, width_px, height_px);
+    const auto clip = [&](const glm::dvec2& post) {
+        const glm::dvec2 at = 2.0 * map.pixel(post) / map.size_px() - 1.0;
+        return glm::dvec2(part * glm::dvec4(at.x, -at.y, 0, 1));
+    };
+    const glm::dvec2 first = clip({0, 0});
+    const glm::dvec2 column = clip({1, 0}) - first, row = clip({0, 1}) - first;
+    block.map_x = {column.x, row.x, first.x, 0};
+    block.map_y = {column.y, row.y, first.y, 0};
+}
+
 }  // namespace
 
 glm::dmat4 view_matrix(const scene::Camera& camera) {
@@ -43,11 +67,10 @@ glm::dmat4 view_matrix(const scene::Camera& camera) {
 }
 
 glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int height_px) {
-    const double tan_y = std::tan(camera.fov_y_rad / 2);
-    const double tan_x = tan_y * width_px / height_px;
+    const glm::dvec2 half = half_picture(camera, width_px, height_px);
     glm::dmat4 p(0.0);
-    p[0][0] = 1 / tan_x;
-    p[1][1] = 1 / tan_y;
+    p[0][0] = 1 / half.x;
+    p[1][1] = 1 / half.y;
     p[2][3] = 1;
     p[3][2] = kNear_m;
     return p;
@@ -104,15 +127,14 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const scene::Camera& camera = inputs.camera;
     const glm::dvec3 right = cross(camera.forward, camera.up);
     const glm::ivec2 picture = picture_px(inputs, width_px, height_px);
-    const double tan_y = std::tan(camera.fov_y_rad / 2);
-    const double tan_x = tan_y * picture.x / picture.y;
+    const glm::dvec2 half = half_picture(camera, picture.x, picture.y);
 
     FrameBlock block{};
     glm::dmat4 projection = projection_matrix(camera, picture.x, picture.y);
     if (inputs.part) projection = part_matrix(*inputs.part, width_px, height_px) * projection;
     block.view_projection = glm::mat4(projection * view_matrix(camera));
-    const glm::dvec3 dx = right * (2 * tan_x / picture.x);
-    const glm::dvec3 dy = camera.up * (2 * tan_y / picture.y);
+    const glm::dvec3 dx = right * (2 * half.x / picture.x);
+    const glm::dvec3 dy = camera.up * (2 * half.y / picture.y);
     const glm::dvec2 corner = inputs.part ? inputs.part->corner_px : glm::dvec2(0);
     block.pixel_ray = glm::vec4(
         camera.forward - (0.5 * picture.x - corner.x) * dx - (0.5 * picture.y - corner.y) * dy, 0);
@@ -212,6 +234,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const glm::dvec2 sides_m =
         footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());
     block.footprint_area = glm::vec4(footprint.south_west_m, 1.0 / glm::max(sides_m, 1.0));
+    if (camera.map) write_map(inputs, width_px, height_px, block);
     return block;
 }
 

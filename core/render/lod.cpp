@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "geo/ellipsoid.h"
 #include "render/pages.h"
+#include "scene/map_view.h"
 
 namespace relevo::render {
 namespace {
@@ -51,6 +52,18 @@ bool Box::outside(std::span<const glm::dvec4> planes) const {
 LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height_px,
                            double pixel_error, double exaggeration) {
     LodView view;
+    const double frames = std::max(1.0, double{1} * width_px * height_px / kFrame_px);
+    if (camera.map) {
+        const glm::dvec2 sides = camera.map->size_px();
+        const double pixel =
+            2 * std::tan(camera.fov_y_rad / 2) * std::sqrt(camera.map_aspect / (sides.x * sides.y));
+        view.eye_m = camera.eye_m;
+        view.tolerance = pixel_error * pixel;
+        view.exaggeration = exaggeration;
+        view.sees_beyond_limb = true;
+        view.frames = frames;
+        return view;
+    }
     const double tan_y = std::tan(camera.fov_y_rad / 2);
     const double tan_x = tan_y * width_px / height_px;
     const glm::dvec3 right = cross(camera.forward, camera.up);
@@ -66,7 +79,7 @@ LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height
     view.eye_m = camera.eye_m;
     view.tolerance = pixel_error * 2 * tan_y / height_px;
     view.exaggeration = exaggeration;
-    view.frames = std::max(1.0, double{1} * width_px * height_px / kFrame_px);
+    view.frames = frames;
     return view;
 }
 
@@ -230,7 +243,8 @@ bool TileTree::below_horizon(const Box& box, const LodView& view) const {
 }
 
 bool TileTree::hidden(const Box& box, const LodView& view) const {
-    return box.outside(view.planes) || (view.eye_m && below_horizon(box, view));
+    return box.outside(view.planes) ||
+           (view.eye_m && !view.sees_beyond_limb && below_horizon(box, view));
 }
 
 LodRanges TileTree::ranges(const LodView& view) {

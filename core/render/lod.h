@@ -64,6 +64,8 @@ struct LodView {
     /// view [m]. 0: all posts are drawn.
     double tolerance = 0;
     double exaggeration = 1;
+    /// Ground beyond the Earth's limb is visible too, as in a map.
+    bool sees_beyond_limb = false;
     /// Pictures of usual size that the picture is as large as, at least 1: it may have as many
     /// times the vertices of one.
     double frames = 1;

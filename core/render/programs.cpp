@@ -70,7 +70,9 @@ class Stitcher {
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
              const ProgramOptions& options)
         : core_(core, input.passes, input.instances), input_(input) {
-        facts_.instances = input.instances;
+        // The eye of a map is beyond the range of instances.
+        if (!options.orthographic) facts_.instances = input.instances;
+        facts_.orthographic = options.orthographic;
         facts_.plugin_passes = input.passes;
         facts_.radiance = !options.shown || reads(input, "core.radiance");
         facts_.antialias = options.antialias;
@@ -104,7 +106,7 @@ class Stitcher {
         facts_.varying_targets = 0;
         facts_.height_steps = false;
         const bool steps = reads_height_steps(input_);
-        if (steps || !facts_.instances.empty()) {
+        if (steps || facts_.orthographic || !facts_.instances.empty()) {
             // Other targets follow the varyings, whose number the geometry program determines.
             const CoreFrame without = core_frame(facts_);
             facts_.varying_targets = stitched(geometry_of(without)).varying_targets;

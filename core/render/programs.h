@@ -35,6 +35,7 @@ struct ProgramOptions {
     bool data = false;  ///< keeps the data of PixelData of readback.h
     /// Terrain programs also write what audits read: SunSeen of readback.h.
     bool audited = false;
+    bool orthographic = false;  ///< frames are of Camera::map
     /// For software renderers: slivers clipped at the near plane have heights of NaN, and filters
     /// have exact weights (shaders/lib/filtered.glsl).
     bool software = false;

@@ -85,6 +85,7 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                           .deep = options.deep,
                           .data = options.data,
                           .audited = options.audited,
+                          .orthographic = options.orthographic,
                           .software = info.device.software};
     for (const effect::NativeModule* const module : effects.modules)
         wanted.natives.push_back(module->id());

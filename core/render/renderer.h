@@ -32,6 +32,8 @@ struct RendererOptions {
     bool radiance = true;
     /// Display-referred colours have 16 bits for read_output16(), not 8.
     bool deep = false;
+    /// Frames are of Camera::map; else none is.
+    bool orthographic = false;
     /// Stores the data for read_data().
     bool data = false;
     /// Draws an overlay: Terrain::set_overlay. Not with normals per vertex.

@@ -25,8 +25,9 @@ bool Terrain::sees_ground(const TileSelection& selection, const LodView& view) {
     return std::ranges::any_of(selection.tiles_, [&](const TileSelection::Tile& tile) {
         const double morph_start_m = tile.per_morph_m > 0 ? double{tile.morph_start_m}
                                                           : std::numeric_limits<double>::infinity();
-        return !view.eye_m || is_ground_in_view(pyramid_, tile.draw, tree_.net(tile.draw.key),
-                                                morph_start_m, tree_.displacement(), view);
+        return !view.eye_m || view.sees_beyond_limb ||
+               is_ground_in_view(pyramid_, tile.draw, tree_.net(tile.draw.key), morph_start_m,
+                                 tree_.displacement(), view);
     });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -11,12 +12,18 @@
 /// at its centre, metres, the DEM's exaggeration included.
 namespace relevo::scene {
 
-/// A pinhole camera.
+class MapView;
+
+/// A pinhole camera, or a map's.
 struct Camera {
     glm::dvec3 eye_m{0, 0, 0};
     glm::dvec3 forward{0, 1, 0};  ///< unit
     glm::dvec3 up{0, 0, 1};       ///< unit, orthogonal to forward: the top of the picture
     double fov_y_rad = 0;         ///< angle from the bottom to the top of the picture
+    /// Of an orthographic picture from above, whose points are where the map has them. The rest
+    /// then is a pinhole far above (map_camera()), by which it is shaded. Null: a pinhole.
+    std::shared_ptr<const MapView> map{};
+    double map_aspect = 0;  ///< of a map: width / height of the ground that it shows
 };
 
 inline constexpr double kDefaultFov_deg = 40;

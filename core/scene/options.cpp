@@ -129,6 +129,11 @@ constexpr Option kOptions[] = {
      "Attribution of the data on the picture", Kind::Text, 0, 0, {},
      [](const Scene& s) { return text(s.stamps.attribution_text); },
      [](Scene& s, const Value& v) { s.stamps.attribution_text = printable(v.text); }},
+    {"stamps", "margin", "--margin", "Stamps",
+     "White border around the view in which legends and stamps stand, so that nothing lies on it; part "
+     "of --size", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.stamps.margin); },
+     [](Scene& s, const Value& v) { s.stamps.margin = v.boolean; }},
     {"picture", "exposure", "--exposure", "Options",
      "Brighter than the default by this many stops, EV", Kind::Number, -20, 20, {},
      [](const Scene& s) { return number(s.exposure_ev); },
@@ -151,6 +156,16 @@ constexpr Option kOptions[] = {
      "avif, tif, exr", Kind::Flag, 0, 0, {},
      [](const Scene& s) { return flag(s.transparent); },
      [](Scene& s, const Value& v) { s.transparent = v.boolean; }},
+    {"picture", "ortho", "--ortho", "Options",
+     "Orthographic top view of all of the DEM that lies on its CRS: tif as GeoTIFF, the others with "
+     "a world file; --size is the most that it may have; not in the window", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.ortho); },
+     [](Scene& s, const Value& v) { s.ortho = v.boolean; }},
+    {"picture", "resolution", "--resolution", "Options",
+     "Side of a pixel of --ortho in units of the DEM's CRS, instead of --size", Kind::Number, 1e-9,
+     1e9, {},
+     [](const Scene& s) { return number(s.resolution); },
+     [](Scene& s, const Value& v) { s.resolution = v.number; }},
 };
 // clang-format on
 

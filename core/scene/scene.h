@@ -52,6 +52,7 @@ struct Stamps {
     bool legend = true;  ///< of what colours mean, where there is something to tell
     bool title = false, scale = false, north = false, graticule = false, date = false, sun = false,
          attribution = false;
+    bool margin = false;           ///< they stand around the view, not on it
     std::string title_text;        ///< empty: the DEM's name
     std::string attribution_text;  ///< needed with `attribution`
 
@@ -77,6 +78,8 @@ struct Scene {
     double pixel_error = 4;    ///< render::TerrainOptions
     int samples = 1;           ///< of each pixel, 1 to kMaxSamples
     bool transparent = false;  ///< what shows no ground of the DEM
+    bool ortho = false;        ///< pictures are maps (scene/map_view.h), and `view` is not used
+    double resolution = 0;     ///< of a map: side of a pixel [units of the DEM's CRS]; 0: by size
 };
 
 inline constexpr int kMaxSide_px = 65536;

@@ -50,6 +50,14 @@ image::Image8 drawn_alone(int width_px, int height_px,
     return alone;
 }
 
+void annotate(image::Picture& picture, const std::function<void(image::Image8&)>& draw) {
+    auto* const plain = std::get_if<image::Image8>(&picture.pixels);
+    if (plain && plain->channels == 3) return draw(*plain);
+    if (plain) return lay_over(drawn_alone(plain->width, plain->height, draw), *plain);
+    auto& deep = std::get<image::Image16>(picture.pixels);
+    lay_over(drawn_alone(deep.width, deep.height, draw), deep);
+}
+
 void lay_over(const image::Image8& over, image::Image8& picture) {
     lay_over_any(over, picture);
 }

@@ -16,6 +16,7 @@
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "session/picture_file.h"
 #include "session/picture_maker.h"
 #include "session/record.h"
 #include "session/shot_session.h"
@@ -27,7 +28,9 @@ namespace {
 /// Open output files of a picture, still without their final names.
 struct Outputs {
     OutputFile picture;
-    std::optional<OutputFile> sidecar;
+    std::optional<OutputFile> sidecar{};
+    std::vector<OutputFile> beside{};  ///< of a map: files_beside()
+    std::optional<output::Georeference> where{};
 };
 
 /// @throws Error (BadInput) for a picture that is too large for memory
@@ -76,15 +79,18 @@ class Batch {
         Session& session = session_of_.of(shot);
         const SceneIn scene_is = scene_in(shot.output, shot.scene);
         const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
-        auto outputs = std::make_shared<Outputs>(
-            Outputs{files_.open_alone(shot.output, overwrite, "run"), std::nullopt});
+        auto outputs =
+            std::make_shared<Outputs>(Outputs{files_.open_alone(shot.output, overwrite, "run")});
         if (options_.sidecar || scene_is == SceneIn::Sidecar)
             outputs->sidecar.emplace(
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
+        for (const std::filesystem::path& path : files_beside(shot.scene, shot.output))
+            outputs->beside.push_back(files_.open_alone(path, overwrite, "--ortho"));
         inputs_.record(shot.scene);  // before files are read, to notice later changes
         session.show(shot.scene, shot.utc);
         auto picture = std::make_shared<image::Picture>(session.make_picture());
         if (!options_.allow_blank && !session.shows_ground()) return blank(shot);
+        outputs->where = georeference_of(session);
         std::optional<ShadowAudit> audit;
         if (options_.audit) audit = audit_shadows(session);
         if (audit) options_.audited(shot, *audit);
@@ -104,10 +110,14 @@ class Batch {
     void write_files(const scene::Shot& shot, Outputs& outputs, const image::Metadata& metadata,
                      const image::Picture& picture) {
         try {
-            image::write(outputs.picture, picture, metadata, options_.encoding);
-            std::vector<OutputFile*> both{&outputs.picture};
-            if (outputs.sidecar) both.push_back(&*outputs.sidecar);
-            OutputFile::finish_all(both);
+            write_picture(outputs.picture, picture, metadata, options_.encoding, outputs.where);
+            std::vector<OutputFile*> all;
+            for (OutputFile& file : outputs.beside)
+                all.push_back(&file);
+            if (outputs.where) write_beside(all, *outputs.where);
+            all.push_back(&outputs.picture);
+            if (outputs.sidecar) all.push_back(&*outputs.sidecar);
+            OutputFile::finish_all(all);
             const std::lock_guard lock(mutex_);
             options_.made(shot);
         } catch (...) {

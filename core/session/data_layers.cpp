@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "session/seen_ground.h"
 #include "session/session.h"
 
 namespace relevo::session {
@@ -66,14 +67,9 @@ class Layers {
         if (!std::isfinite(depth_m)) return glm::dvec3(std::nan(""));
         const auto width = static_cast<std::size_t>(view_.size_px.x);
         const auto x = static_cast<double>(pixel % width), y = static_cast<double>(pixel / width);
-        const scene::Camera& camera = view_.camera;
         const glm::dvec2 at(view_.corner_px.x + x + 0.5,
-                            view_.corner_px.y + view_.size_px.y - y - 0.5);
-        const glm::dvec2 off = at - 0.5 * glm::dvec2(view_.picture_px);
-        const double pixel_rad = 2 * std::tan(camera.fov_y_rad / 2) / view_.picture_px.y;
-        return camera.eye_m +
-               depth_m * (camera.forward + off.x * pixel_rad * cross(camera.forward, camera.up) +
-                          off.y * pixel_rad * camera.up);
+                            view_.picture_px.y - view_.corner_px.y - view_.size_px.y + y + 0.5);
+        return SeenGround::at(view_.camera, at, view_.picture_px, depth_m);
     }
 
     image::Channel ids() const {

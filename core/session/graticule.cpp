@@ -114,7 +114,8 @@ Courses draw(const Field& field, double step_deg, const SeenGround& seen, const 
             const auto raise = [&](float& opacity, float to) { opacity = std::max(opacity, to); };
             raise(result.line.at(x, y), kLineOpacity * share(kHalf));
             raise(result.edge.at(x, y), kEdgeOpacity * share(kHalfEdge));
-            if (away_px <= 0.5 && wide >= 1) note(courses, std::lround(value), {x, y});
+            // A line between two rows is half a pixel from both.
+            if (away_px <= 0.501 && wide >= 1) note(courses, std::lround(value), {x, y});
         }
     return courses;
 }

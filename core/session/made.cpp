@@ -1,5 +1,6 @@
 #include "session/made.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "session/picture_file.h"
 #include "session/record.h"
 
 namespace relevo::session {
@@ -108,7 +110,8 @@ OnDisk on_disk(const scene::Shot& shot, const Wanted& wanted) {
     if (sidecar) why = fault_of_sidecar(shot, wanted);
     if (picture && why.empty()) why = fault_of_picture(shot, wanted);
     if (!why.empty()) return {OnDisk::State::Other, std::move(why)};
-    const bool all = picture && sidecar == wanted.sidecar;
+    const bool all = picture && sidecar == wanted.sidecar &&
+                     std::ranges::all_of(files_beside(shot.scene, shot.output), is_there);
     return {all ? OnDisk::State::Whole : OnDisk::State::Part, {}};
 }
 

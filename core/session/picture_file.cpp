@@ -1,10 +1,38 @@
 #include "session/picture_file.h"
 
+#include "scene/map_view.h"
+
 namespace relevo::session {
+
+std::optional<output::Georeference> georeference_of(const Session& session) {
+    const auto& map = session.camera().map;
+    if (!map) return std::nullopt;
+    scene::MapArea area = map->area();
+    const glm::dvec2 margin(session.map_corner_px());
+    area.left -= margin.x * area.pixel_x;
+    area.top += margin.y * area.pixel_y;
+    return output::Georeference{area.geotransform(), map->grid().crs().text()};
+}
+
+std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
+                                                const std::filesystem::path& picture) {
+    if (!scene.ortho) return {};
+    return output::georeference_files(picture);
+}
+
+void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,
+                   const image::Encoding& encoding,
+                   const std::optional<output::Georeference>& where) {
+    const bool is_tiff = encoding.format.empty()
+                             ? output::holds_georeference(file.path())
+                             : output::holds_georeference("picture." + encoding.format);
+    if (!where || !is_tiff) return image::write(file, picture, metadata, encoding);
+    output::write_geotiff(file, image::encoded(file.path(), picture, metadata, encoding), *where);
+}
 
 void write_picture(Session& session, const std::optional<image::Picture>& picture, OutputFile& file,
                    const image::Metadata& metadata, const image::Encoding& encoding) {
-    if (picture) return image::write(file, *picture, metadata, encoding);
+    if (picture) return write_picture(file, *picture, metadata, encoding, georeference_of(session));
     const scene::Scene& scene = session.scene();
     image::BandWriter writer(
         file,
@@ -12,6 +40,13 @@ void write_picture(Session& session, const std::optional<image::Picture>& pictur
         metadata, encoding);
     session.make_bands([&](const image::Picture& band) { writer.write(band); });
     writer.end();
+}
+
+void write_beside(const std::vector<OutputFile*>& beside, const output::Georeference& where) {
+    if (beside.empty()) return;
+    const std::vector<std::string> texts = output::georeference_texts(where);
+    for (std::size_t i = 0; i < beside.size(); ++i)
+        beside[i]->write(texts[i]);
 }
 
 }  // namespace relevo::session

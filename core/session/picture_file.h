@@ -1,18 +1,39 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <vector>
 
+#include "base/files_in_use.h"
 #include "base/output_file.h"
 #include "image/image.h"
+#include "output/georeference.h"
 #include "session/session.h"
 
 namespace relevo::session {
 
+/// Where a session's picture lies; nullopt unless it is a map (scene::Scene::ortho).
+std::optional<output::Georeference> georeference_of(const Session& session);
+
+/// The files beside a scene's picture that say where it lies: output::georeference_files() of a
+/// map, else none.
+std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
+                                                const std::filesystem::path& picture);
+
+/// Writes a picture to a file, all of it but finish(). @param where  of a map
+/// @throws Error as image::write() and output::write_geotiff()
+void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,
+                   const image::Encoding& encoding,
+                   const std::optional<output::Georeference>& where);
+
 /// Writes a session's picture to a file, all of it but finish().
 /// @param picture  of Session::make_picture(); nullopt: it is too large for memory (needs_bands())
 ///     and is drawn here, band by band
-/// @throws Error as image::write() and Session::make_bands()
+/// @throws Error as write_picture() and Session::make_bands()
 void write_picture(Session& session, const std::optional<image::Picture>& picture, OutputFile& file,
                    const image::Metadata& metadata, const image::Encoding& encoding);
+
+/// Writes the files of files_beside(), all but finish(). @param beside  the same, open
+void write_beside(const std::vector<OutputFile*>& beside, const output::Georeference& where);
 
 }  // namespace relevo::session

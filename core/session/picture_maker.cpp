@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "session/annotations.h"
+#include "session/image_parts.h"
 #include "session/sample_sum.h"
 #include "session/stamps.h"
 
@@ -28,21 +29,8 @@ constexpr int kMargin_px = 256;
 template <typename Pixels>
 Pixels cropped(const Pixels& frame, const PictureTile& tile) {
     if (tile.rect == tile.frame) return frame;
-    Pixels cut(tile.rect.size.x, tile.rect.size.y, frame.channels);
     const glm::ivec2 from = tile.rect.corner - tile.frame.corner;
-    const int top = tile.frame.size.y - from.y - tile.rect.size.y;
-    for (int y = 0; y < cut.height; ++y)
-        std::copy_n(frame.row(top + y) + from.x * frame.channels, cut.width * cut.channels,
-                    cut.row(y));
-    return cut;
-}
-
-/// Puts an image into a larger one. @param x, y  of its upper left corner
-template <typename Pixels>
-void put(const Pixels& part, int x, int y, Pixels& whole) {
-    for (int row = 0; row < part.height; ++row)
-        std::copy_n(part.row(row), part.width * part.channels,
-                    whole.row(y + row) + x * whole.channels);
+    return cut_out(frame, {from.x, tile.frame.size.y - from.y - tile.rect.size.y}, tile.rect.size);
 }
 
 /// Puts a picture of the same kind into a larger one, which is made at the first call.
@@ -53,7 +41,7 @@ void put(const image::Picture& part, const glm::ivec2& size, int x, int y, image
             const auto* const there = std::get_if<Pixels>(&whole.pixels);
             if (!there || there->values.empty())
                 whole.pixels = Pixels(size.x, size.y, pixels.channels);
-            put(pixels, x, y, std::get<Pixels>(whole.pixels));
+            session::put(pixels, glm::ivec2(x, y), std::get<Pixels>(whole.pixels));
         },
         part.pixels);
 }
@@ -75,7 +63,8 @@ RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
     const int samples = samples_of(scene);
     return {.deep = samples > 1 || format.bits > 8,
             .antialias = samples < kEnoughSamples,
-            .data = !format.layers.empty()};
+            .data = !format.layers.empty(),
+            .orthographic = scene.ortho};
 }
 
 int samples_of(const scene::Scene& scene) {
@@ -102,6 +91,8 @@ PictureMaker::PictureMaker(Session::Impl& impl)
       format_(*impl.options.format),
       linear_(impl.options.radiance),
       picture_px_(scene_.width_px, scene_.height_px) {
+    if (scene_.ortho && std::ranges::find(format_.layers, DataLayer::Depth) != format_.layers.end())
+        bad_input("--layers: depth: a map of --ortho has no eye to measure from; name the others");
     const int max_side_px = impl.context->info().max_picture_size;
     if (fits(scene_, format_, max_side_px)) {
         const PictureRect all{{0, 0}, picture_px_};
@@ -264,7 +255,8 @@ void PictureMaker::bands(const std::function<void(const image::Picture&)>& take)
 }
 
 image::Picture Session::Impl::make_picture(const Session& session, render::PassTimes* times) {
-    PictureMaker maker(*this);
+    stamp_notes.clear();
+    map_corner_px = {0, 0};
     const bool annotated =
         !options.radiance && (has_marks() || state.scene.stamps != scene::Stamps() ||
                               (state.scene.stamps.legend && !session.legends().empty()));
@@ -274,27 +266,18 @@ image::Picture Session::Impl::make_picture(const Session& session, render::PassT
             fmt::format("stamps, legends and names need sides of at most {} px; add "
                         "--no-legend, or use a smaller --size",
                         kMostAnnotated_px));
+    if (annotated && state.scene.stamps.margin) return make_with_margin(session, times);
+    PictureMaker maker(*this);
     if (maker.is_tiled() && annotated) maker.keep_depths();
     image::Picture picture = maker.whole(times);
     picture_shows_ground = maker.shows_ground();
-    stamp_notes.clear();
     if (!annotated) return picture;
     const std::vector<float>* const depths_m = maker.is_tiled() ? &maker.depths_m() : nullptr;
-    const auto annotate = [&](image::Image8& on) {
+    annotate(picture, [&](image::Image8& on) {
         std::vector<chart::Rect> taken;
         stamp_notes = add_stamps(session, session.legends(), on, taken, depths_m);
         draw_marks_on(on, taken, depths_m);
-    };
-    auto* const plain = std::get_if<image::Image8>(&picture.pixels);
-    if (plain && plain->channels == 3) {
-        annotate(*plain);
-        return picture;
-    }
-    const image::Image8 over = drawn_alone(state.scene.width_px, state.scene.height_px, annotate);
-    if (plain)
-        lay_over(over, *plain);
-    else
-        lay_over(over, std::get<image::Image16>(picture.pixels));
+    });
     return picture;
 }
 

@@ -13,9 +13,10 @@ namespace relevo::session {
 /// What the pictures of a scene need of a session's renderers: sessions can be shared by scenes
 /// that need the same.
 struct RendererNeeds {
-    bool deep = false;      ///< colours of 16 bits, of which pictures are made
-    bool antialias = true;  ///< silhouettes are smoothed in each frame
-    bool data = false;      ///< layers
+    bool deep = false;          ///< colours of 16 bits, of which pictures are made
+    bool antialias = true;      ///< silhouettes are smoothed in each frame
+    bool data = false;          ///< layers
+    bool orthographic = false;  ///< maps
     bool operator==(const RendererNeeds&) const = default;
 };
 RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format);

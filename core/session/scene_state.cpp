@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "geo/format.h"
+#include "scene/map_view.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
 #include "session/stamps.h"
@@ -48,12 +49,22 @@ void SceneState::set_time(sun::Instant utc) {
 }
 
 sun::Instant SceneState::default_time() {
-    const scene::DefaultTime chosen = day_->time(scene::side_of_deg(inputs.camera));
+    const scene::DefaultTime chosen =
+        day_->time(is_map() ? scene::kMapSide_deg : scene::side_of_deg(inputs.camera));
     time_reason_ = chosen.reason();
     return chosen.utc;
 }
 
 void SceneState::look(scene::View view, const DrawnShape& shape) {
+    if (is_map()) {
+        const dem::Grid& grid = dem_->source->grid();
+        framing_.reset();
+        scene.view = view;
+        inputs.camera = scene::map_camera(
+            grid, ground_->frame,
+            scene::map_area(grid, scene.resolution, {scene.width_px, scene.height_px}));
+        return;
+    }
     if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
         framing_ = scene::frame_ground(view.orbit, to_show_.net, *day_);
         view.orbit = framing_->orbit;

@@ -28,7 +28,9 @@ struct DrawnShape {
 /// A scene with its DEM, and the camera and sun derived from them. Needs no device.
 class SceneState {
   public:
-    explicit SceneState(scene::Scene given) : scene(std::move(given)) {}
+    /// @param draws_maps  scenes with Scene::ortho are drawn as maps; else by their view
+    SceneState(scene::Scene given, bool draws_maps)
+        : scene(std::move(given)), draws_maps_(draws_maps) {}
 
     /// Sets or replaces the DEM.
     void take_dem(std::shared_ptr<const LoadedDem> dem);
@@ -66,6 +68,8 @@ class SceneState {
     /// The DEM's centre at its middle height.
     geo::Geodetic middle() const;
 
+    bool is_map() const { return draws_maps_ && scene.ortho; }
+
     scene::Scene scene;
     render::FrameInputs inputs;  ///< of the next frame
     /// Least height above the drawn ground for eyes with an absolute height [m]; nullopt:
@@ -86,6 +90,7 @@ class SceneState {
     /// Points of the ground as displaced by effects; the same for every camera.
     const std::vector<glm::dvec3>& moved_points(const render::Displacement& displacement);
 
+    bool draws_maps_;
     std::shared_ptr<const LoadedDem> dem_;
     std::optional<render::Ground> ground_;
     sun::Instant utc_;

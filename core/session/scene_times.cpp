@@ -10,6 +10,7 @@
 #include "render/ground.h"
 #include "scene/default_time.h"
 #include "scene/framing.h"
+#include "scene/map_view.h"
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/event_time.h"
@@ -124,6 +125,7 @@ SceneTimes::Shown& SceneTimes::shown_of(const scene::Scene& scene) {
 
 scene::View SceneTimes::settled_view(const scene::Scene& scene) {
     scene::View view = scene.view;
+    if (scene.ortho) return view;  // which has none
     if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
     auto& known = dem_of(scene).shown;
     const auto found = known.find(scene.exaggeration);
@@ -141,6 +143,7 @@ sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
     const auto heights = loaded(scene);
     const render::Ground ground = ground_of(*heights);
     const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
+    if (scene.ortho) return day.time(scene::kMapSide_deg).utc;
     const render::GroundToShow to_show =
         render::ground_to_show(heights->field, ground, scene.exaggeration);
     const scene::Camera camera = scene::make_camera(
@@ -148,6 +151,10 @@ sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
         ground.frame, {to_show.points, {}}, static_cast<double>(scene.width_px) / scene.height_px,
         scene.exaggeration);
     return day.time(scene::side_of_deg(camera)).utc;
+}
+
+void SceneTimes::fit_map(scene::Scene& scene) {
+    if (scene.ortho || scene.resolution > 0) scene::fit_map(scene, dem_of(scene).open().grid());
 }
 
 scene::MotionGround SceneTimes::motion_ground(const scene::Scene& scene) {

@@ -45,6 +45,10 @@ class SceneTimes {
     /// The scene's view with the default angles of a session where none are given.
     scene::View settled_view(const scene::Scene& scene);
 
+    /// scene::fit_map(): sets the size of a scene whose picture is a map.
+    /// @throws Error (BadInput) as that, and as dem::Source::open()
+    void fit_map(scene::Scene& scene);
+
     /// The scene's ground, for cameras that move over it. Keeps the DEM alive; must not outlive
     /// this.
     scene::MotionGround motion_ground(const scene::Scene& scene);

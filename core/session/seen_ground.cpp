@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "scene/map_view.h"
+
 namespace relevo::session {
 
 SeenGround::SeenGround(const scene::Camera& camera, int width_px, int height_px,
@@ -15,17 +17,39 @@ SeenGround::SeenGround(const scene::Camera& camera, int width_px, int height_px,
       width_px_(width_px),
       height_px_(height_px),
       focal_px_(0.5 * height_px / std::tan(camera.fov_y_rad / 2)),
-      depths_m_(std::move(depths_m)) {}
+      depths_m_(std::move(depths_m)) {
+    if (camera.map) map_px_per_m_ = 1 / camera.map->pixel_m(0.5 * camera.map->size_px()).x;
+}
+
+double SeenGround::px_per_m(double depth_m) const {
+    return camera_.map ? map_px_per_m_ : focal_px_ / depth_m;
+}
+
+glm::dvec3 SeenGround::at(const scene::Camera& camera, const glm::dvec2& position,
+                          const glm::dvec2& picture_px, double depth_m) {
+    if (camera.map) {
+        const glm::dvec3 base = camera.map->point_m(position, 0), up = camera.map->up(position);
+        const double base_m = dot(base - camera.eye_m, camera.forward);
+        return base + (depth_m - base_m) / dot(up, camera.forward) * up;
+    }
+    const double pixel_rad = 2 * std::tan(camera.fov_y_rad / 2) / picture_px.y;
+    const glm::dvec2 off = position - 0.5 * picture_px;
+    return camera.eye_m +
+           depth_m * (camera.forward + off.x * pixel_rad * cross(camera.forward, camera.up) -
+                      off.y * pixel_rad * camera.up);
+}
 
 std::optional<glm::dvec3> SeenGround::point(int x, int y) const {
     const double depth = depth_m(x, y);
     if (!std::isfinite(depth)) return std::nullopt;
-    return camera_.eye_m +
-           depth * (camera_.forward + (x + 0.5 - 0.5 * width_px_) / focal_px_ * right_ -
-                    (y + 0.5 - 0.5 * height_px_) / focal_px_ * camera_.up);
+    return at(camera_, {x + 0.5, y + 0.5}, {width_px_, height_px_}, depth);
 }
 
 std::optional<glm::dvec2> SeenGround::project(const glm::dvec3& point_m) const {
+    if (camera_.map) {
+        const glm::dvec2 found = camera_.map->pixel_of(point_m);
+        return std::isfinite(found.x + found.y) ? std::optional(found) : std::nullopt;
+    }
     const glm::dvec3 way = point_m - camera_.eye_m;
     const double depth = dot(way, camera_.forward);
     if (!(depth > 0)) return std::nullopt;
@@ -34,6 +58,12 @@ std::optional<glm::dvec2> SeenGround::project(const glm::dvec3& point_m) const {
 }
 
 glm::dvec2 SeenGround::moved(const glm::dvec3& point_m, const glm::dvec3& direction) const {
+    if (camera_.map) {
+        const double pixel_m = 1 / map_px_per_m_;
+        return (camera_.map->pixel_of(point_m + pixel_m * direction) -
+                camera_.map->pixel_of(point_m)) *
+               map_px_per_m_;
+    }
     const glm::dvec3 way = point_m - camera_.eye_m;
     const double depth = dot(way, camera_.forward), ahead = dot(direction, camera_.forward);
     const glm::dvec2 at(dot(way, right_), -dot(way, camera_.up));

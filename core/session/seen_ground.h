@@ -12,7 +12,7 @@ namespace relevo::session {
 
 /// Ground in an image, from its depth buffer. Pixels are counted from the upper left corner; image
 /// positions are in pixels, with the first pixel's centre at (0.5, 0.5). Points are in the camera's
-/// local frame [m].
+/// local frame [m]. Of a map, too (Camera::map), where the scale does not depend on depth.
 class SeenGround {
   public:
     /// @param depths_m  along the optical axis, as render::Renderer::read_depths()
@@ -35,7 +35,11 @@ class SeenGround {
     /// Image motion per metre of a point's motion along `direction`: pixels/m, right and down.
     glm::dvec2 moved(const glm::dvec3& point_m, const glm::dvec3& direction) const;
     /// Scale across the view at a depth [pixels/m].
-    double px_per_m(double depth_m) const { return focal_px_ / depth_m; }
+    double px_per_m(double depth_m) const;
+
+    /// The point at an image position and a depth, in the camera's local frame [m].
+    static glm::dvec3 at(const scene::Camera& camera, const glm::dvec2& position,
+                         const glm::dvec2& picture_px, double depth_m);
 
     /// The pixel with ground nearest to the image's centre; nullopt without ground.
     std::optional<glm::ivec2> middle() const;
@@ -47,6 +51,7 @@ class SeenGround {
     glm::dvec3 right_;
     int width_px_, height_px_;
     double focal_px_;
+    double map_px_per_m_ = 0;  // of a map, along its rows in the middle
     std::vector<float> depths_m_;
 };
 

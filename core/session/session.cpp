@@ -215,6 +215,10 @@ const gl::Texture& Session::depth() const {
     return impl_->drawn->renderer().depth();
 }
 
+glm::ivec2 Session::map_corner_px() const {
+    return impl_->map_corner_px;
+}
+
 bool Session::shows_ground() const {
     if (impl_->picture_shows_ground) return *impl_->picture_shows_ground;
     std::vector<float> depths_m;

@@ -197,6 +197,9 @@ class Session {
     /// @param times  as draw(), of the first frame
     /// @throws Error as draw() and picture(); (BadInput) where it is too large for memory
     image::Picture make_picture(render::PassTimes* times = nullptr);
+    /// Where the upper left corner of the view is in the last make_picture() [px]: not (0, 0) of
+    /// one with a margin.
+    glm::ivec2 map_corner_px() const;
     /// The same of a picture that is too large for memory, in bands of rows from the top.
     /// @param take  called with each band
     /// @throws Error (BadInput) for marks, stamps and layers, which need the whole

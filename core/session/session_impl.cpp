@@ -31,7 +31,7 @@ std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool allow_prev
 }  // namespace
 
 Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
-    : options(std::move(o)), state(std::move(given)) {
+    : options(std::move(o)), state(std::move(given), options.format.has_value()) {
     const scene::Scene& scene = state.scene;
     if (scene.overlay) {
         add_files(*scene.overlay, files);
@@ -99,6 +99,7 @@ render::RendererOptions Session::Impl::renderer_options() {
             .antialias = needs.antialias,
             .radiance = options.radiance,
             .deep = needs.deep,
+            .orthographic = needs.orthographic,
             .data = needs.data,
             .overlay_raster = has_overlay_raster(),
             .outside = !state.scene.view.eye,
@@ -191,6 +192,8 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     scene.refraction = next.refraction;
     scene.samples = next.samples;
     scene.transparent = next.transparent;
+    scene.ortho = next.ortho;
+    scene.resolution = next.resolution;
     part.reset();
     const bool other_shape = next.exaggeration != scene.exaggeration;
     scene.exaggeration = next.exaggeration;

@@ -57,6 +57,7 @@ struct Session::Impl {
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
     std::optional<render::PicturePart> part;   // of the scene's picture, that frames show
+    glm::ivec2 map_corner_px{0, 0};            // Session::map_corner_px()
     std::optional<bool> picture_shows_ground;  // of the last picture in several frames
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
@@ -102,6 +103,8 @@ struct Session::Impl {
     /// Size of frames [px]: that of the scene, or less if its picture is drawn in tiles.
     glm::ivec2 frame_px() const;
     image::Picture make_picture(const Session& session, render::PassTimes* times);
+    /// The same with the scene's stamps in a margin around the picture (Stamps::margin).
+    image::Picture make_with_margin(const Session& session, render::PassTimes* times);
     /// @param has_legends  which are not drawn; stamp_notes says so
     void make_bands(const std::function<void(const image::Picture&)>& take, bool has_legends);
     FaultyPicture faulty(const ActiveEffects& shown, int count);

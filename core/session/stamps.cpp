@@ -8,7 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "base/text.h"
+#include "scene/map_view.h"
 #include "session/graticule.h"
+#include "session/image_parts.h"
 #include "session/seen_ground.h"
 #include "sun/zone.h"
 #include "sun/zone_of_place.h"
@@ -44,8 +46,20 @@ class Stamper {
         seen_.emplace(of_.camera, picture.width, picture.height, std::move(stamped.depths_m));
         middle_ = seen_->middle();
     }
+    /// For planned().
+    explicit Stamper(const Stamped& stamped) : of_(stamped), wanted_(stamped.scene.stamps) {}
 
-    chart::Stamps stamps(const std::vector<chart::Legend>& legends) {
+    /// As planned_stamps().
+    chart::Stamps planned(const std::vector<chart::Legend>& legends) {
+        chart::Stamps stamps = words(legends);
+        if (wanted_.scale)
+            stamps.scale = {1, "across the view, at the picture's middle, 000 km away"};
+        if (wanted_.north) stamps.north = glm::dvec2(0, -1);
+        if (wanted_.graticule) stamps.graticule.push_back({.words = "000°00'00\"W"});
+        return stamps;
+    }
+
+    chart::Stamps words(const std::vector<chart::Legend>& legends) {
         chart::Stamps stamps;
         if (wanted_.legend) stamps.legends = legends;
         if (wanted_.title)
@@ -53,6 +67,11 @@ class Stamper {
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
         if (wanted_.date) add_line("", of_.clock, "date", stamps);
         if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);
+        return stamps;
+    }
+
+    chart::Stamps stamps(const std::vector<chart::Legend>& legends) {
+        chart::Stamps stamps = words(legends);
         if (!seen_) return stamps;
         if (!middle_) {
             notes_.emplace_back(
@@ -91,6 +110,9 @@ class Stamper {
 
     chart::Stamps::Scale scale() const {
         const double depth_m = seen_->depth_m(middle_->x, middle_->y);
+        const auto& map = of_.camera.map;
+        if (map && map->grid().crs().is_geographic())  // as wide as long, whatever the latitude
+            return {seen_->px_per_m(depth_m), "from west to east, in the middle"};
         const auto [least_m, most_m] = seen_->depth_range_m();
         if (most_m < (1 + kMostOff) * least_m) return {seen_->px_per_m(depth_m), {}};
         const double off_px = std::hypot(middle_->x + 0.5 - 0.5 * seen_->width_px(),
@@ -152,29 +174,53 @@ std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geo
                        seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);
 }
 
-std::vector<std::string> add_stamps(const Session& session,
-                                    const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture, std::vector<chart::Rect>& taken,
-                                    const std::vector<float>* depths_m) {
+namespace {
+
+/// Without depths.
+Stamped stamped_of(const Session& session) {
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
-    if (needs_depths(wanted) && depths_m) stamped.depths_m = *depths_m;
-    if (needs_depths(wanted) && !depths_m) session.read_depths(stamped.depths_m);
     const std::optional<OverlayTime>& laid = session.overlay_time();
     if (wanted.date)
         stamped.clock =
             laid ? clock_text(*laid, session.scene().time.zone, session.ground().frame.origin())
                  : session.clock_text();
     if (wanted.sun) stamped.sun = laid ? sun_text(*laid) : session.sun_text();
-    return add_stamps(std::move(stamped), legends, picture, taken);
+    return stamped;
+}
+
+}  // namespace
+
+chart::Stamps planned_stamps(const Session& session) {
+    return Stamper(stamped_of(session)).planned(session.legends());
+}
+
+std::vector<std::string> add_stamps(const Session& session,
+                                    const std::vector<chart::Legend>& legends,
+                                    image::Image8& picture, std::vector<chart::Rect>& taken,
+                                    const std::vector<float>* depths_m,
+                                    const std::optional<chart::Rect>& map) {
+    Stamped stamped = stamped_of(session);
+    const bool deep = needs_depths(session.scene().stamps);
+    if (deep && depths_m) stamped.depths_m = *depths_m;
+    if (deep && !depths_m) session.read_depths(stamped.depths_m);
+    return add_stamps(std::move(stamped), legends, picture, taken, map);
 }
 
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture, std::vector<chart::Rect>& taken) {
-    Stamper stamper(stamped, picture);
+                                    image::Image8& picture, std::vector<chart::Rect>& taken,
+                                    const std::optional<chart::Rect>& map) {
+    const chart::Rect all{0, 0, double(picture.width), double(picture.height)};
+    const chart::Rect at = map.value_or(all);
+    const glm::ivec2 corner(at.x, at.y);
+    image::Image8 view = cut_out(picture, corner, glm::ivec2(at.width, at.height));
+    Stamper stamper(stamped, view);
     chart::Stamps stamps = stamper.stamps(legends);
-    stamper.add_graticule(picture, stamps);
-    for (const std::string& name : chart::stamp(stamps, picture, &taken))
+    stamper.add_graticule(view, stamps);
+    put(view, corner, picture);
+    for (chart::Stamps::Label& label : stamps.graticule)
+        label.at_px += glm::dvec2(corner);
+    for (const std::string& name : chart::stamp(stamps, picture, &taken, map))
         stamper.notes_.push_back(
             fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
                         picture.width, picture.height));

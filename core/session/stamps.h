@@ -24,17 +24,25 @@ struct Stamped {
 /// True if stamps depend on the visible ground.
 bool needs_depths(const scene::Stamps& wanted);
 
+/// The stamps of a session's picture before it is drawn, for chart::margins_for(): scale, north and
+/// the labels of a graticule stand for those that there may be.
+chart::Stamps planned_stamps(const Session& session);
+
 /// Draws a scene's stamps on its picture.
 /// @param legends  of the colours in it
 /// @param taken     receives where stamps stand in the picture, without lines of the graticule
 /// @param depths_m  of the picture, if it is not the session's last frame
+/// @param map       the part of the picture that shows the scene; stamps stand around it. nullopt:
+///     all of it
 /// @returns sentences on stamps that were omitted
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
                                     image::Image8& picture, std::vector<chart::Rect>& taken,
-                                    const std::vector<float>* depths_m = nullptr);
+                                    const std::vector<float>* depths_m = nullptr,
+                                    const std::optional<chart::Rect>& map = std::nullopt);
 std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
-                                    image::Image8& picture, std::vector<chart::Rect>& taken);
+                                    image::Image8& picture, std::vector<chart::Rect>& taken,
+                                    const std::optional<chart::Rect>& map = std::nullopt);
 
 /// The eye's position if the sun is described as seen from there, with its height not exaggerated.
 /// nullopt above 100 km, where sun::position() is undefined.

@@ -61,6 +61,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 instance_shadow_maps[3];  // finest first; xyz: from a map's centre to the eye along these axes [m], w: 1 / half of
                               // its side [1/m]
     vec4 instance_shadow_eye;  // xyz: from the eye to where it was when the last map was drawn [m]
+    vec4 map_x;               // of an orthographic picture from above: x in clip space, over w, of a column and row of
+    vec4 map_y;               // the DEM; x: a column, y: a row, z: of (0, 0); and y. All 0 of other pictures
     float instance_shadow_px;     // side of a shadow map of instances
     float instance_shadow_weight; // 1 where there are such maps, else 0
 } frame;

@@ -87,6 +87,42 @@ VertexFrame net_vertex(in vec2 vertex, in float height) {
     return v;
 }
 
+#ifdef ORTHOGRAPHIC
+/// In clip space of a map: where the grid has the vertex, at the depth of its position.
+/// @param post        column and row, not clamped to the DEM
+/// @param position_m  relative to the eye
+vec4 net_on_map(in vec2 post, in vec3 position_m) {
+    precise vec4 clip = frame.view_projection * vec4(position_m, 1.0);
+    precise vec2 place = vec2(dot(frame.map_x.xyz, vec3(post, 1.0)), dot(frame.map_y.xyz, vec3(post, 1.0)));
+    clip.xy = place * clip.w;
+    return clip;
+}
+
+/// Whether the skirt of a vertex leaves the DEM, in x and y. @param vertex  on the DEM, in quads
+bvec2 net_leaves_dem(in vec2 grid, in vec2 vertex) {
+    vec2 post = vec2(net_v.w, net_uv.w) + vertex * net_uuv.w;
+    vec2 last = frame.posts.xy - 1.5;
+    return bvec2(grid.x < 0.0 ? post.x < 0.5 : grid.x > 64.0 && post.x > last.x,
+                 grid.y < 0.0 ? post.y < 0.5 : grid.y > 64.0 && post.y > last.y);
+}
+
+/// Column and row of a vertex on a map. Where its skirt leaves the DEM, the ground reaches to the edge of the
+/// cells, half a post on; between tiles it overlaps by a share of a pixel, for rounding.
+/// @param grid    0..64, and a little more for the skirt
+/// @param vertex  the same on the DEM
+vec2 net_map_post(in vec2 grid, in vec2 vertex) {
+    const float overlap_px = 0.25;
+    vec2 inside = clamp(vertex, vec2(0.0), net_quads());
+    vec2 outwards = sign(grid - clamp(grid, vec2(0.0), vec2(64.0)));
+    vec2 column_px = frame.viewport.xy * vec2(frame.map_x.x, frame.map_y.x);
+    vec2 row_px = frame.viewport.xy * vec2(frame.map_x.y, frame.map_y.y);
+    vec2 side_px = 0.5 * vec2(length(column_px), length(row_px));
+    vec2 reach = min(overlap_px / max(side_px, vec2(1e-6)), vec2(0.5));
+    vec2 post = vec2(net_v.w, net_uv.w) + inside * net_uuv.w;
+    return post + outwards * mix(reach, vec2(0.5), net_leaves_dem(grid, inside));
+}
+#endif
+
 /// In clip space. @param position_m  relative to the eye
 vec4 clipped(in vec3 position_m) {
     precise vec4 clip = frame.view_projection * vec4(position_m, 1.0);

@@ -52,6 +52,45 @@ TEST(Stamps, TheBarIsAsLongAsItsLengthIsInThePicture) {
     }
 }
 
+TEST(Stamps, StandAroundAMapThatLeavesTheMarginsTheyNeed) {
+    Stamps stamps;
+    stamps.title = "Inn valley";
+    stamps.legends = {{.title = "Height", .unit = "m", .ramp = {{{0, {0x0}}, {4000, {0xffffff}}}}},
+                      {.title = "Slope", .unit = "1", .ramp = {{{0, {0x0}}, {1, {0xffffff}}}}}};
+    stamps.scale = Stamps::Scale{0.011, "at the picture's middle"};
+    stamps.north = glm::dvec2(0, -1);
+    stamps.lines = {"2026-06-21 10:12 UTC+02:00", "Sun: azimuth 114"};
+    stamps.attribution = "AW3D30 (JAXA)";
+    for (const glm::ivec2 size : {glm::ivec2(900, 900), {1600, 1000}, {3000, 2400}}) {
+        const Margins margins = margins_for(stamps, size.x, size.y);
+        const Rect map{double(margins.left), double(margins.top),
+                       double(size.x - margins.left - margins.right),
+                       double(size.y - margins.top - margins.bottom)};
+        EXPECT_GT(map.width * map.height, 0.55 * size.x * size.y);
+        image::Image8 picture = grey(size.x, size.y);
+        std::vector<Rect> taken;
+        EXPECT_THAT(stamp(stamps, picture, &taken, map), IsEmpty());
+        EXPECT_EQ(taken.size(), 7u);
+        int changed = 0, around = 0;
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const bool inside =
+                    x >= map.x && x < map.x + map.width && y >= map.y && y < map.y + map.height;
+                (inside ? changed : around) += picture.at(x, y, 0) != 128;
+            }
+        EXPECT_EQ(changed, 0);
+        EXPECT_GT(around, 1000);
+    }
+}
+
+TEST(Stamps, AMapWithoutStampsHasANarrowMargin) {
+    const Margins margins = margins_for({}, 900, 900);
+    EXPECT_EQ(margins.left, 12);
+    EXPECT_EQ(margins.top, 12);
+    EXPECT_EQ(margins.right, 12);
+    EXPECT_EQ(margins.bottom, 12);
+}
+
 TEST(Stamps, TheArrowAndItsLetterPointNorth) {
     for (const glm::dvec2 north : {glm::dvec2(0, -1), {0.6, -0.8}, {-1, 0}, {0.28, 0.96}}) {
         image::Image8 picture = grey(900, 900);

@@ -43,6 +43,8 @@ const std::map<std::string, render::ProgramOptions> kOptions = {
     {"audit of radiance and overlay", {.overlay_raster = true, .audited = true}},
     {"vertex normals", {.vertex_normals = true, .shown = true, .natives = kNatives}},
     {"radiance, vertex normals", {.vertex_normals = true}},
+    {"map", {.shown = true, .orthographic = true, .natives = kNatives}},
+    {"map, vertex normals", {.vertex_normals = true, .orthographic = true}},
 };
 
 /// Programs without those of equal text.

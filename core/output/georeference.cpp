@@ -1,0 +1,121 @@
+#include "output/georeference.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include <cpl_minixml.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "dem/gdal_support.h"
+#include "output/scratch_files.h"
+
+namespace relevo::output {
+namespace {
+
+struct Close {
+    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+
+OGRSpatialReference crs_of(const Georeference& where) {
+    OGRSpatialReference crs;
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    if (crs.SetFromUserInput(where.crs.c_str()) != OGRERR_NONE)
+        failed(fmt::format("georeference: {}: GDAL does not know this CRS", printable(where.crs)));
+    return crs;
+}
+
+/// Six lines: the pixel's sides and turns, and the centre of the first pixel.
+std::string world_text(const std::array<double, 6>& g) {
+    const double x = g[0] + (g[1] + g[2]) / 2, y = g[3] + (g[4] + g[5]) / 2;
+    std::string text;
+    for (const double value : {g[1], g[4], g[2], g[5], x, y})
+        text += fmt::format("{:.15g}\n", value);
+    return text;
+}
+
+std::string escaped(const std::string& text) {
+    const std::unique_ptr<char, decltype(&VSIFree)> result(
+        CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML), VSIFree);
+    return result.get();
+}
+
+/// As GDAL's "persistent auxiliary metadata".
+std::string aux_text(const Georeference& where) {
+    const OGRSpatialReference crs = crs_of(where);
+    char* exported = nullptr;
+    const char* const options[] = {"FORMAT=WKT2_2018", nullptr};
+    const OGRErr error = crs.exportToWkt(&exported, options);
+    const std::unique_ptr<char, decltype(&VSIFree)> wkt(exported, VSIFree);
+    if (error != OGRERR_NONE)
+        failed(fmt::format("georeference: {}: GDAL has no WKT of this CRS", printable(where.crs)));
+    const std::vector<int>& axes = crs.GetDataAxisToSRSAxisMapping();
+    std::string mapping;
+    for (const int axis : axes)
+        mapping += fmt::format("{}{}", mapping.empty() ? "" : ",", axis);
+    const auto& g = where.geotransform;
+    return fmt::format(
+        "<PAMDataset>\n  <SRS dataAxisToSRSAxisMapping=\"{}\">{}</SRS>\n"
+        "  <GeoTransform>{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}</GeoTransform>\n"
+        "</PAMDataset>\n",
+        mapping, escaped(wkt.get()), g[0], g[1], g[2], g[3], g[4], g[5]);
+}
+
+}  // namespace
+
+bool holds_georeference(const std::filesystem::path& picture) {
+    const std::string ending = lower(picture.extension().string());
+    return ending == ".tif" || ending == ".tiff";
+}
+
+std::vector<std::filesystem::path> georeference_files(const std::filesystem::path& picture) {
+    const std::string ending = picture.extension().string();
+    if (holds_georeference(picture) || ending.size() < 3) return {};
+    std::filesystem::path world = picture, aux = picture;
+    world.replace_extension(std::string{ending[1], ending.back(), 'w'});
+    aux += ".aux.xml";
+    return {world, aux};
+}
+
+std::vector<std::string> georeference_texts(const Georeference& where) {
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    return {world_text(where.geotransform), aux_text(where)};
+}
+
+void write_geotiff(OutputFile& file, std::span<const std::byte> tiff, const Georeference& where) {
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    const OGRSpatialReference crs = crs_of(where);
+    const ScratchFiles scratch([&] { return file.open_scratch(); });
+    const std::string path = scratch.path("picture.tif");
+    const auto refuse = [&] {
+        failed(fmt::format(
+            "{}: {}: cannot be written, {}", file.who(), printable(file.path().string()),
+            scratch.error() != 0 ? std::strerror(scratch.error()) : messages.failure(path)));
+    };
+    VSILFILE* const plain = VSIFOpenL(path.c_str(), "wb");
+    if (!plain) refuse();
+    const bool written = VSIFWriteL(tiff.data(), 1, tiff.size(), plain) == tiff.size();
+    if (VSIFCloseL(plain) != 0 || !written) refuse();
+    {
+        const char* const drivers[] = {"GTiff", nullptr};
+        const std::unique_ptr<GDALDataset, Close> dataset(GDALDataset::FromHandle(
+            GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers, nullptr, nullptr)));
+        std::array<double, 6> transform = where.geotransform;
+        if (!dataset || dataset->SetGeoTransform(transform.data()) != CE_None ||
+            dataset->SetSpatialRef(&crs) != CE_None)
+            refuse();
+    }
+    // What is written when it is closed may fail, too.
+    if (messages.any_failure() || scratch.error() != 0 ||
+        !scratch.read("picture.tif", [&](std::span<const std::byte> bytes) { file.write(bytes); }))
+        refuse();
+}
+
+}  // namespace relevo::output
