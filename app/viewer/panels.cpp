@@ -59,7 +59,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("View")) view_panel(state, double{size_px.x} / size_px.y);
-    if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
+    if (ImGui::CollapsingHeader("Layers", kOpen)) layers_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
     const std::optional<Profile>& profile = state.measurement.profile;
     if (profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*profile);
