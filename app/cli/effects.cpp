@@ -44,7 +44,7 @@ void EffectArguments::add_to(CLI::App& verb) {
     verb.add_option(
             "--order", order,
             "Order of effects on the ground, the lowest first; overlay is that of --overlay: "
-            "drape,overlay,tracks")
+            "contours,overlay,tracks")
         ->delimiter(',')
         ->group("Effects");
     verb.add_option("--set", settings, "Value of a parameter: layering.texture_m=8")

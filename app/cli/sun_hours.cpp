@@ -114,14 +114,7 @@ struct Summary {
     }
 };
 
-void run(const Arguments& arguments) {
-    check(arguments);
-    FilesInUse files;
-    OutputFile& file = arguments.raster.open(files);
-    const RasterGround ground = arguments.raster.load();
-    const dem::Posts& posts = ground.posts;
-    const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
-    const auto [begin, end] = time_of(days);
+light::SunHoursOptions options_of(const Arguments& arguments) {
     light::SunHoursOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
@@ -132,6 +125,18 @@ void run(const Arguments& arguments) {
         if (arguments.linke) options.irradiation->linke = *arguments.linke;
         if (arguments.albedo) options.irradiation->albedo = *arguments.albedo;
     }
+    return options;
+}
+
+void run(const Arguments& arguments) {
+    check(arguments);
+    FilesInUse files;
+    OutputFile& file = arguments.raster.open(files);
+    const RasterGround ground = arguments.raster.load();
+    const dem::Posts& posts = ground.posts;
+    const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
+    const auto [begin, end] = time_of(days);
+    light::SunHoursOptions options = options_of(arguments);
     std::vector<output::RasterBand> bands;
     for (const std::string& word : arguments.bands)
         bands.push_back(session::hours_band(word));

@@ -18,6 +18,7 @@ bool has_hook(const effect::Effect& effect, std::string_view hook) {
 
 bool lies_on_ground(const effect::Effect& effect) {
     const effect::Manifest& manifest = effect.manifest;
+    if (!manifest.default_where.empty()) return false;  // a feature of the DEM, such as its voids
     return !manifest.rasters.empty() || !manifest.lines.empty() || !manifest.marks.empty() ||
            has_hook(effect, "display");
 }

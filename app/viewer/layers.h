@@ -11,7 +11,8 @@
 namespace relevo::viewer {
 
 /// Something that is drawn on the ground: the overlay, or an effect with a raster, lines, marks or
-/// the hook display. Effects are found by what their manifests and GLSL declare.
+/// the hook display. Effects are found by what their manifests and GLSL declare. Those for a
+/// feature of the DEM, such as its voids, are none.
 struct Layer {
     /// In the order in which they cover each other.
     enum class Group {

@@ -13,9 +13,15 @@
 namespace relevo::viewer {
 namespace {
 
-void slider(State& state, double& share) {
+constexpr const char* kLit = "lit";
+
+/// @param has_light  a checkbox follows on the same line
+void slider(State& state, double& share, bool has_light) {
     auto percent = static_cast<int>(std::lround(100 * share));
-    ImGui::SetNextItemWidth(-1);
+    const float light_px = ImGui::GetFrameHeight() + ImGui::CalcTextSize(kLit).x +
+                           2 * ImGui::GetStyle().ItemInnerSpacing.x +
+                           ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetNextItemWidth(has_light ? -light_px : -1);
     if (ImGui::SliderInt("##opacity", &percent, 0, 100, "opacity %d %%",
                          ImGuiSliderFlags_AlwaysClamp))
         share = percent / 100.0;
@@ -26,15 +32,17 @@ void effect_opacity(State& state, const Layer& layer) {
     const shader::Param& param = state.effects->values.param(layer.opacity);
     shader::ParamValue value = state.effects->values.value(layer.opacity);
     const double before = value[0];
-    slider(state, value[0]);
+    slider(state, value[0], !layer.light.empty());
     if (value[0] != before) state.set_value(param, shader::format_value(param, value), layer.is_on);
 }
 
 void light(State& state, const Layer& layer) {
     const bool is_overlay = layer.is_overlay();
-    if (!is_overlay && layer.light.empty()) return;
     bool lit = is_overlay ? state.document.overlay.lit : is_lit(*state.effects, layer.light);
-    if (!ImGui::Checkbox("lit by the sun", &lit)) return;
+    const bool is_changed = ImGui::Checkbox(kLit, &lit);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Lit by the sun and the sky; else in its own colours");
+    if (!is_changed) return;
     state.step = true;
     if (is_overlay)
         state.document.overlay.lit = lit;
@@ -51,7 +59,7 @@ void overlay_time(State& state) {
         session::clock_text(*overlay.time, state.document.zone.name(), state.centre);
     if (!clock.empty()) ImGui::TextDisabled("%s", clock.c_str());
     state.step |=
-        ImGui::Checkbox("cast shadows of the shown time", &state.document.overlay.shadows);
+        ImGui::Checkbox("cast shadows of the displayed time", &state.document.overlay.shadows);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("The overlay shows sunlight of its own time: shadows on it are off.");
 }
@@ -75,11 +83,13 @@ void legends(const State& state, const Layer& layer) {
 void details(State& state, const Layer& layer) {
     if (!layer.is_overlay() && !layer.source.empty())
         ImGui::TextDisabled("%s", layer.source.c_str());
+    const bool has_light = layer.is_overlay() || !layer.light.empty();
     if (layer.is_overlay())
-        slider(state, state.document.overlay.opacity);
+        slider(state, state.document.overlay.opacity, has_light);
     else if (!layer.opacity.empty())
         effect_opacity(state, layer);
-    light(state, layer);
+    if (has_light && (layer.is_overlay() || !layer.opacity.empty())) ImGui::SameLine();
+    if (has_light) light(state, layer);
     if (layer.is_overlay() && state.overlay) overlay_time(state);
     legends(state, layer);
 }

@@ -109,7 +109,7 @@ constexpr Option kOptions[] = {
      0, kLights,
      [](const Scene& s) { return text(kLights[overlay_of(s).lit ? 1 : 0]); },
      [](Scene& s, const Value& v) { s.overlay->lit = v.text == "lit"; }},
-    {"overlay", "shadows", "--overlay-shadows", "Overlay",
+    {"overlay", "cast_shadows", "--overlay-shadows", "Overlay",
      "Cast shadows of the scene's sun also where the overlay shows sunlight of its own time",
      Kind::Flag, 0, 0, {},
      [](const Scene& s) { return flag(overlay_of(s).shadows); },

@@ -41,7 +41,7 @@ struct Overlay {
     double opacity = 1;                              ///< 0 to 1
     bool lit = false;      ///< shaded by the scene's sun; else drawn in its own colours
     bool shadows = false;  ///< cast shadows are on also if it shows sunlight of its own time
-    std::string title;  ///< of the legend; empty: the band's name
+    std::string title;     ///< of the legend; empty: the band's name
 };
 
 /// Whether Overlay::colours are a colour file, whose path has a slash or a dot, and not a ramp that
