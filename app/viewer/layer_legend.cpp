@@ -17,7 +17,8 @@ ImU32 packed(const chart::Color& color) {
 }
 
 std::string unit_of(const chart::Legend& legend) {
-    return legend.unit.empty() || legend.unit == "1" ? "" : " " + legend.unit;
+    if (legend.unit.empty() || legend.unit == "1") return {};
+    return (legend.unit == "°" ? "" : " ") + legend.unit;
 }
 
 /// Text at the right edge of the panel, on the line of the last item.

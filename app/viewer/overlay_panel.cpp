@@ -54,6 +54,7 @@ void choice(State& state) {
 /// A date as text, which is taken when Enter is pressed.
 void date_field(State& state, const char* label, sun::Date& date) {
     std::string text = fmt::format("{:04}-{:02}-{:02}", date.year, date.month, date.day);
+    ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
     ImGui::SameLine();
     ImGui::PushID(label);
