@@ -21,10 +21,11 @@ struct Format {
     const char* ending;
     int bits = 8;
     bool has_quality = false;
+    bool has_alpha = true;
 };
 constexpr std::array<Format, 7> kFormats = {{{"PNG", "png"},
                                              {"PNG, 16 bits", "png", 16},
-                                             {"JPEG", "jpg", 8, true},
+                                             {"JPEG", "jpg", 8, true, false},
                                              {"WebP", "webp", 8, true},
                                              {"AVIF", "avif", 8, true},
                                              {"TIFF", "tif"},
@@ -79,7 +80,10 @@ void ExportSheet::format_fields() {
             if (ImGui::Selectable(fmt::format("{} a pixel", samples).c_str())) samples_ = samples;
         ImGui::EndCombo();
     }
+    const bool has_alpha = kFormats[static_cast<std::size_t>(format_)].has_alpha;
+    ImGui::BeginDisabled(!has_alpha);
     ImGui::Checkbox("Transparent where there is no ground", &is_transparent_);
+    ImGui::EndDisabled();
 }
 
 void ExportSheet::stamp_fields(const scene::Scene& scene) {
@@ -91,7 +95,8 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
         if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
     }
-    if (stamps_->title) ImGui::InputText("Title", &stamps_->title_text);
+    if (stamps_->title)
+        ImGui::InputText("Title", &stamps_->title_text, ImGuiInputTextFlags_AutoSelectAll);
 }
 
 PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
@@ -102,7 +107,7 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.width_px = size_px_.x;
     order.scene.height_px = size_px_.y;
     order.scene.samples = samples_;
-    order.scene.transparent = is_transparent_;
+    order.scene.transparent = is_transparent_ && format.has_alpha;
     order.scene.stamps = stamps_.value_or(scene.stamps);
     order.encoding.bits = format.bits;
     if (format.has_quality) order.encoding.quality = quality_;
@@ -112,7 +117,7 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.path = free_name(stem, format.ending);
     image::check_encoding(
         order.path, order.encoding,
-        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = is_transparent_});
+        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = order.scene.transparent});
     return order;
 }
 
@@ -145,7 +150,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);
-        ImGui::InputText("Name", &name_);
+        ImGui::InputText("Name", &name_, ImGuiInputTextFlags_AutoSelectAll);
         if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
             ImGui::SetTooltip("{dem}, and {time:...} with the conversions of strftime");
         ImGui::PopItemWidth();

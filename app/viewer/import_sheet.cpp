@@ -85,7 +85,8 @@ void ImportSheet::want_preview() {
 }
 
 void ImportSheet::crs_field() {
-    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs);
+    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs,
+                             ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip(
             "A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place");
@@ -123,7 +124,8 @@ void ImportSheet::other_fields() {
         if (fields_.unit == kUnits[i]) unit = static_cast<int>(i);
     if (ImGui::Combo("Unit", &unit, kUnits.data(), static_cast<int>(kUnits.size())))
         fields_.unit = unit == 0 ? "" : kUnits[static_cast<std::size_t>(unit)];
-    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata);
+    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata,
+                             ImGuiInputTextFlags_AutoSelectAll);
     int band = std::max(1, fields_.band);
     if (ImGui::InputInt("Band", &band)) fields_.band = std::max(1, band);
     ImGui::Combo("Encoding", &fields_.encoding, kEncodings.data(),

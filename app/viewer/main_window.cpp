@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 
+#include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
 
 namespace relevo::viewer {
@@ -127,11 +128,17 @@ scene::Insets MainWindow::panel_insets() const {
     if (!state_.settings.panels) return {};
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;     // the menu
-    insets.bottom = 2.0 * text_px / size().y;  // the status line
+    insets.top = 1.5 * text_px / size().y;                          // the menu
+    insets.bottom = (2.0 * text_px + state_.docked_px) / size().y;  // the status line
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;
+}
+
+glm::vec2 MainWindow::free_middle() const {
+    const scene::Insets insets = panel_insets();
+    return size() * glm::vec2(0.5 * (1 + insets.left - insets.right),
+                              0.5 * (1 + insets.top - insets.bottom));
 }
 
 void MainWindow::draw_panels() {
@@ -143,6 +150,8 @@ void MainWindow::draw_panels() {
         return;
     }
     if (picture_) draw_over_image();
+    state_.can_undo = history_.can_undo() || history_.differs(state_.document);
+    state_.can_redo = history_.can_redo();
     if (state_.settings.panels) {
         menu_bar(state_);
         side_panel(state_, size(), unit());
@@ -177,7 +186,7 @@ void MainWindow::draw_over_image() {
     marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
     draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
-    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
+    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), top);
     legend_.draw();
     if (comparison_->thread()) draw_sides(window_->line() * size().x, top);
 }

@@ -56,6 +56,8 @@ class MainWindow {
     /// Pixels per unit of a layout for the default text size.
     double unit() const;
     scene::Insets panel_insets() const;
+    /// The middle of what the panels leave free of the window.
+    glm::vec2 free_middle() const;
     void draw_panels();
     void draw_over_image();
     /// Reports changes since the last frame to the other parts.
@@ -130,6 +132,7 @@ class MainWindow {
     void close_dialogs();
     void open_neighbour(int step);
     void measure();
+    void save_profile();
     void toggle_overlay();
     void restore(const Document& document);
     void move(Command command);

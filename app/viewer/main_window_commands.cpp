@@ -16,12 +16,18 @@ void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
     const std::optional<Click> clicked = hand_->take_click();
+    if (hand_->is_busy() && window_->panels_have_keys()) window_->take_keys_back();
     Measurement& line = state_.measurement;
-    if (clicked && !std::exchange(line.follows_cursor, false)) {
+    if (clicked && !line.follows_cursor) {
         choose_point(clicked->point_m);
         opens_point_menu_ = clicked->asks_for_menu;
+    } else if (clicked && clicked->asks_for_menu) {
+        line.end();
+    } else if (clicked) {
+        line.set_corner(clicked->point_m, state_.land, state_.spacing_m);
     }
-    if (line.follows_cursor && state_.cursor) line.follow(state_.cursor->point_m, state_.land);
+    if (line.follows_cursor && state_.cursor)
+        line.follow(state_.cursor->point_m, state_.land, state_.spacing_m);
 }
 
 void MainWindow::choose_point(const glm::dvec3& point_m) {
@@ -70,6 +76,15 @@ bool MainWindow::run_program_command(Command command) {
         case Command::Panels:
             state_.settings.panels = !state_.settings.panels;
             return true;
+        case Command::PanelKeys:
+        case Command::MenuKeys:
+            state_.settings.panels = true;
+            if (window_->panels_have_keys())
+                window_->take_keys_back();
+            else
+                window_->give_keys_to("Relevo");
+            state_.opens_menu = command == Command::MenuKeys && window_->panels_have_keys();
+            return true;
         case Command::Charts:
             state_.settings.charts = !state_.settings.charts;
             return true;
@@ -109,6 +124,12 @@ void MainWindow::run_scene_command(Command command) {
             return save_view();
         case Command::Measure:
             return measure();
+        case Command::EndMeasuring:
+            return state_.measurement.end();
+        case Command::DropCorner:
+            return state_.measurement.drop_corner(state_.land, state_.spacing_m);
+        case Command::SaveProfile:
+            return save_profile();
         case Command::Compare:
             state_.compare_is_wanted = !state_.compare_is_wanted;
             return;
@@ -135,7 +156,8 @@ void MainWindow::run_scene_command(Command command) {
 
 void MainWindow::close_dialogs() {
     if (opening_->can_cancel()) return opening_->cancel();
-    shows_keys_ = state_.measurement.follows_cursor = false;
+    shows_keys_ = false;
+    state_.measurement.end();
     open_dialog_.close();
     import_sheet_.close();
     find_sheet_.close();
@@ -202,9 +224,23 @@ void MainWindow::move_to_point(Command command) {
 
 void MainWindow::measure() {
     Measurement& line = state_.measurement;
-    if (!state_.cursor && line.ends_m.empty() && !line.follows_cursor) return;
-    line.follows_cursor = !line.follows_cursor;
-    if (line.follows_cursor && line.ends_m.empty()) line.start(state_.cursor->point_m);
+    if (line.follows_cursor) return line.end();
+    // A line that is done is replaced by one from the chosen point.
+    if (line.corners_m.size() > 1) line.start(line.corners_m.front());
+    if (line.corners_m.empty() && state_.cursor) line.start(state_.cursor->point_m);
+    line.measure();
+}
+
+void MainWindow::save_profile() {
+    if (!state_.measurement.profile) return;
+    messages_.try_to([&] {
+        const std::string text = csv_text(*state_.measurement.profile);
+        const std::string name = write_under_free_name("csv", [&](OutputFile& file) {
+            file.write(text);
+            file.finish();
+        });
+        messages_.report(name + ": profile saved");
+    });
 }
 
 void MainWindow::restore(const Document& document) {
