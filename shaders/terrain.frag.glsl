@@ -74,19 +74,6 @@ vec2 slope_at(in vec2 post, in int level) {
     return filtered(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer))).rg;
 }
 
-#ifdef OVERLAY_RASTER
-/// Replaces the reflectance of the ground by an overlay's colours, premultiplied sRGB.
-void overlay_as_reflectance(inout Surface s, in vec4 laid) {
-    vec3 reflectance = srgb_decoded(min(laid.rgb / max(laid.a, 1e-3), 1.0));
-    s.diffuse = mix(s.diffuse, reflectance, laid.a);
-    s.ambient = mix(s.ambient, reflectance, laid.a);
-    s.specular *= 1.0 - laid.a;
-    s.emissive *= 1.0 - laid.a;
-    // The image has its own texture: bumps of materials would be drawn over it.
-    s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
-}
-#endif
-
 #ifdef INSTANCES
 /// Makes the point that of an instance, which stands on the ground where the light is found.
 /// @param sunlight  share of the sun's light that passes instances
@@ -187,13 +174,12 @@ void main() {
     s.shininess = 8.0;
 
     load_varyings(pixel);
+#ifdef OVERLAY_RASTER
+    overlay_here = overlay_colour(s.post, across);
+#endif
     hook_albedo(s);
     hook_normal(s);
     hook_material(s);
-#ifdef OVERLAY_RASTER
-    vec4 laid = overlay_colour(uintBitsToFloat(what.xy), across);
-    if (frame.overlay_shape.w > 0.0) overlay_as_reflectance(s, laid);
-#endif
     float sunlight = 1.0;
 #ifdef INSTANCES
     bool is_instance = instance_as_surface(s, pixel, sunlight);
@@ -237,9 +223,6 @@ void main() {
     hook_atmosphere(s, view, radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
-#ifdef OVERLAY_RASTER
-    over += (1.0 - over.a) * (1.0 - frame.overlay_shape.w) * laid;
-#endif
 #ifdef INSTANCES
     over *= is_instance ? 0.0 : 1.0;  // instances hide what lies on the ground
 #endif

@@ -41,6 +41,12 @@ void EffectArguments::add_to(CLI::App& verb) {
     verb.add_option("--disable", disable, "Effects to switch off")
         ->delimiter(',')
         ->group("Effects");
+    verb.add_option(
+            "--order", order,
+            "Order of effects on the ground, the lowest first; overlay is that of --overlay: "
+            "contours,overlay,tracks")
+        ->delimiter(',')
+        ->group("Effects");
     verb.add_option("--set", settings, "Value of a parameter: layering.texture_m=8")
         ->allow_extra_args(false)
         ->group("Effects");
@@ -61,6 +67,7 @@ void EffectArguments::apply_to(scene::Effects& effects) const {
     }
     change.switches.enable = enable;
     change.switches.disable = disable;
+    change.switches.order = order;
     change.presets = presets;
     for (const std::string& setting : settings)
         change.settings.push_back(effect::parse_setting(setting));

@@ -13,9 +13,9 @@ namespace relevo::cli {
 /// Whether a word is meant for --set: "haze.density=0.2".
 bool is_setting(std::string_view word);
 
-/// --only, --enable, --disable, --set, --preset and --plugin-path.
+/// --only, --enable, --disable, --order, --set, --preset and --plugin-path.
 struct EffectArguments {
-    std::vector<std::string> only, enable, disable, settings, presets, plugin_path;
+    std::vector<std::string> only, enable, disable, order, settings, presets, plugin_path;
     CLI::Option* only_option = nullptr;
 
     void add_to(CLI::App& verb);

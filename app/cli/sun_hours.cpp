@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
+#include "session/hours_bands.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -29,57 +30,8 @@ struct Arguments {
     std::optional<double> linke, albedo;
 };
 
-const std::vector<std::string> kBands{"hours",  "first", "last",    "spells",
-                                      "global", "beam",  "diffuse", "reflected"};
-constexpr const char* kEnergy = "kWh/m2";
-
-bool is_energy(const std::string& band) {
-    return band == "global" || band == "beam" || band == "diffuse" || band == "reflected";
-}
-
-/// From hours since the beginning to minutes.
-Array2d<float> in_minutes(Array2d<float> hours) {
-    for (float& value : hours)
-        value *= 60;
-    return hours;
-}
-
-std::vector<output::RasterBand> bands_of(const std::vector<std::string>& wanted) {
-    std::vector<output::RasterBand> bands;
-    for (const std::string& band : wanted) {
-        if (band == "hours") bands.push_back(session::sun_hours_band());
-        if (band == "first") bands.push_back({"minutes to the first light", "min"});
-        if (band == "last") bands.push_back({"minutes to the last light", "min"});
-        if (band == "spells") bands.push_back({"sunshine periods", "1"});
-        if (band == "global") bands.push_back({"global irradiation", kEnergy});
-        if (is_energy(band) && band != "global") bands.push_back({band + " irradiation", kEnergy});
-    }
-    return bands;
-}
-
-/// Beam, diffuse and reflected together.
-Array2d<float> global_of(const light::SunHours& hours) {
-    Array2d<float> sum = hours.beam_kwh;
-    for (std::size_t i = 0; i < sum.size(); ++i)
-        sum.data()[i] += hours.diffuse_kwh.data()[i] + hours.reflected_kwh.data()[i];
-    return sum;
-}
-
-/// Of a band, as it is stored.
-Array2d<float> values_of(const std::string& band, light::SunHours& hours) {
-    if (band == "global") return global_of(hours);
-    if (band == "beam") return hours.beam_kwh;
-    if (band == "diffuse") return hours.diffuse_kwh;
-    if (band == "reflected") return hours.reflected_kwh;
-    if (band == "first") return in_minutes(std::move(hours.first_h));
-    if (band == "last") return in_minutes(std::move(hours.last_h));
-    return std::move(band == "spells" ? hours.spells : hours.hours);
-}
-
 bool has_spells(const std::vector<std::string>& bands) {
-    return std::ranges::any_of(bands, [](const std::string& band) {
-        return band == "first" || band == "last" || band == "spells";
-    });
+    return std::ranges::any_of(bands, session::needs_spells);
 }
 
 sun::TimeSpan time_of(const DaysArguments::Days& days) {
@@ -89,14 +41,15 @@ sun::TimeSpan time_of(const DaysArguments::Days& days) {
 constexpr const char* kCommas = "separate bands with commas and no blanks: hours,first";
 
 bool is_band(const std::string& word) {
-    return contains(kBands, word);
+    return contains(session::hours_words(), word);
 }
 
 /// What is wrong with a band; empty: nothing.
 std::string check_band(const std::string& band) {
     if (is_band(band)) return {};
     if (trimmed(band).empty() || band.find(' ') != std::string::npos) return kCommas;
-    return fmt::format("expected some of {} but got {}", fmt::join(kBands, ", "), band);
+    return fmt::format("expected some of {} but got {}", fmt::join(session::hours_words(), ", "),
+                       band);
 }
 
 /// What can be said before the DEM is read.
@@ -110,7 +63,8 @@ void check(const Arguments& arguments) {
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
-    if ((arguments.linke || arguments.albedo) && std::ranges::none_of(bands, is_energy))
+    if ((arguments.linke || arguments.albedo) &&
+        std::ranges::none_of(bands, session::needs_irradiation))
         bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected",
                               arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
@@ -123,14 +77,6 @@ void check(const Arguments& arguments) {
         bad_usage(
             fmt::format("--bands: first, last and spells are available for at most {:.10g} days",
                         light::SunHoursOptions::kMostDays));
-}
-
-std::string words_of(const light::SunHoursOptions::Irradiation& irradiation) {
-    return fmt::format(
-        "irradiation of the ground as it is inclined, clear sky of the European Solar Radiation "
-        "Atlas (Rigollier et al. 2000), Linke turbidity {:.4g}: beam with the terrain's shade, "
-        "diffuse alike from all of the open sky, reflected by ground of albedo {:.4g}",
-        irradiation.linke, irradiation.albedo);
 }
 
 /// Of all parts.
@@ -168,6 +114,20 @@ struct Summary {
     }
 };
 
+light::SunHoursOptions options_of(const Arguments& arguments) {
+    light::SunHoursOptions options;
+    options.refraction = arguments.raster.terrestrial_refraction;
+    options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
+    options.step_s = step_s_of(arguments.step.value_or("3min"), 1, 3600);
+    options.spells = has_spells(arguments.bands);
+    if (std::ranges::any_of(arguments.bands, session::needs_irradiation)) {
+        options.irradiation.emplace();
+        if (arguments.linke) options.irradiation->linke = *arguments.linke;
+        if (arguments.albedo) options.irradiation->albedo = *arguments.albedo;
+    }
+    return options;
+}
+
 void run(const Arguments& arguments) {
     check(arguments);
     FilesInUse files;
@@ -176,17 +136,11 @@ void run(const Arguments& arguments) {
     const dem::Posts& posts = ground.posts;
     const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
     const auto [begin, end] = time_of(days);
-    light::SunHoursOptions options;
-    options.refraction = arguments.raster.terrestrial_refraction;
-    options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-    options.step_s = step_s_of(arguments.step.value_or("3min"), 1, 3600);
-    options.spells = has_spells(arguments.bands);
-    if (std::ranges::any_of(arguments.bands, is_energy))
-        options.irradiation = {.linke = arguments.linke.value_or(3),
-                               .albedo = arguments.albedo.value_or(0.2),
-                               .sky_directions = 36};
-    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float,
-                     bands_of(arguments.bands), 1,
+    light::SunHoursOptions options = options_of(arguments);
+    std::vector<output::RasterBand> bands;
+    for (const std::string& word : arguments.bands)
+        bands.push_back(session::hours_band(word));
+    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float, bands, 1,
                      (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0));
     options.done = raster.done();
     raster.warn_of(
@@ -208,11 +162,11 @@ void run(const Arguments& arguments) {
         light::SunHours hours = plan.part(part);
         sum.add(hours);
         for (std::size_t k = 0; k < arguments.bands.size(); ++k)
-            raster.put(k, part, values_of(arguments.bands[k], hours));
+            raster.put(k, part, session::hours_values(arguments.bands[k], hours));
     });
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = session::air_of_posts(arguments.refraction.name(), posts);
-    if (options.irradiation) sum.definition += "; " + words_of(*options.irradiation);
+    if (options.irradiation) sum.definition += "; " + session::definition_of(*options.irradiation);
     if (!raster.finish(sum.definition, sum.holes,
                        {{"TIME_FROM", from},
                         {"TIME_TO", to},

@@ -9,7 +9,7 @@ Comparison::Comparison(const SceneDevice& device, Window& window, Messages& mess
     : device_(device), window_(window), messages_(messages), discard_(discard) {}
 
 void Comparison::start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
-                       std::shared_ptr<const render::OverlayRaster> overlay) {
+                       LaidOverlay overlay) {
     thread_ = std::make_unique<SceneThread>(scene, device_, &Window::wake, opened.dem);
     thread_->want(wanted);
     thread_->want_overlay(std::move(overlay));

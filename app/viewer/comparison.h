@@ -16,9 +16,8 @@ class Comparison {
     Comparison(const SceneDevice& device, Window& window, Messages& messages, Discard& discard);
 
     /// @param opened   of `scene`; its DEM is not read again
-    /// @param overlay  colours on the ground; null: none
     void start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
-               std::shared_ptr<const render::OverlayRaster> overlay);
+               LaidOverlay overlay);
     void stop();
     /// The scene's thread; null: there is no comparison.
     SceneThread* thread() const { return thread_.get(); }

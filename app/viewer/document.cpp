@@ -122,6 +122,14 @@ void add_stamps(Command& command, const scene::Stamps& stamps) {
 
 }  // namespace
 
+OverlayChoice choice_of(const scene::Overlay& overlay) {
+    OverlayChoice choice{.kind = OverlayKind::File};
+    choice.opacity = overlay.opacity;
+    choice.lit = overlay.lit;
+    choice.shadows = overlay.shadows;
+    return choice;
+}
+
 scene::Scene Document::whole(const Land& land) const {
     scene::Scene result = scene;
     result.view = view_of(pose, land);
@@ -194,6 +202,7 @@ void add_effects(Command& command, const scene::Effects& effects) {
         command.option("--only", fmt::format("{}", fmt::join(*effects.switches.only, ",")));
     command.list("--enable", effects.switches.enable);
     command.list("--disable", effects.switches.disable);
+    command.list("--order", effects.switches.order);
     for (const std::string& preset : effects.presets)
         command.option("--preset", preset);
     for (const std::string& folder : effects.plugin_path)

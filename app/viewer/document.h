@@ -17,20 +17,46 @@ namespace relevo::viewer {
 /// The raster that colours the ground.
 enum class OverlayKind {
     None,
-    File,     ///< the scene's
-    Day,      ///< sun hours of the displayed day
-    Week,     ///< sun hours from Monday to Sunday
-    Year,     ///< sun hours of the year
-    Mask,     ///< sunlit or in shadow at the displayed time
-    SkyView,  ///< sky-view factor
+    File,         ///< the scene's
+    Hours,        ///< sun hours of a period
+    FirstLight,   ///< first direct sun of the displayed day
+    LastLight,    ///< last direct sun of the displayed day
+    Irradiation,  ///< clear-sky irradiation of a period
+    Mask,         ///< sunlit or in shadow at the displayed time
+    SkyView,      ///< sky-view factor
+};
+
+/// The days of sun hours and of irradiation.
+enum class OverlayPeriod {
+    Day,   ///< the displayed day
+    Week,  ///< from Monday to Sunday
+    Year,
+    Range,  ///< OverlayChoice::first to last
 };
 
 struct OverlayChoice {
     OverlayKind kind = OverlayKind::None;
+    OverlayPeriod period = OverlayPeriod::Day;
+    sun::Date first{}, last{};  ///< of a Range, both included
     double opacity = 1;
+    bool lit = false;      ///< as scene::Overlay
+    bool shadows = false;  ///< as scene::Overlay
+    bool visible = true;
+
+    /// Whether it shows the sun hours of the displayed day.
+    bool shows_day() const {
+        return visible && kind == OverlayKind::Hours && period == OverlayPeriod::Day;
+    }
+    /// Whether it can be of any period.
+    bool has_period() const {
+        return kind == OverlayKind::Hours || kind == OverlayKind::Irradiation;
+    }
 
     bool operator==(const OverlayChoice&) const = default;
 };
+
+/// The choice of a scene's overlay.
+OverlayChoice choice_of(const scene::Overlay& overlay);
 
 /// Everything that the user sets and that undo restores.
 struct Document {

@@ -138,18 +138,8 @@ void param_row(State& state, const Param& param, bool on) {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
                           param.is_static ? "\nEach value compiles another shader." : "");
-    if (widget(param, value) && shader::is_valid(param, value)) {
-        const std::string text = shader::format_value(param, value);
-        state.effects->values.set(param.address, text);
-        state.document.scene.effects =
-            with_value(std::move(state.document.scene.effects), param.address, text);
-        if (param.is_static || !on)
-            state.new_effects = state.document.scene.effects;
-        else
-            state.new_values.emplace_back(param.address, text);
-        if (param.is_static || param.type == ParamType::Bool || !param.words.empty())
-            state.step = true;
-    }
+    if (widget(param, value) && shader::is_valid(param, value))
+        state.set_value(param, shader::format_value(param, value), on);
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
     if (reset_button(!is_changed(state, param.address)))
         state.set_effects(without_values(state.document.scene.effects, param.address));

@@ -234,8 +234,7 @@ void MainWindow::hand_over_scene() {
     if (!film_->shows_frame()) point_->update(opened, unit());
     if (overlay_->update(opened, thread)) pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())
-        comparison_->start(whole_scene(), opened, wanted_now(),
-                           state_.overlay ? state_.overlay->overlay.raster : nullptr);
+        comparison_->start(whole_scene(), opened, wanted_now(), overlay_->laid());
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     if (takes_picture_ && is_image_complete()) take_picture();
 }

@@ -182,8 +182,10 @@ void MainWindow::open_neighbour(int step) {
 }
 
 void MainWindow::toggle_overlay() {
-    OverlayKind& kind = state_.document.overlay.kind;
-    kind = kind == OverlayKind::Day ? OverlayKind::None : OverlayKind::Day;
+    OverlayChoice& overlay = state_.document.overlay;
+    overlay.kind = overlay.shows_day() ? OverlayKind::None : OverlayKind::Hours;
+    overlay.period = OverlayPeriod::Day;
+    overlay.visible = true;
     state_.step = true;
 }
 

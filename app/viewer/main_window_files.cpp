@@ -151,7 +151,7 @@ void MainWindow::show_features(FileKind kind, const std::string& path) {
 
 void MainWindow::lay_over(const std::string& path) {
     state_.document.scene.overlay = scene::Overlay{.file = path};
-    state_.document.overlay = {OverlayKind::File, 1};
+    state_.document.overlay = choice_of(*state_.document.scene.overlay);
     state_.step = true;
     pacing_.need_frames(3);
 }

@@ -135,6 +135,7 @@ void MainWindow::poll_opening() {
 void MainWindow::poll_images() {
     if (const auto newer = opening_->thread().newer_than(picture_ ? picture_->number : 0)) {
         picture_ = newer;
+        state_.layer_legends = newer->legends;
         if (!first_picture_at_) first_picture_at_ = Clock::now();
         raise_eye();
         hand_->see(picture_);
@@ -159,7 +160,7 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     Document& document = state_.document;
     if (!view) {
         document.overlay = {};
-        if (scene.overlay) document.overlay = {OverlayKind::File, scene.overlay->opacity};
+        if (scene.overlay) document.overlay = choice_of(*scene.overlay);
     }
     if (opened.legend) {  // until overlay_ has read the file
         auto shown = std::make_shared<OverlayShown>();

@@ -149,8 +149,7 @@ void show_menu(State& state) {
     item(state, "Panels", "Tab", Command::Panels, settings.panels);
     item(state, "Keyboard in the panels", "F6", Command::PanelKeys);
     item(state, "Horizon and year of the point", "P", Command::Charts, settings.charts);
-    item(state, "Sun hours of the day", "O", Command::Overlay,
-         state.document.overlay.kind == OverlayKind::Day);
+    item(state, "Sun hours of the day", "O", Command::Overlay, state.document.overlay.shows_day());
     item(state, "Comparison", "C", Command::Compare, state.compare_is_wanted);
     ImGui::Separator();
     if (ImGui::MenuItem("Light theme", nullptr, settings.light_style))

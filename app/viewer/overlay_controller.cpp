@@ -17,6 +17,10 @@ std::string verb_of(session::SunFigure figure) {
             return "sun shadow";
         case session::SunFigure::SkyView:
             return "sun sky-view";
+        case session::SunFigure::FirstLight:
+        case session::SunFigure::LastLight:
+        case session::SunFigure::Irradiation:
+            return fmt::format("sun hours --bands {}", session::hours_word(figure));
         default:
             return "sun hours";
     }
@@ -30,19 +34,22 @@ OverlayController::OverlayController(State& state, Messages& messages, Discard& 
 void OverlayController::clear() {
     work_.forget();
     requested_.reset();
+    laid_.reset();
+    lays_overlay_ = false;
     state_.overlay.reset();
     exports_when_complete_ = false;
 }
 
 bool OverlayController::waits_for_posts() const {
-    const OverlayKind kind = state_.document.overlay.kind;
-    return state_.is_preview && kind != OverlayKind::None && kind != OverlayKind::File;
+    const OverlayChoice& choice = state_.document.overlay;
+    return state_.is_preview && choice.visible && choice.kind > OverlayKind::File;
 }
 
 bool OverlayController::is_wanted() const {
-    const OverlayKind kind = state_.document.overlay.kind;
-    if (kind == OverlayKind::File) return state_.document.scene.overlay.has_value();
-    return kind != OverlayKind::None && !waits_for_posts();
+    const OverlayChoice& choice = state_.document.overlay;
+    if (choice.kind == OverlayKind::None || !choice.visible) return false;
+    if (choice.kind == OverlayKind::File) return state_.document.scene.overlay.has_value();
+    return !waits_for_posts();
 }
 
 OverlayWanted OverlayController::wanted(const Opened& opened) const {
@@ -51,14 +58,15 @@ OverlayWanted OverlayController::wanted(const Opened& opened) const {
     wanted.dem = opened.dem;
     wanted.dems = opened.scene.dems;
     wanted.options = opened.scene.dem;
-    wanted.opacity = document.overlay.opacity;
-    const OverlayKind kind = document.overlay.kind;
-    if (kind == OverlayKind::File) {
+    const OverlayChoice& choice = document.overlay;
+    wanted.opacity = choice.opacity;
+    wanted.lit = choice.lit;
+    if (choice.kind == OverlayKind::File) {
         wanted.file = document.scene.overlay;
-        wanted.file->opacity = wanted.opacity;
+        copy_choice_to(*wanted.file);
     } else {
-        wanted.raster = raster_of(kind, document.utc, document.zone, document.scene.refraction);
-        wanted.title = title_of(kind, wanted.raster);
+        wanted.raster = raster_of(choice, document.utc, document.zone, document.scene.refraction);
+        wanted.title = title_of(choice, wanted.raster);
     }
     return wanted;
 }
@@ -71,7 +79,8 @@ bool OverlayController::request(const Opened& opened) {
         return true;
     }
     OverlayWanted now = wanted(opened);
-    if (requested_ && same_figures(*requested_, now) && requested_->opacity == now.opacity)
+    if (requested_ && same_figures(*requested_, now) && requested_->opacity == now.opacity &&
+        requested_->lit == now.lit)
         return false;
     requested_ = now;
     work_.want(std::move(now));
@@ -84,14 +93,25 @@ bool OverlayController::update(const Opened& opened, SceneThread& thread) {
     // Keeps the last overlay until there is an answer to another request.
     if (requested_ ? answer && answer != state_.overlay : state_.overlay != nullptr) {
         state_.overlay = requested_ ? answer : nullptr;
-        thread.want_overlay(state_.overlay ? state_.overlay->overlay.raster : nullptr);
+        lays_overlay_ = true;
         has_changed = true;
+    }
+    // The scene's own overlay stays until there is an answer.
+    if (const LaidOverlay now = laid(); lays_overlay_ && now != laid_) {
+        laid_ = now;
+        thread.want_overlay(now);
     }
     state_.overlay_progress.reset();
     if (requested_ && !work_.is_done()) state_.overlay_progress = work_.progress();
     state_.saved_overlay.clear();
     if (const ExportedOverlay* const file = exported()) state_.saved_overlay = file->shown_name;
     return has_changed;
+}
+
+LaidOverlay OverlayController::laid() const {
+    if (!is_displayed()) return {};
+    const session::Overlay& overlay = state_.overlay->overlay;
+    return {overlay.raster, overlay.time && !state_.document.overlay.shadows};
 }
 
 bool OverlayController::is_complete() const {
@@ -158,16 +178,19 @@ bool OverlayController::poll_export() {
 
 void OverlayController::add_to(scene::Scene& scene) const {
     const OverlayChoice& choice = state_.document.overlay;
-    if (choice.kind == OverlayKind::File) {
-        if (scene.overlay) scene.overlay->opacity = choice.opacity;
-        return;
-    }
-    scene.overlay.reset();
+    if (choice.kind != OverlayKind::File || !choice.visible) scene.overlay.reset();
     if (const ExportedOverlay* const file = exported()) {
         scene.overlay = scene::Overlay{.file = file->file};
-        scene.overlay->opacity = choice.opacity;
         scene.overlay->title = file->of.title;
     }
+    if (scene.overlay) copy_choice_to(*scene.overlay);
+}
+
+void OverlayController::copy_choice_to(scene::Overlay& overlay) const {
+    const OverlayChoice& choice = state_.document.overlay;
+    overlay.opacity = choice.opacity;
+    overlay.lit = choice.lit;
+    overlay.shadows = choice.shadows;
 }
 
 std::string OverlayController::missing_note() const {

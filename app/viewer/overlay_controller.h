@@ -25,6 +25,8 @@ class OverlayController {
     /// thread.
     /// @returns whether anything changed that panels show
     bool update(const Opened& opened, SceneThread& thread);
+    /// What lies on the ground now.
+    LaidOverlay laid() const;
     /// Whether State::overlay is what the document asks for, from all posts.
     bool is_complete() const;
 
@@ -54,6 +56,8 @@ class OverlayController {
     bool is_displayed() const;
     OverlayWanted wanted(const Opened& opened) const;
     bool request(const Opened& opened);
+    /// Copies opacity, light and shadows of the choice.
+    void copy_choice_to(scene::Overlay& overlay) const;
     /// Null: there is no file of the requested overlay.
     const ExportedOverlay* exported() const;
 
@@ -62,6 +66,8 @@ class OverlayController {
     Discard& discard_;
     OverlayWork work_;
     std::optional<OverlayWanted> requested_;
+    bool lays_overlay_ = false;        // else the scene's thread has its scene's own
+    std::optional<LaidOverlay> laid_;  // that the scene's thread was given
     std::unique_ptr<OverlaySave> export_;
     bool exports_when_complete_ = false;
     std::vector<ExportedOverlay> exported_;

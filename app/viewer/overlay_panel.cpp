@@ -7,22 +7,26 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "chart/legend.h"
-#include "scene/options.h"
 #include "viewer/image_texture.h"
 
 namespace relevo::viewer {
 namespace {
 
-constexpr std::array<const char*, 7> kNames = {"none",
+constexpr std::array<const char*, 8> kNames = {"no overlay",
                                                "from the scene",
-                                               "sun hours of the day",
-                                               "sun hours of the week",
-                                               "sun hours of the year",
+                                               "sun hours",
+                                               "first light of the day",
+                                               "last light of the day",
+                                               "irradiation",
                                                "direct sun at this time",
                                                "sky view"};
+constexpr std::array<const char*, 4> kPeriods = {"of the day", "of the week", "of the year",
+                                                 "from ... to ..."};
 
 /// Name of an overlay kind; that of the scene is its file's name.
 std::string name_of(const State& state, OverlayKind kind) {
@@ -41,27 +45,54 @@ void choice(State& state) {
         if (kind == OverlayKind::File && !state.document.scene.overlay) continue;
         if (!ImGui::Selectable(name_of(state, kind).c_str(), kind == chosen.kind)) continue;
         chosen.kind = kind;
+        chosen.visible = true;
         state.step = true;
     }
     ImGui::EndCombo();
 }
 
-void opacity(State& state) {
-    auto percent = static_cast<int>(std::lround(100 * state.document.overlay.opacity));
-    ImGui::SetNextItemWidth(-1);
-    const auto most = static_cast<int>(100 * scene::option("--overlay-opacity").max);
-    if (ImGui::SliderInt("##opacity", &percent, 10, most, "opacity %d %%"))
-        state.document.overlay.opacity = percent / 100.0;
-    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+/// A date as text, which is taken when Enter is pressed.
+void date_field(State& state, const char* label, sun::Date& date) {
+    std::string text = fmt::format("{:04}-{:02}-{:02}", date.year, date.month, date.day);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label);
+    ImGui::SameLine();
+    ImGui::PushID(label);
+    ImGui::SetNextItemWidth(7.5f * ImGui::GetFontSize());
+    if (ImGui::InputText("##date", &text,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
+        try {
+            const sun::Date wanted = sun::parse_date(text);
+            if (wanted.year < 1900 || wanted.year > 2100)
+                bad_input(text + ": expected a year from 1900 to 2100");
+            date = wanted;
+            state.step = true;
+        } catch (const Error& error) {
+            state.message = error.what();
+        }
+    ImGui::PopID();
 }
 
-/// Of the scene's overlay alone: figures of the sun have a legend, whose colours light would
-/// change.
-void light(State& state) {
-    bool lit = state.document.scene.overlay->lit;
-    if (!ImGui::Checkbox("lit by the sun", &lit)) return;
-    state.document.scene.overlay->lit = lit;
-    state.step = true;
+void period(State& state) {
+    OverlayChoice& chosen = state.document.overlay;
+    ImGui::SetNextItemWidth(-1);
+    const auto now = static_cast<std::size_t>(chosen.period);
+    if (ImGui::BeginCombo("##period", kPeriods[now])) {
+        for (std::size_t i = 0; i < kPeriods.size(); ++i) {
+            if (!ImGui::Selectable(kPeriods[i], i == now)) continue;
+            chosen.period = static_cast<OverlayPeriod>(i);
+            state.step = true;
+            const sun::Date shown = state.document.zone.local(state.document.utc).wall.date;
+            if (chosen.first == sun::Date{}) chosen.first = chosen.last = shown;
+        }
+        ImGui::EndCombo();
+    }
+    if (chosen.period != OverlayPeriod::Range) return;
+    date_field(state, "from", chosen.first);
+    ImGui::SameLine();
+    date_field(state, "to", chosen.last);
+    if (sun::days_between(chosen.first, chosen.last) < 0)
+        ImGui::TextDisabled("the last day is before the first: one day");
 }
 
 /// Resolution of the overlay, and progress.
@@ -97,26 +128,37 @@ void save(State& state) {
 
 void overlay_panel(State& state) {
     choice(state);
-    const OverlayKind kind = state.document.overlay.kind;
-    if (kind == OverlayKind::None) return;
+    const OverlayChoice& choice = state.document.overlay;
+    if (choice.kind == OverlayKind::None) return;
+    if (choice.has_period()) period(state);
     if (state.overlay && !state.overlay->error.empty()) {
         ImGui::TextWrapped("%s", state.overlay->error.c_str());
         return;
     }
-    opacity(state);
-    if (kind == OverlayKind::File) return light(state);
+    if (choice.kind == OverlayKind::File || !choice.visible) return;
     work(state);
     save(state);
 }
 
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place) {
     const double value = overlay.value_at(place);
+    const session::SunRasterWanted& of = overlay.of.raster;
+    const bool is_first = of.figure == session::SunFigure::FirstLight;
+    if (is_first || of.figure == session::SunFigure::LastLight) {
+        if (!overlay.raster) return "";
+        if (std::isnan(value)) return "no direct sun here";
+        constexpr double kMinute_s = 60;
+        const sun::CivilTime at = of.zone.local(of.begin + kMinute_s * value).wall;
+        return fmt::format("{} light {:02}:{:02}", is_first ? "first" : "last", at.hour, at.minute);
+    }
     if (std::isnan(value)) return overlay.raster ? "no overlay value here" : "";
-    switch (overlay.of.raster.figure) {
+    switch (of.figure) {
         case session::SunFigure::Shadow:
             return value > 0 ? "in the sun" : "in shade";
         case session::SunFigure::SkyView:
             return fmt::format("sky view {:.3f}", value);
+        case session::SunFigure::Irradiation:
+            return fmt::format("irradiation {:.2f} kWh/m2", value);
         default:
             return fmt::format("sun hours {:.2f}", value);
     }

@@ -64,7 +64,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
         measurement_panel(state);
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("View")) view_panel(state, double{size_px.x} / size_px.y);
-    if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
+    if (ImGui::CollapsingHeader("Layers", kOpen)) layers_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader("Export", kOpen)) export_panel(state);

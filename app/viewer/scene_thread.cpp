@@ -76,7 +76,7 @@ struct SceneThread::Impl {
     bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
-    std::optional<std::shared_ptr<const render::OverlayRaster>> overlay;  // nullopt: unchanged
+    std::optional<LaidOverlay> overlay;  // nullopt: unchanged
     std::optional<double> exaggeration;
     PictureQueue pictures;
     std::optional<std::string> message;
@@ -257,7 +257,10 @@ struct SceneThread::Impl {
             // After a failure the last frame stays until the next request.
             try {
                 attempt([&] { change(new_effects, new_values); });
-                if (new_overlay) attempt([&] { session->set_overlay(*new_overlay); });
+                if (new_overlay)
+                    attempt([&] {
+                        session->set_overlay(new_overlay->raster, new_overlay->without_shadows);
+                    });
                 if (new_exaggeration) attempt([&] { exaggerate(*new_exaggeration, now.insets); });
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
@@ -464,8 +467,8 @@ void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
     impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
 }
 
-void SceneThread::want_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
-    impl_->change([&](Impl& my) { my.overlay = std::move(raster); });
+void SceneThread::want_overlay(LaidOverlay overlay) {
+    impl_->change([&](Impl& my) { my.overlay = std::move(overlay); });
 }
 
 bool SceneThread::rests() const {

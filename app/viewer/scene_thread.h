@@ -31,6 +31,14 @@ struct Wanted {
     bool sun_moving = false;  ///< the user moves the sun: shadows may lag behind as well
 };
 
+/// Colours on the ground.
+struct LaidOverlay {
+    std::shared_ptr<const render::OverlayRaster> raster;  ///< null: none
+    bool without_shadows = false;                         ///< as Session::set_overlay()
+
+    bool operator==(const LaidOverlay&) const = default;
+};
+
 /// An open scene.
 struct Opened {
     /// Camera of a view. Orbits are placed so that all ground is visible next to the panels.
@@ -76,8 +84,7 @@ class SceneThread {
     /// Replaces a preview with the complete DEM.
     void want_dem(std::shared_ptr<const session::LoadedDem> dem);
 
-    /// Sets the overlay; null: none.
-    void want_overlay(std::shared_ptr<const render::OverlayRaster> raster);
+    void want_overlay(LaidOverlay overlay);
 
     /// True if there is nothing left to draw.
     bool rests() const;

@@ -50,6 +50,17 @@ void State::set_utc(sun::Instant utc) {
     day = SunDay::of(date, document.zone, centre, air);
 }
 
+void State::set_value(const shader::Param& param, const std::string& text, bool on) {
+    effects->values.set(param.address, text);
+    document.scene.effects = with_value(std::move(document.scene.effects), param.address, text);
+    if (param.is_static || !on)
+        new_effects = document.scene.effects;
+    else
+        new_values.emplace_back(param.address, text);
+    if (param.is_static || param.type == shader::ParamType::Bool || !param.words.empty())
+        step = true;
+}
+
 void State::take_effects(bool is_step) {
     if (!asked_effects) return;
     const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);

@@ -67,6 +67,7 @@ struct State {
     std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
     std::optional<double> saving_progress;        ///< of an overlay's export, 0 to 1
     std::string saved_overlay;                    ///< the file of an exported overlay; empty: none
+    std::vector<chart::Legend> layer_legends;     ///< of effects, of the displayed image
 
     std::string message;  ///< the last error or note
 
@@ -97,6 +98,8 @@ struct State {
     /// Requests other effects or values, also of static parameters. take_effects() applies them
     /// after the panels are drawn.
     void set_effects(scene::Effects changed) { asked_effects = std::move(changed); }
+    /// Sets a parameter of an effect. @param on  whether the effect is on
+    void set_value(const shader::Param& param, const std::string& text, bool on);
     /// Makes the requested effects those of the document. @param is_step  for undo
     void take_effects(bool is_step);
     /// Replaces the document with a state of its history.
@@ -127,6 +130,9 @@ void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
 /// What can be done with the chosen point. @param opens  at the cursor
 void point_menu(State& state, bool opens);
+/// What lies on the ground, from top to bottom.
+void layers_panel(State& state);
+/// The choice of the overlay, its computation and export.
 void overlay_panel(State& state);
 /// "sun hours 5.43 h": the overlay's value at a place; empty: unknown.
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place);

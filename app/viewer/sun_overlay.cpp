@@ -85,58 +85,79 @@ class OverlayWork::Levels {
     std::vector<Level> levels_;
 };
 
-session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun::Zone& zone,
-                                   const std::string& refraction) {
+namespace {
+
+/// First and last day of a choice.
+std::pair<sun::Date, sun::Date> days_of(const OverlayChoice& choice, const sun::Date& shown) {
+    if (!choice.has_period() || choice.period == OverlayPeriod::Day) return {shown, shown};
+    if (choice.period == OverlayPeriod::Year) return {{shown.year, 1, 1}, {shown.year, 12, 31}};
+    if (choice.period == OverlayPeriod::Range)
+        return {choice.first,
+                sun::days_between(choice.first, choice.last) < 0 ? choice.first : choice.last};
+    // Weeks begin on Monday, like 1 January 1900.
+    const sun::Date monday =
+        sun::add_days(shown, -((sun::days_between({1900, 1, 1}, shown) % 7 + 7) % 7));
+    return {monday, sun::add_days(monday, 6)};
+}
+
+session::SunFigure figure_of(OverlayKind kind) {
+    switch (kind) {
+        case OverlayKind::FirstLight:
+            return session::SunFigure::FirstLight;
+        case OverlayKind::LastLight:
+            return session::SunFigure::LastLight;
+        case OverlayKind::Irradiation:
+            return session::SunFigure::Irradiation;
+        case OverlayKind::Mask:
+            return session::SunFigure::Shadow;
+        case OverlayKind::SkyView:
+            return session::SunFigure::SkyView;
+        default:
+            return session::SunFigure::Hours;
+    }
+}
+
+/// "21 Dec 2026", "21 Dec to 27 Dec 2026", "2026".
+std::string words_of(const sun::Date& first, const sun::Date& last) {
+    if (first == last) return fmt::format("{} {}", day_label(first), first.year);
+    const bool one_year = first.year == last.year;
+    if (one_year && first == sun::Date{first.year, 1, 1} && last == sun::Date{last.year, 12, 31})
+        return std::to_string(first.year);
+    return fmt::format("{}{} to {} {}", day_label(first),
+                       one_year ? "" : fmt::format(" {}", first.year), day_label(last), last.year);
+}
+
+}  // namespace
+
+session::SunRasterWanted raster_of(const OverlayChoice& choice, sun::Instant utc,
+                                   const sun::Zone& zone, const std::string& refraction) {
     session::SunRasterWanted raster;
     raster.zone = zone;
     raster.refraction = refraction;
-    const sun::Date date = zone.local(utc).wall.date;
-    const auto days = [&](const sun::Date& first, const sun::Date& last) {
+    raster.figure = figure_of(choice.kind);
+    if (session::is_of_period(raster.figure)) {
+        const auto [first, last] = days_of(choice, zone.local(utc).wall.date);
         raster.begin = zone.day(first).begin;
         raster.end = zone.day(last).end;
-    };
-    switch (kind) {
-        case OverlayKind::Week: {
-            // Weeks begin on Monday, like 1 January 1900.
-            const sun::Date monday =
-                sun::add_days(date, -((sun::days_between({1900, 1, 1}, date) % 7 + 7) % 7));
-            days(monday, sun::add_days(monday, 6));
-            break;
-        }
-        case OverlayKind::Year:
-            days({date.year, 1, 1}, {date.year, 12, 31});
-            break;
-        case OverlayKind::Mask:
-            raster.figure = session::SunFigure::Shadow;
-            raster.begin = utc;
-            break;
-        case OverlayKind::SkyView:
-            raster.figure = session::SunFigure::SkyView;
-            break;
-        default:
-            days(date, date);
+    } else if (raster.figure == session::SunFigure::Shadow) {
+        raster.begin = utc;
     }
     return raster;
 }
 
-std::string title_of(OverlayKind kind, const session::SunRasterWanted& raster) {
+std::string title_of(const OverlayChoice& choice, const session::SunRasterWanted& raster) {
+    if (choice.kind == OverlayKind::SkyView) return "Sky-view factor";
     const sun::CivilTime from = raster.zone.local(raster.begin).wall;
-    const std::string first = fmt::format("{} {}", day_label(from.date), from.date.year);
-    switch (kind) {
-        case OverlayKind::Week: {
-            const sun::Date last = sun::add_days(from.date, 6);
-            return fmt::format("Sun hours, {} to {} {}", day_label(from.date), day_label(last),
-                               last.year);
-        }
-        case OverlayKind::Year:
-            return fmt::format("Sun hours, {}", from.date.year);
-        case OverlayKind::Mask:
-            return fmt::format("Direct sun, {}, {:02}:{:02}", first, from.hour, from.minute);
-        case OverlayKind::SkyView:
-            return "Sky-view factor";
-        default:
-            return fmt::format("Sun hours, {}", first);
-    }
+    if (choice.kind == OverlayKind::Mask)
+        return fmt::format("Direct sun, {}, {:02}:{:02}", words_of(from.date, from.date), from.hour,
+                           from.minute);
+    constexpr double kWithin_s = 1;  // the end is the midnight after the last day
+    const sun::Date last = raster.zone.local(raster.end + -kWithin_s).wall.date;
+    const char* const what = choice.kind == OverlayKind::FirstLight    ? "First light"
+                             : choice.kind == OverlayKind::LastLight   ? "Last light"
+                             : choice.kind == OverlayKind::Irradiation ? "Irradiation"
+                                                                       : "Sun hours";
+    return fmt::format("{}, {}", what, words_of(from.date, last));
 }
 
 bool same_figures(const OverlayWanted& a, const OverlayWanted& b) {
@@ -177,9 +198,13 @@ namespace {
 void colour(OverlayShown& shown) {
     const output::RasterBand band = session::band_of(shown.of.raster.figure);
     const Array2d<float>& values = shown.raster->values;
-    shown.overlay = session::overlay_of(
-        values, {shown.of.title, band.unit, session::usual_ramp(values, band.name, band.unit)},
-        shown.of.opacity);
+    chart::Legend legend{shown.of.title, band.unit,
+                         session::usual_ramp(values, band.name, band.unit)};
+    const std::optional<session::OverlayTime> time = shown.overlay.time;
+    if (time) session::show_as_clock(*time, legend);
+    shown.overlay = session::overlay_of(values, std::move(legend), shown.of.opacity, shown.of.lit);
+    shown.overlay.time = time;
+    shown.overlay.has_given_title = true;
 }
 
 }  // namespace
@@ -202,6 +227,7 @@ void OverlayWork::work_out(const OverlayWanted* wanted) {
             shown.raster = last_->raster;
             shown.grid = last_->grid;
             shown.every = last_->every;
+            shown.overlay.time = last_->overlay.time;
             colour(shown);
             publish(std::move(shown), true);
         } else {
@@ -237,6 +263,7 @@ void OverlayWork::measure(const OverlayWanted& now) {
         if (is_cancelled()) return;
         shown.grid = level.posts.grid();
         shown.every = level.every;
+        shown.overlay.time = session::time_of(level.posts, now.raster);
         colour(shown);
         publish(std::move(shown), is_last);
         if (is_given_up()) return;

@@ -28,15 +28,17 @@ struct OverlayWanted {
     std::optional<scene::Overlay> file;  ///< instead of `raster`
     std::string title;                   ///< of the legend
     double opacity = 1;
+    bool lit = false;  ///< as scene::Overlay
 };
 
-/// The raster of an overlay kind for the displayed time.
+/// The raster of a figure of the sun for the displayed time. A range whose last day is before its
+/// first is that of the first.
 /// @param utc, zone  as Document
-session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun::Zone& zone,
-                                   const std::string& refraction);
+session::SunRasterWanted raster_of(const OverlayChoice& choice, sun::Instant utc,
+                                   const sun::Zone& zone, const std::string& refraction);
 /// "Sun hours, 21 Dec 2026".
-std::string title_of(OverlayKind kind, const session::SunRasterWanted& raster);
-/// Whether both request the same values of the same DEM. Opacity may differ.
+std::string title_of(const OverlayChoice& choice, const session::SunRasterWanted& raster);
+/// Whether both request the same values of the same DEM. Opacity and light may differ.
 bool same_figures(const OverlayWanted& a, const OverlayWanted& b);
 
 /// A displayed overlay.

@@ -25,19 +25,40 @@ std::string text_of(double value, double step) {
                                                               : text;
 }
 
+/// "07:30". @param value  minutes since midnight
+std::string clock_of(double value) {
+    const auto minute = static_cast<int>(std::lround(value));
+    return fmt::format("{:02}:{:02}", minute / 60, minute % 60);
+}
+
+/// Round times of day from one to another, at most so many [min since midnight].
+std::vector<double> round_times(double from, double to, int most) {
+    std::vector<double> values;
+    for (const double step : {1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 180.0, 240.0, 360.0}) {
+        const double first = std::ceil(from / step - 1e-9), last = std::floor(to / step + 1e-9);
+        if (last - first + 1 > most) continue;
+        for (double k = first; k <= last; ++k)
+            values.push_back(k * step);
+        return values;
+    }
+    return values;
+}
+
 struct Label {
     double y;  // of its middle, from the top of the bar
     std::string text;
 };
 
 /// Labels beside a bar from the lowest value to the highest one.
-std::vector<Label> labels_of(const Ramp& ramp, const std::string& unit) {
-    const double low = ramp.stops.front().value, high = ramp.stops.back().value;
+std::vector<Label> labels_of(const Legend& of) {
+    const double low = of.ramp.stops.front().value, high = of.ramp.stops.back().value;
+    const std::string& unit = of.unit;
     std::vector<Label> labels;
-    const std::vector<double> values = round_values(low, high, kLabels);
+    const std::vector<double> values =
+        of.clock ? round_times(low, high, kLabels) : round_values(low, high, kLabels);
     const double step = values.size() > 1 ? values[1] - values[0] : std::max(high - low, 1.0);
     for (const double value : values)
-        labels.push_back({kBarHeight * (high - value) / (high - low), text_of(value, step)});
+        labels.push_back({kBarHeight * (high - value) / (high - low), value_text(of, value, step)});
     if (!labels.empty() && !unit.empty() && unit != "1")
         labels.back().text += (unit == "°" ? "" : " ") + unit;
     return labels;
@@ -118,6 +139,10 @@ void draw_classes(const std::vector<Legend::Class>& classes, double left, double
 
 }  // namespace
 
+std::string value_text(const Legend& legend, double value, double step) {
+    return legend.clock ? clock_of(value) : text_of(value, step);
+}
+
 std::vector<double> round_values(double from, double to, int most) {
     std::vector<double> values;
     if (!(to > from) || most < 2) return values;
@@ -140,7 +165,7 @@ Drawing legend(const Legend& about) {
         (!about.edges.empty() || (about.ramp.stops.size() > 1 &&
                                   about.ramp.stops.back().value > about.ramp.stops.front().value));
     const std::vector<Label> labels = !is_range || about.ring ? std::vector<Label>{}
-                                      : about.edges.empty()   ? labels_of(about.ramp, about.unit)
+                                      : about.edges.empty()   ? labels_of(about)
                                                               : labels_of(about.edges, about.unit);
     double width = about.ring ? kRing + 2 * kPadding : kLeastWidth;
     const double body =

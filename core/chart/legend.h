@@ -13,7 +13,8 @@ struct Legend {
     std::string title;  ///< "Sun hours, 21 December 2026"
     std::string unit;   ///< "h"; empty or "1": none
     Ramp ramp;
-    bool ring = false;  ///< of directions, 0 to 360 degrees clockwise from north
+    bool ring = false;   ///< of directions, 0 to 360 degrees clockwise from north
+    bool clock = false;  ///< values are minutes since midnight, written as times of day
     struct Class {
         std::string name;  ///< "in the shade"
         Color color;
@@ -26,8 +27,14 @@ struct Legend {
     /// ramp.
     std::vector<double> edges{};
 
+    std::string layer{};  ///< that has these colours: id of an effect; empty: the overlay
+
     bool operator==(const Legend&) const = default;
 };
+
+/// A value of a legend as text, without its unit: "7.5", "07:30".
+/// @param step  from one value to the next
+std::string value_text(const Legend& legend, double value, double step);
 
 /// A panel that stands alone on any picture: the title, the ramp and its values, of which round
 /// ones are written.

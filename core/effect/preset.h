@@ -12,11 +12,17 @@ struct Value;
 
 namespace relevo::effect {
 
+/// The scene's overlay in Switches::order.
+inline constexpr std::string_view kOverlay = "overlay";
+
 /// Ids of effects to switch on or off.
 struct Switches {
     std::optional<std::vector<std::string>> only;  ///< only these
     std::vector<std::string> enable;
     std::vector<std::string> disable;
+    /// Calling order of these effects, instead of that of their manifests; kOverlay is the scene's
+    /// overlay. Not of presets.
+    std::vector<std::string> order{};
     bool operator==(const Switches&) const = default;
 };
 

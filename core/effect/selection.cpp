@@ -47,6 +47,7 @@ class Selector {
         check_exclusive_hooks();
         Selection selection;
         selection.effects = ordered();
+        selection.over_overlay = over_overlay();
         std::set<std::string> words;
         for (const Effect* effect : selection.effects)
             words.insert(effect->manifest.provides.begin(), effect->manifest.provides.end());
@@ -102,6 +103,15 @@ class Selector {
             if (contains(switches.enable, id) || contains(only, id))
                 bad_input(
                     fmt::format("{}: {}: expected it either on or off but got both", kWho, id));
+        check_order(switches.order);
+    }
+
+    void check_order(const std::vector<std::string>& order) const {
+        for (auto id = order.begin(); id != order.end(); ++id) {
+            if (*id != kOverlay && !registry_.is_broken(*id)) effect(*id);
+            if (std::find(order.begin(), id, *id) != id)
+                bad_input(fmt::format("{}: order: {} is named twice", kWho, *id));
+        }
     }
 
     void apply(const Switches& switches) {
@@ -295,11 +305,26 @@ class Selector {
 
     /// Effects that must come before, and the word of `after`.
     std::map<std::string, std::string> before(const std::string& id) const {
+        const std::vector<std::string>& order = command_line_.order;
+        const auto place = std::ranges::find(order, id);
         std::map<std::string, std::string> result;
         for (const std::string& word : effect(id).manifest.after)
             for (const std::string& other : on_)
-                if (other != id && effect(other).provides(word)) result.emplace(other, word);
+                if (other != id && effect(other).provides(word) &&
+                    std::find(place, order.end(), other) == order.end())
+                    result.emplace(other, word);
+        if (place == order.end()) return result;
+        for (const std::string& other : on_)
+            if (std::find(order.begin(), place, other) != place) result.emplace(other, "order");
         return result;
+    }
+
+    /// Effects that the order places over the scene's overlay; nullopt if it does not name that.
+    std::optional<std::vector<std::string>> over_overlay() const {
+        const std::vector<std::string>& order = command_line_.order;
+        const auto overlay = std::ranges::find(order, kOverlay);
+        if (overlay == order.end()) return std::nullopt;
+        return std::vector<std::string>(overlay + 1, order.end());
     }
 
     std::vector<const Effect*> ordered() const {

@@ -20,6 +20,8 @@ struct Selection {
     /// Effects that the command line names and that are off because a requirement is not met: whole
     /// error messages.
     std::vector<std::string> refused;
+    /// As shader::StitchInput::over_overlay.
+    std::optional<std::vector<std::string>> over_overlay{};
 
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
@@ -39,7 +41,8 @@ using GroundWords = std::optional<std::vector<std::string>>;
 /// Each preset, and then the command line, changes that: `only` replaces the list, `enable` adds to
 /// it, `disable` removes from it. Effects that `only` and `enable` name switch on providers of
 /// their requirements, except disabled ones. An effect whose requirement has no provider is off.
-/// Order: after every provider of a word in `after`; ties by id.
+/// Order: after every provider of a word in `after`; ties by id. Effects in `order` are in that
+/// order whatever their `after`.
 ///
 /// Of two effects with the same `exclusive` word, the one that was requested last is on, the other
 /// is off, with a notice. The order is defaults, presets, command line (of two defaults the first
@@ -49,9 +52,11 @@ using GroundWords = std::optional<std::vector<std::string>>;
 /// @param unusable  effects that cannot be on: they are off, with a warning, and so are effects
 ///                  that require them
 /// @param ground    an effect that is on is a notice if the DEM lacks its feature
-/// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; one
-///         that `only` or `enable` name there and that cannot be on; a cycle of `after`; two
-///         providers of an exclusive hook, or of an exclusive word if both were requested at once
+/// @throws Error (BadInput) for an id on the command line that is unknown, both on and off, or
+/// twice
+///         in `order`; one that `only` or `enable` name there and that cannot be on; a cycle of
+///         `after`; two providers of an exclusive hook, or of an exclusive word if both were
+///         requested at once
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable = {},
                  const GroundWords& ground = {});

@@ -114,6 +114,7 @@ ordered_json effects_json(const Effects& effects, const fs::path& folder) {
     if (effects.switches.only) json["only"] = *effects.switches.only;
     if (!effects.switches.enable.empty()) json["enable"] = effects.switches.enable;
     if (!effects.switches.disable.empty()) json["disable"] = effects.switches.disable;
+    if (!effects.switches.order.empty()) json["order"] = effects.switches.order;
     for (const std::string& preset : effects.presets)
         json["presets"].push_back(effect::is_preset_file(preset) ? path_from_folder(preset, folder)
                                                                  : preset);
@@ -232,8 +233,7 @@ std::string padded_clock(const std::string& clock) {
 Effects merge(Effects effects, const Effects& change) {
     effect::Switches& switches = effects.switches;
     if (change.switches.only) {
-        switches = {};
-        switches.only = change.switches.only;
+        switches = {.only = change.switches.only, .order = std::move(switches.order)};
     } else if (switches.only) {
         remove(change.switches.disable, *switches.only);
     }
@@ -242,6 +242,7 @@ Effects merge(Effects effects, const Effects& change) {
     remove(change.switches.disable, switches.enable);
     add(change.switches.enable, switches.enable);
     add(change.switches.disable, switches.disable);
+    if (!change.switches.order.empty()) switches.order = change.switches.order;
     if (!change.presets.empty()) effects.presets = change.presets;
     for (const effect::Setting& setting : change.settings) {
         std::erase_if(effects.settings, [&](const effect::Setting& other) {

@@ -39,8 +39,9 @@ struct Overlay {
     std::string colours;  ///< a ramp's name or a colour file; empty: by what the band says it is
     std::optional<std::pair<double, double>> range;  ///< of a ramp's ends; none: the raster's
     double opacity = 1;                              ///< 0 to 1
-    bool lit = false;   ///< shaded by the scene's sun; else drawn in its own colours
-    std::string title;  ///< of the legend; empty: the band's name
+    bool lit = false;      ///< shaded by the scene's sun; else drawn in its own colours
+    bool shadows = false;  ///< cast shadows are on also if it shows sunlight of its own time
+    std::string title;     ///< of the legend; empty: the band's name
 };
 
 /// Whether Overlay::colours are a colour file, whose path has a slash or a dot, and not a ramp that

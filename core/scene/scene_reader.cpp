@@ -263,6 +263,7 @@ void SceneReader::take_effects(const json::Value& value, const std::string& path
     if (object.take("only")) change.switches.only = object.strings("only");
     change.switches.enable = object.strings("enable");
     change.switches.disable = object.strings("disable");
+    change.switches.order = object.strings("order");
     for (const std::string& preset : object.strings("presets"))
         change.presets.push_back(effect::is_preset_file(preset) ? beside(preset) : preset);
     change.settings = effect::read_settings(object, "set", folder_.string());

@@ -110,6 +110,7 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.passes = loaded.selection.passes();
     inputs.stitch.instances = loaded.selection.instances();
     inputs.stitch.capabilities = loaded.selection.capabilities;
+    inputs.stitch.over_overlay = loaded.selection.over_overlay;
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);

@@ -82,8 +82,9 @@ void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
 }
 
 /// Of steps: their colours from edge to edge.
-chart::Legend legend_of_steps(const ColourRamp& steps) {
-    chart::Legend legend{.title = steps.label, .unit = steps.unit, .edges = steps.edges};
+chart::Legend legend_of_steps(const ColourRamp& steps, const std::string& layer) {
+    chart::Legend legend{
+        .title = steps.label, .unit = steps.unit, .edges = steps.edges, .layer = layer};
     legend.ramp.continuous = false;
     for (std::size_t k = 0; k < steps.colours.size(); ++k)
         legend.ramp.stops.push_back({steps.edges[k], colour_of(steps.colours[k])});
@@ -91,16 +92,17 @@ chart::Legend legend_of_steps(const ColourRamp& steps) {
 }
 
 /// Adds the entries of a plugin's colours to a legend of their title.
-void add_entries(const ColourRamp& of, std::vector<chart::Legend>& legends) {
+void add_entries(const ColourRamp& of, const std::string& layer,
+                 std::vector<chart::Legend>& legends) {
     auto same = std::ranges::find_if(
         legends, [&](const chart::Legend& l) { return l.title == of.label && !l.classes.empty(); });
-    if (same == legends.end()) same = legends.insert(same, {.title = of.label});
+    if (same == legends.end()) same = legends.insert(same, {.title = of.label, .layer = layer});
     for (std::size_t k = 0; k < of.colours.size(); ++k)
         same->classes.push_back({of.entries[k], colour_of(of.colours[k])});
 }
 
 /// Adds a ramp to the one that it continues, or as a legend.
-void add_ramp(const ColourRamp& ramp, std::pair<double, double> ends,
+void add_ramp(const ColourRamp& ramp, std::pair<double, double> ends, const std::string& layer,
               std::vector<chart::Legend>& legends) {
     auto stops = stops_of(ramp, ends.first, ends.second);
     const auto same = std::ranges::find_if(legends, [&](const chart::Legend& l) {
@@ -110,7 +112,8 @@ void add_ramp(const ColourRamp& ramp, std::pair<double, double> ends,
     legends.push_back({.title = ramp.label,
                        .unit = ramp.unit,
                        .ramp = {.stops = std::move(stops)},
-                       .ring = ramp.is_ring});
+                       .ring = ramp.is_ring,
+                       .layer = layer});
 }
 
 }  // namespace
@@ -121,11 +124,11 @@ std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const De
         for (const ColourRamp& ramp : effect->ramps()) {
             if (!is_shown(ramp, effects.values)) continue;
             if (!ramp.entries.empty())
-                add_entries(ramp, legends);
+                add_entries(ramp, effect->id(), legends);
             else if (!ramp.edges.empty())
-                legends.push_back(legend_of_steps(ramp));
+                legends.push_back(legend_of_steps(ramp, effect->id()));
             else if (const auto ends = ends_of(ramp, effects.values, ground))
-                add_ramp(ramp, *ends, legends);
+                add_ramp(ramp, *ends, effect->id(), legends);
         }
     return legends;
 }

@@ -14,7 +14,7 @@ bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
     return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
            effects.plugin_path == other.effects.plugin_path && compared == other.compared &&
            ground == other.ground && overlay_raster == other.overlay_raster &&
-           overlay_has_time == other.overlay_has_time;
+           hides_shadows == other.hides_shadows;
 }
 
 bool EffectsRequest::operator==(const EffectsRequest& other) const {
@@ -35,13 +35,13 @@ DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
                           /*report=*/true, asked.ground);
     const std::vector<std::string>& refused = drawn.effects_->loaded.selection.refused;
     if (!asked.allow_unmet && !refused.empty()) bad_input(refused.front());
-    if (asked.overlay_has_time)
+    if (asked.hides_shadows)
         for (const std::string& id : drawn.effects_->switch_off_unasked("shadow"))
             if (report)
                 log::info(fmt::format(
-                    "{} is off: the overlay shows sunlight of its own time; --enable {} switches "
-                    "it on",
-                    id, id));
+                    "{} is off: the overlay shows sunlight of its own time; --overlay-shadows "
+                    "switches it on",
+                    id));
     if (compared)
         drawn.others_ =
             ActiveEffects::of(session::without(asked.effects, asked.compared, *drawn.effects_),

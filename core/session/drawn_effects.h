@@ -21,8 +21,8 @@ struct EffectsRequest {
     std::vector<std::string> compared{};  ///< effects to compare, as in Options
     effect::GroundWords ground{};         ///< facts about the DEM; empty while it is unknown
     bool overlay_raster = false;          ///< an overlay covers the ground
-    /// The overlay holds sunlight of its own time: cast shadows are off unless enabled by id.
-    bool overlay_has_time = false;
+    /// The overlay shows sunlight of its own time: cast shadows are off unless enabled by id.
+    bool hides_shadows = false;
     bool allow_unmet = false;  ///< as in Options
 
     /// True if only parameter values may differ.

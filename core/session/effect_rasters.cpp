@@ -56,10 +56,14 @@ render::NamedRasters EffectRasters::named() const {
     return rasters;
 }
 
-std::vector<chart::Legend> EffectRasters::legends() const {
+std::vector<chart::Legend> EffectRasters::legends(const std::string& zone,
+                                                  const geo::Geodetic& middle) const {
     std::vector<chart::Legend> legends;
     for (const auto& [resource, entry] : entries_)
-        if (entry.overlay.legend) legends.push_back(*entry.overlay.legend);
+        if (std::optional<chart::Legend> legend = dated_legend(entry.overlay, zone, middle)) {
+            legend->layer = resource.substr(0, resource.find('.'));
+            legends.push_back(std::move(*legend));
+        }
     return legends;
 }
 

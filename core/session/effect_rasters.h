@@ -26,7 +26,8 @@ class EffectRasters {
 
     render::NamedRasters named() const;
     /// Of rasters of one band that are drawn in colours.
-    std::vector<chart::Legend> legends() const;
+    /// @param zone, middle  as dated_legend()
+    std::vector<chart::Legend> legends(const std::string& zone, const geo::Geodetic& middle) const;
 
   private:
     struct Source {

@@ -123,6 +123,14 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
     return chart::named_ramp("viridis", low, high);
 }
 
+void show_as_clock(const OverlayTime& time, chart::Legend& legend) {
+    if (legend.unit != "min" || !time.is_day()) return;
+    legend.clock = true;
+    legend.unit.clear();
+    constexpr std::string_view kMinutes = "minutes to the ";
+    if (legend.title.starts_with(kMinutes)) legend.title.erase(0, kMinutes.size());
+}
+
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
     return overlay_time(dem::band_metadata(overlay.file, overlay.band));
 }
@@ -146,6 +154,7 @@ Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
         };
         legend.classes = {{"in the sun", color(1)}, {"in the shade", color(0)}};
     }
+    if (time) show_as_clock(*time, legend);
     Overlay overlay = overlay_of(band.values, std::move(legend), asked.opacity, asked.lit);
     overlay.time = time;
     overlay.has_given_title = !asked.title.empty();

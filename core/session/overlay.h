@@ -39,6 +39,10 @@ Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double op
 chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
                        const std::string& unit);
 
+/// Has the legend of minutes since the beginning of a day show times of day, unless the clocks are
+/// changed on it. Changes no other legend.
+void show_as_clock(const OverlayTime& time, chart::Legend& legend);
+
 /// Time of a scene's overlay, read from metadata only; nullopt if it is not a sun raster.
 /// @throws Error (BadInput) as dem::band_metadata()
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay);

@@ -35,6 +35,12 @@ std::string words(const std::string& iso) {
 
 }  // namespace
 
+bool OverlayTime::is_day() const {
+    if (from.empty() || words(from).size() > 10) return false;
+    constexpr double kDay_s = 86400;
+    return time_of(to)->utc - time_of(from)->utc == kDay_s;
+}
+
 std::optional<OverlayTime> overlay_time(const std::map<std::string, std::string>& about) {
     OverlayTime time;
     if (const auto utc = time_of(value(about, "TIME_UTC"))) time.utc = utc->utc;
@@ -46,6 +52,7 @@ std::optional<OverlayTime> overlay_time(const std::map<std::string, std::string>
     if (from && to) {
         time.from = sun::to_iso(from->utc, from->zone);
         time.to = sun::to_iso(to->utc, to->zone);
+        time.zone = printable(value(about, "TIME_ZONE"));
     }
     if (!time.sun && time.from.empty()) return std::nullopt;
     return time;
@@ -60,11 +67,12 @@ std::string clock_text(const OverlayTime& time, const std::string& zone,
     if (const bool days = words(time.from).size() == 10 && words(to).size() == 10; days)
         to = sun::to_iso(time_of(to)->utc + -1.0, time_of(to)->zone).substr(0, 10) + "T00:00";
     const std::string first = words(time.from), last = words(to);
-    if (first == last) return first;
+    const std::string where = time.zone.empty() ? "" : ", " + time.zone;
+    if (first == last) return first + where;
     // Within one day, the date is written once.
     const bool one_day =
         first.size() > 10 && last.size() > 10 && first.substr(0, 10) == last.substr(0, 10);
-    return fmt::format("{} to {}", first, one_day ? last.substr(11) : last);
+    return fmt::format("{} to {}{}", first, one_day ? last.substr(11) : last, where);
 }
 
 std::string sun_text(const OverlayTime& time) {

@@ -91,20 +91,23 @@ void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
 }
 
-void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster) {
-    impl_->set_overlay(std::move(raster));
+void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster,
+                          bool without_shadows) {
+    impl_->set_overlay(std::move(raster), without_shadows);
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
     const render::Ground& of = ground();
-    return session::colour_legends(
+    std::vector<chart::Legend> all = session::colour_legends(
         effects(), {of.lowest_m, of.highest_m, impl_->state.dem()->drawn.water.has_sea_floor});
+    const std::vector<chart::Legend> of_rasters =
+        impl_->rasters.legends(scene().time.zone, of.frame.origin());
+    all.insert(all.end(), of_rasters.begin(), of_rasters.end());
+    return all;
 }
 
 std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
-    const std::vector<chart::Legend> of_rasters = impl_->rasters.legends();
-    all.insert(all.end(), of_rasters.begin(), of_rasters.end());
     if (const std::optional<chart::Legend> legend = overlay_legend())
         all.insert(all.begin(), *legend);
     return all;

@@ -148,7 +148,9 @@ class Session {
     void resize(int width_px, int height_px);
     /// Draws an overlay on the ground; null: none. The first overlay requires other shader
     /// programs.
-    void set_overlay(std::shared_ptr<const render::OverlayRaster> raster);
+    /// @param without_shadows  cast shadows are off unless enabled by id
+    void set_overlay(std::shared_ptr<const render::OverlayRaster> raster,
+                     bool without_shadows = false);
     /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
     /// The legend of the scene's overlay; nullopt without one.
@@ -156,9 +158,9 @@ class Session {
     /// Options::compared.
     const std::vector<std::string>& compared() const;
     /// Time of the scene's overlay; nullopt if it does not show sunlight. Stamps show it instead of
-    /// the scene's time. Cast shadows are then off unless enabled by id.
+    /// the scene's time. Cast shadows are then off unless enabled by id or scene::Overlay::shadows.
     const std::optional<OverlayTime>& overlay_time() const;
-    /// Legends of the active effects.
+    /// Legends of the active effects and of their rasters.
     std::vector<chart::Legend> colour_legends() const;
     /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
     /// sun is dragged. Lighting by core is always current.

@@ -36,6 +36,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     if (scene.overlay) {
         add_files(*scene.overlay, files);
         overlay_time = time_of(*scene.overlay);
+        hides_shadows = overlay_time && !scene.overlay->shadows;
     }
     std::optional<sun::ParsedTime> time;
     const bool timed = !scene.time.at.empty();
@@ -80,7 +81,7 @@ EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     request.allow_unmet = options.allow_unmet;
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
-    request.overlay_has_time = overlay_time.has_value();
+    request.hides_shadows = has_overlay_raster() && hides_shadows;
     return request;
 }
 
@@ -245,15 +246,18 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     if (request(effects).ground != drawn->request().ground) set_effects(effects);
 }
 
-void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted) {
+void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted,
+                                bool without_shadows) {
     context->make_current();
     std::swap(overlay_raster, wanted);
+    std::swap(hides_shadows, without_shadows);
     terrain->set_overlay(overlay_raster);
     try {
         const EffectsRequest with_overlay = request(drawn->request().effects);
         if (with_overlay != drawn->request()) switch_to(with_overlay);
     } catch (...) {
         std::swap(overlay_raster, wanted);
+        std::swap(hides_shadows, without_shadows);
         terrain->set_overlay(overlay_raster);
         throw;
     }

@@ -53,7 +53,8 @@ struct Session::Impl {
     std::shared_ptr<const render::OverlayRaster> overlay_raster;
     std::optional<Overlay> overlay;  // of the scene
     std::optional<OverlayTime> overlay_time;
-    EffectRasters rasters;  // of the drawn effects
+    bool hides_shadows = false;  // of the overlay: EffectsRequest
+    EffectRasters rasters;       // of the drawn effects
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
     std::optional<render::PicturePart> part;   // of the scene's picture, that frames show
@@ -83,7 +84,7 @@ struct Session::Impl {
     void show(const scene::Scene& next, sun::Instant utc);
     void upload(const std::shared_ptr<const LoadedDem>& dem);
     void take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given);
-    void set_overlay(std::shared_ptr<const render::OverlayRaster> wanted);
+    void set_overlay(std::shared_ptr<const render::OverlayRaster> wanted, bool without_shadows);
     void look(const scene::View& view);
     DrawnShape shape();
     std::optional<double> drawn_height_m(const scene::Camera& camera);

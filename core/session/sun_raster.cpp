@@ -11,6 +11,7 @@
 #include "light/raster/beyond.h"
 #include "light/raster/horizons.h"
 #include "light/raster/sun_hours.h"
+#include "session/hours_bands.h"
 #include "session/words.h"
 #include "sun/position.h"
 
@@ -42,14 +43,19 @@ Options options_for(const dem::Window& part, const std::function<void(double)>& 
 
 SunRasterMaker hours_of(const dem::Posts& posts, const SunRasterWanted& wanted,
                         const dem::Window& window, const std::function<void(double)>& done) {
+    const std::string_view word = hours_word(wanted.figure);
     auto options = options_for<light::SunHoursOptions>(window, done);
     options.air = air_of(wanted.refraction);
     options.step_s = kSunStep_s;
+    options.spells = needs_spells(word);
+    if (needs_irradiation(word)) options.irradiation.emplace();
     const auto plan =
         std::make_shared<light::SunHoursPlan>(posts, wanted.begin, wanted.end, options);
-    return [plan](const dem::Window& part) {
+    return [plan, word, irradiation = options.irradiation](const dem::Window& part) {
         light::SunHours hours = plan->part(part);
-        return SunRaster{std::move(hours.hours), hours.holes, std::move(hours.definition)};
+        std::string definition = std::move(hours.definition);
+        if (irradiation) definition += "; " + definition_of(*irradiation);
+        return SunRaster{hours_values(word, hours), hours.holes, std::move(definition)};
     };
 }
 
@@ -87,7 +93,7 @@ output::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWante
     const auto air = [&] { return air_of_posts(wanted.refraction, posts); };
     if (wanted.figure == SunFigure::SkyView)
         return {{"DIRECTIONS", fmt::format("{}", kSkyDirections)}};
-    if (wanted.figure == SunFigure::Hours)
+    if (is_of_period(wanted.figure))
         return {{"TIME_FROM", sun::to_iso(wanted.begin, wanted.zone)},
                 {"TIME_TO", sun::to_iso(wanted.end, wanted.zone)},
                 {"TIME_ZONE", wanted.zone.name()},
@@ -111,7 +117,7 @@ std::optional<light::Beyond> beyond_of(const dem::Posts& posts, const SunRasterW
     light::ShadowOptions options;
     options.refraction = kTerrestrialRefraction;
     options.air = air_of(wanted.refraction);
-    if (wanted.figure == SunFigure::Hours)
+    if (is_of_period(wanted.figure))
         return light::terrain_beyond(posts, all, light::suns_of(grid, wanted.begin, wanted.end),
                                      options);
     return light::terrain_beyond(
@@ -120,8 +126,21 @@ std::optional<light::Beyond> beyond_of(const dem::Posts& posts, const SunRasterW
 
 }  // namespace
 
-output::RasterBand sun_hours_band() {
-    return {"sun hours", "h"};
+bool is_of_period(SunFigure figure) {
+    return figure < SunFigure::Shadow;
+}
+
+std::string_view hours_word(SunFigure figure) {
+    switch (figure) {
+        case SunFigure::FirstLight:
+            return "first";
+        case SunFigure::LastLight:
+            return "last";
+        case SunFigure::Irradiation:
+            return "global";
+        default:
+            return "hours";
+    }
 }
 
 output::RasterBand shadow_band(bool soft) {
@@ -133,8 +152,13 @@ output::RasterBand sky_view_band() {
 }
 
 output::RasterBand band_of(SunFigure figure) {
-    if (figure == SunFigure::Hours) return sun_hours_band();
+    if (is_of_period(figure)) return hours_band(hours_word(figure));
     return figure == SunFigure::Shadow ? shadow_band(false) : sky_view_band();
+}
+
+std::optional<OverlayTime> time_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
+    const output::RasterMetadata about = metadata_of(posts, wanted);
+    return overlay_time({about.begin(), about.end()});
 }
 
 SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
@@ -209,7 +233,7 @@ bool same_figures(const SunRasterWanted& a, const SunRasterWanted& b) {
 SunRasterMaker sun_raster_maker(const dem::Posts& posts, const SunRasterWanted& wanted,
                                 const dem::Window& window,
                                 const std::function<void(double)>& done) {
-    if (wanted.figure == SunFigure::Hours) return hours_of(posts, wanted, window, done);
+    if (is_of_period(wanted.figure)) return hours_of(posts, wanted, window, done);
     if (wanted.figure == SunFigure::Shadow) return shadow_of(posts, wanted, window, done);
     return sky_of(posts, window, done);
 }

@@ -10,6 +10,7 @@
 #include "dem/posts.h"
 #include "light/raster/shadows.h"
 #include "output/raster_writer.h"
+#include "session/overlay_time.h"
 #include "sun/zone.h"
 
 /// Rasters of sunlight over a DEM, identical from the command line and the viewer.
@@ -21,7 +22,6 @@ inline constexpr double kSunStep_s = 180;
 inline constexpr int kSkyDirections = 36;
 
 /// Band names and units in files.
-output::RasterBand sun_hours_band();
 output::RasterBand shadow_band(bool soft);
 output::RasterBand sky_view_band();
 
@@ -62,12 +62,25 @@ std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t mo
 /// the memory of a height.
 inline constexpr std::int64_t kPostsAPart = 8;
 
-enum class SunFigure { Hours, Shadow, SkyView };
+enum class SunFigure {
+    Hours,        ///< of direct sun in a period
+    FirstLight,   ///< minutes from the beginning of a period to the first direct sun
+    LastLight,    ///< to the last one
+    Irradiation,  ///< global clear-sky irradiation in a period, with the defaults of --linke,
+                  ///< --albedo
+    Shadow,       ///< at one time
+    SkyView,      ///< sky-view factor
+};
+
+/// True for the figures of `relevo sun hours`, which are of a period.
+bool is_of_period(SunFigure figure);
+/// The band of `relevo sun hours` that has a figure: "first". Requires is_of_period().
+std::string_view hours_word(SunFigure figure);
 
 /// What to compute at each post.
 struct SunRasterWanted {
     SunFigure figure = SunFigure::Hours;
-    sun::Instant begin, end;  ///< period of the hours; a shadow's time is `begin`
+    sun::Instant begin, end;  ///< a period; a shadow's time is `begin`
     sun::Zone zone;           ///< time zone in the metadata
     std::string refraction = "standard";
 };
@@ -77,12 +90,15 @@ bool same_figures(const SunRasterWanted& a, const SunRasterWanted& b);
 
 /// Values over a part of a DEM.
 struct SunRaster {
-    Array2d<float> values;  ///< hours; 0 or 1; a fraction. NaN in voids
+    Array2d<float> values;  ///< in the unit of band_of(). NaN in voids, and where there is no light
     std::int64_t holes = 0;
     std::string definition;
 };
 
 output::RasterBand band_of(SunFigure figure);
+
+/// The time that such a raster shows, as overlay_time() of its file; nullopt for the sky view.
+std::optional<OverlayTime> time_of(const dem::Posts& posts, const SunRasterWanted& wanted);
 
 /// Computes parts of a raster, one after the other, with a shared plan.
 using SunRasterMaker = std::function<SunRaster(const dem::Window& part)>;

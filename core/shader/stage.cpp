@@ -289,12 +289,26 @@ std::vector<std::string> Stage::providers(const Hook& hook) const {
 }
 
 std::vector<std::string> Stage::called_functions(const Hook& hook) const {
+    const std::vector<std::string> ids = providers(hook);
     std::vector<std::string> functions;
-    for (const std::string& id : providers(hook))
+    for (const std::string& id : ids)
         functions.push_back(fmt::format("{}_on_{}", id, hook.name));
-    if (functions.empty() && hook.kind != HookKind::Chain)
-        functions.push_back(fmt::format("core_on_{}", hook.name));
+    const std::string of_core = fmt::format("core_on_{}", hook.name);
+    if (hook.kind != HookKind::Chain) {
+        if (functions.empty()) functions.push_back(of_core);
+    } else if (places_.count(of_core) > 0) {
+        functions.insert(functions.begin() + place_of_overlay(hook, ids), of_core);
+    }
     return functions;
+}
+
+std::ptrdiff_t Stage::place_of_overlay(const Hook& hook,
+                                       const std::vector<std::string>& ids) const {
+    if (!input_.over_overlay)
+        return hook.name == "display" ? 0 : static_cast<std::ptrdiff_t>(ids.size());
+    const auto first = std::ranges::find_if(
+        ids, [&](const std::string& id) { return contains(*input_.over_overlay, id); });
+    return first - ids.begin();
 }
 
 // ---- reachability

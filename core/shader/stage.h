@@ -85,13 +85,16 @@ class Stage {
     bool calls(const Hook& hook) const { return hooks_.count(hook.name) > 0; }
     bool needs_prototype(const Hook& hook) const;
     std::string head(const Hook& hook) const;  ///< of the generated function
-    std::vector<std::string> called_functions(
-        const Hook& hook) const;  ///< functions that it calls, in order
+    /// Functions that it calls, in order. core_on_<hook> of a chain, if there is one, draws the
+    /// scene's overlay.
+    std::vector<std::string> called_functions(const Hook& hook) const;
     /// The chain that modifies what a service returns; null if it has none, or no provider.
     const Hook* chain_after(const Hook& service) const;
     std::vector<std::string> providers(const Hook& hook) const;  ///< ids of the plugins among them
 
   private:
+    /// How many of a chain's providers draw under the scene's overlay.
+    std::ptrdiff_t place_of_overlay(const Hook& hook, const std::vector<std::string>& ids) const;
     struct Place {
         std::size_t unit;
         std::size_t item;

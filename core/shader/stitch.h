@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,7 +51,10 @@ struct StitchInput {
     std::vector<PluginPass> passes{};       ///< of the enabled plugins
     std::vector<InstanceSet> instances{};   ///< of the enabled plugins
     const ParamStore* values = nullptr;     ///< of static parameters; null: their defaults
-    int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
+    /// Ids of plugins that draw over the scene's overlay. nullopt: all that have the hook display
+    /// do, and a lit overlay is over the materials of all.
+    std::optional<std::vector<std::string>> over_overlay{};
+    int max_texture_units = 16;  ///< GL_MAX_TEXTURE_IMAGE_UNITS
     /// Textures equal to another one, with the name of that one on the device.
     std::map<std::string, std::string> same_textures{};
 };

@@ -1,7 +1,8 @@
-//! provides  overlay_colour: the colours of the scene's overlay
+//! provides  the scene's overlay, which lies among what effects draw in the hooks material and display
 //! reads     gbuffer, overlay_pages: premultiplied sRGB
 
 //@ include lib/raster.glsl
+//@ include lib/srgb.glsl
 
 uniform sampler2DArray overlay_pages;
 uniform usampler2D overlay_table;
@@ -10,3 +11,25 @@ uniform usampler2D overlay_table;
 vec4 overlay_colour(in vec2 post, in float posts_a_pixel) {
     return raster_texels(overlay_pages, overlay_table, frame.overlay_texels, frame.overlay_shape, post, posts_a_pixel);
 }
+
+#ifdef OVERLAY_RASTER
+vec4 overlay_here;  // its colour at this pixel
+
+/// Lit: its colours take the place of the ground's reflectance.
+void core_on_material(inout Surface s) {
+    if (frame.overlay_shape.w == 0.0) return;
+    vec4 laid = overlay_here;
+    vec3 reflectance = srgb_decoded(min(laid.rgb / max(laid.a, 1e-3), 1.0));
+    s.diffuse = mix(s.diffuse, reflectance, laid.a);
+    s.ambient = mix(s.ambient, reflectance, laid.a);
+    s.specular *= 1.0 - laid.a;
+    s.emissive *= 1.0 - laid.a;
+    // The image has its own texture: bumps of materials would be drawn over it.
+    s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
+}
+
+/// Flat: in its own colours.
+void core_on_display(in Surface s, inout vec4 overlay) {
+    if (frame.overlay_shape.w == 0.0) overlay = overlay_here + overlay * (1.0 - overlay_here.a);
+}
+#endif

@@ -130,6 +130,20 @@ TEST(Legend, OfClassesHasAnEntryEachAndNoRamp) {
     EXPECT_THAT(words, ElementsAre("direct sun", "in the sun", "in the shade"));
 }
 
+TEST(Legend, OfMinutesOfADayHasTimes) {
+    Legend light{"First light", "", named_ramp("viridis", 7 * 60 + 20, 13 * 60 + 5)};
+    light.clock = true;
+    const Drawing drawing = legend(light);
+    std::vector<std::string> words;
+    for (const Drawing::Item& item : drawing.items())
+        if (const auto* text = std::get_if<Drawing::Text>(&item)) words.push_back(text->words);
+    EXPECT_THAT(words,
+                ElementsAre("First light", "08:00", "09:00", "10:00", "11:00", "12:00", "13:00"));
+    EXPECT_EQ(value_text(light, 443, 1), "07:23");
+    light.clock = false;
+    EXPECT_EQ(value_text(light, 443, 1), "443");
+}
+
 TEST(Legend, StandsOnAPictureWithItsTitleRampAndValues) {
     const Drawing drawing = legend({"Sun hours", "h", named_ramp("sun", 0, 14)});
     std::vector<std::string> words;

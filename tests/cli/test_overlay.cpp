@@ -118,12 +118,14 @@ TEST_F(OverlayOption, OfTheSunHasNoShadowsOfAnotherSunUnlessAskedFor) {
     };
     const image::Image8 usual = taken_with("usual.png", {});
     EXPECT_EQ(differing(usual, taken_with("off.png", {"--disable", "shadows"})), 0);
-    EXPECT_GT(differing(usual, taken_with("on.png", {"--enable", "shadows"})), 1000);
+    const image::Image8 on = taken_with("on.png", {"--enable", "shadows"});
+    EXPECT_GT(differing(usual, on), 1000);
+    EXPECT_EQ(differing(on, taken_with("asked.png", {"--overlay-shadows"})), 0);
     std::filesystem::remove(dir_ / "loud.png");
     const Result loud = relevo({"capture", bundled_dem(), "-o", (dir_ / "loud.png").string(),
                                 "--size", "64x48", scene[0], scene[1], scene[2], scene[3]});
     EXPECT_NE(loud.err.find("relevo: shadows is off: the overlay shows sunlight of its own time; "
-                            "--enable shadows switches it on"),
+                            "--overlay-shadows switches it on"),
               std::string::npos)
         << loud.err;
     // Of what is no light of the sun they stay.
@@ -132,6 +134,38 @@ TEST_F(OverlayOption, OfTheSunHasNoShadowsOfAnotherSunUnlessAskedFor) {
     std::vector<std::string> without = heights;
     without.insert(without.end(), {"--disable", "shadows"});
     EXPECT_GT(differing(taken("other.png", heights), taken("other_off.png", without)), 500);
+}
+
+// Two opaque layers: the picture shows the upper one.
+TEST_F(OverlayOption, LiesOverOrUnderAnEffectAsOrdered) {
+    const std::string hours = raster("hours.tif", {"hours", "--date", "2026-06-21"});
+    for (const char* light : {"flat", "lit"}) {
+        SCOPED_TRACE(light);
+        const std::vector<std::string> overlay{"--overlay", hours, "--overlay-light", light,
+                                               "--no-legend"};
+        const std::vector<std::string> drape{"--enable",   "drape",
+                                             "--set",      "drape.file=" + hours,
+                                             "--set",      "drape.colours=viridis",
+                                             "--set",      std::string("drape.light=") + light,
+                                             "--no-legend"};
+        const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+            words.insert(words.end(), more.begin(), more.end());
+            return words;
+        };
+        const std::vector<std::string> both = with(overlay, drape);
+        const image::Image8 upper_overlay = taken("overlay.png", overlay);
+        const image::Image8 upper_drape = taken("drape.png", with(drape, {"--disable", "shadows"}));
+        const image::Image8 one = taken("one.png", with(both, {"--order", "drape,overlay"}));
+        const image::Image8 other = taken("other.png", with(both, {"--order", "overlay,drape"}));
+        EXPECT_GT(differing(one, other), 5000);
+        EXPECT_LT(differing(one, upper_overlay), 50);
+        EXPECT_LT(differing(other, upper_drape), 50);
+        // Without an order a flat overlay lies under effects, a lit one over them.
+        const bool is_lit = light == std::string("lit");
+        EXPECT_EQ(differing(taken("usual.png", both), is_lit ? one : other), 0);
+    }
+    EXPECT_EQ(capture("refused.png", {"--order", "drape,overlay,drape"}).err,
+              "relevo: error: effects: order: drape is named twice\n");
 }
 
 TEST_F(OverlayOption, ARampIsTheBuiltInOneWhateverFileHasItsName) {

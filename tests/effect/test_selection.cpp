@@ -363,6 +363,40 @@ TEST(Selection, OfTwoExclusiveProvidersTheLastOneAskedForIsOn) {
                                   "brings it back"));
 }
 
+// ---- the order that is asked for
+
+TEST(Selection, AnOrderReplacesThatOfTheManifests) {
+    const Plugins plugins;
+    plugins.add("soil", R"("provides": ["soil"])");
+    plugins.add("photo", R"("provides": ["photo"], "after": ["soil"])");
+    plugins.add("names", R"("after": ["photo"])");
+    plugins.add("track", "");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("soil", "photo", "names", "track"));
+    EXPECT_EQ(select(registry, {}, {}).over_overlay, std::nullopt);
+    // "after" of two effects in it does not count, that of others does.
+    const Selection other = select(registry, {}, {.order = {"track", "names", "overlay", "photo"}});
+    EXPECT_THAT(ids(other), ElementsAre("soil", "track", "names", "photo"));
+    EXPECT_THAT(*other.over_overlay, ElementsAre("photo"));
+    // Effects that are off do not matter.
+    const Selection off = select(
+        registry, {}, {.disable = {"names"}, .order = {"photo", "names", "track", "overlay"}});
+    EXPECT_THAT(ids(off), ElementsAre("soil", "photo", "track"));
+    EXPECT_THAT(*off.over_overlay, IsEmpty());
+}
+
+TEST(SelectionError, AnOrderHasKnownEffectsOnce) {
+    const Plugins plugins;
+    plugins.add("track", "");
+    const Registry registry = plugins.load();
+    const auto error = [&](Words order) {
+        return plugins.relative(
+            error_of([&] { select(registry, {}, {.order = std::move(order)}); }));
+    };
+    EXPECT_EQ(error({"track", "overlay", "track"}), "exit 3: effects: order: track is named twice");
+    EXPECT_THAT(error({"trck"}), testing::HasSubstr("did you mean track?"));
+}
+
 // ---- what is refused
 
 TEST(SelectionError, ACircleNamesItsSides) {

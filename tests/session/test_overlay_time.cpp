@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "session/overlay.h"
 #include "session/overlay_time.h"
 
 namespace relevo::session {
@@ -47,6 +48,45 @@ TEST(OverlayTime, OfAPeriodIsItsDaysOrHours) {
     EXPECT_EQ(sun_text(*overlay_time({{"TIME_FROM", "2026-06-21T00:00:00+02:00"},
                                       {"TIME_TO", "2026-06-22T00:00:00+02:00"}})),
               "");
+}
+
+TEST(OverlayTime, OfAPeriodNamesTheZoneOfItsDays) {
+    std::map<std::string, std::string> about{{"TIME_FROM", "2026-06-21T00:00:00+09:00"},
+                                             {"TIME_TO", "2026-06-22T00:00:00+09:00"},
+                                             {"TIME_ZONE", "Asia/Tokyo"}};
+    EXPECT_EQ(clock_of(about), "2026-06-21, Asia/Tokyo");
+    EXPECT_TRUE(overlay_time(about)->is_day());
+    about["TIME_TO"] = "2026-06-24T00:00:00+09:00";
+    EXPECT_EQ(clock_of(about), "2026-06-21 to 2026-06-23, Asia/Tokyo");
+    EXPECT_FALSE(overlay_time(about)->is_day());
+    // A day of 25 hours, and one that does not begin at midnight.
+    EXPECT_FALSE(overlay_time({{"TIME_FROM", "2026-10-25T00:00:00+02:00"},
+                               {"TIME_TO", "2026-10-26T00:00:00+01:00"}})
+                     ->is_day());
+    EXPECT_FALSE(overlay_time({{"TIME_FROM", "2026-06-21T01:00:00+02:00"},
+                               {"TIME_TO", "2026-06-22T01:00:00+02:00"}})
+                     ->is_day());
+}
+
+// Minutes since midnight are times of day, on days without a change of the clocks.
+TEST(OverlayTime, FirstLightIsATimeOfDay) {
+    const OverlayTime day = *overlay_time(
+        {{"TIME_FROM", "2026-06-21T00:00:00+02:00"}, {"TIME_TO", "2026-06-22T00:00:00+02:00"}});
+    chart::Legend minutes{.title = "minutes to the first light", .unit = "min"};
+    show_as_clock(day, minutes);
+    EXPECT_TRUE(minutes.clock);
+    EXPECT_EQ(minutes.title, "first light");
+    EXPECT_EQ(minutes.unit, "");
+    EXPECT_EQ(chart::value_text(minutes, 454, 1), "07:34");
+    chart::Legend hours{.title = "sun hours", .unit = "h"};
+    show_as_clock(day, hours);
+    EXPECT_FALSE(hours.clock);
+    const OverlayTime changed = *overlay_time(
+        {{"TIME_FROM", "2026-10-25T00:00:00+02:00"}, {"TIME_TO", "2026-10-26T00:00:00+01:00"}});
+    chart::Legend that_day{.title = "minutes to the first light", .unit = "min"};
+    show_as_clock(changed, that_day);
+    EXPECT_FALSE(that_day.clock);
+    EXPECT_EQ(that_day.unit, "min");
 }
 
 TEST(OverlayTime, WhatIsOfNoSunHasNone) {

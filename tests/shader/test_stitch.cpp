@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <map>
 
 #include <gmock/gmock.h>
@@ -115,6 +116,45 @@ TEST(Stitch, AChainCallsEveryProviderInOrder) {
                                 "    snow_on_albedo(s);\n"
                                 "    haze_on_albedo(s);\n"
                                 "}\n"));
+}
+
+// Core's own function of a chain draws the scene's overlay.
+TEST(Stitch, TheOverlayLiesAmongWhatPluginsDraw) {
+    const std::string main = R"(
+void core_on_material(inout Surface s) {}
+void core_on_display(in Surface s, inout vec4 overlay) {}
+layout(location = 0) out vec4 colour;
+void main() {
+    Surface s;
+    hook_material(s);
+    hook_display(s, colour);
+}
+)";
+    const Written written =
+        plugins({{"photo",
+                  "void photo_on_material(inout Surface s) {}\n"
+                  "void photo_on_display(in Surface s, inout vec4 o) {}"},
+                 {"track", "void track_on_display(in Surface s, inout vec4 o) {}"}});
+    const auto calls = [&](std::optional<std::vector<std::string>> over) {
+        StitchInput input = written.input();
+        input.over_overlay = std::move(over);
+        const std::string text =
+            stitch(core_with({{"terrain.frag.glsl", main}}), terrain_program(), input)
+                .fragment.text;
+        std::string order;
+        for (std::size_t at = text.find("hook_material("); at < text.size(); ++at)
+            for (const char* name :
+                 {"core_on_material(s)", "photo_on_material(s)", "core_on_display(s,",
+                  "photo_on_display(s,", "track_on_display(s,"})
+                if (text.compare(at, std::strlen(name), name) == 0)
+                    order += std::string(name, std::strchr(name, '_')) +
+                             (std::strstr(name, "material") ? "/" : " ");
+        return order;
+    };
+    EXPECT_EQ(calls(std::nullopt), "photo/core/core photo track ");
+    EXPECT_EQ(calls(std::vector<std::string>{"photo"}), "core/photo/core photo track ");
+    EXPECT_EQ(calls(std::vector<std::string>{"track"}), "photo/core/photo core track ");
+    EXPECT_EQ(calls(std::vector<std::string>{}), "photo/core/photo track core ");
 }
 
 TEST(Stitch, AnExclusiveHookCallsItsProviderInsteadOfTheDefault) {
