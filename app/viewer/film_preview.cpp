@@ -22,7 +22,7 @@ void FilmPreview::show(const scene::Shot& frame, const Pose& pose, const std::st
     document.pose = pose;
     // An overlay that is in no file is not in the film.
     document.overlay = {};
-    if (frame.scene.overlay) document.overlay = {OverlayKind::File, frame.scene.overlay->opacity};
+    if (frame.scene.overlay) document.overlay = choice_of(*frame.scene.overlay);
     state_.set_utc(frame.utc);
     document.utc = frame.utc;  // also beyond the years of the calendar
     const std::string text = value.empty() ? "" : text_of(frame.scene.effects, value);
