@@ -23,6 +23,7 @@
 #include "dem/files_of.h"
 #include "effect/search_path.h"
 #include "geo/format.h"
+#include "scene/panorama.h"
 #include "session/batch.h"
 #include "session/picture_file.h"
 #include "session/record.h"
@@ -193,6 +194,7 @@ void capture(const Arguments& arguments) {
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
     const session::PictureFormat format = arguments.format.picture();
     const auto [scene, compared] = wanted(arguments);
+    scene::check_panorama(scene);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");
     image::check_encoding(output, encoding,

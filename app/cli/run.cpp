@@ -19,6 +19,7 @@
 #include "cli/job_run.h"
 #include "cli/shard.h"
 #include "scene/job.h"
+#include "scene/panorama.h"
 #include "session/batch.h"
 #include "session/made.h"
 #include "session/record.h"
@@ -111,6 +112,7 @@ class Run {
 
   private:
     void check_format(const scene::Shot& shot) const {
+        scene::check_panorama(shot.scene);
         image::check_encoding(shot.output, arguments_.format.encoding(),
                               {.width_px = shot.scene.width_px,
                                .height_px = shot.scene.height_px,

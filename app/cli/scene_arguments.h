@@ -43,6 +43,7 @@ struct SceneArguments {
 
   private:
     void apply_stamps_to(scene::Stamps& result) const;
+    void apply_size_to(scene::Scene& result) const;
 };
 
 }  // namespace relevo::cli

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "session/panorama_parts.h"
 #include "session/picture_tiles.h"
 #include "session/session_impl.h"
 
@@ -23,6 +24,15 @@ RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format);
 /// Samples of each pixel of a scene's picture.
 int samples_of(const scene::Scene& scene);
 
+/// How far full-screen effects may read around a pixel: bloom's widest level reaches 157 px.
+inline constexpr int kMargin_px = 256;
+/// Pixels of the frames that larger pictures are made of: their targets take 60 bytes each.
+inline constexpr double kTileFrame_px = 1 << 23;
+
+/// @throws Error (BadInput) for active effects that compute from the whole frame
+/// @param expected  what they would need, for the message
+void refuse_whole_frame_effects(const DrawnEffects& drawn, const std::string& expected);
+
 /// Size of the frames that a scene's picture is drawn in [px]: the picture's, or less.
 glm::ivec2 frame_px(const scene::Scene& scene, const PictureFormat& format, int max_side_px);
 
@@ -36,6 +46,12 @@ class PictureMaker {
     image::Picture whole(render::PassTimes* times);
     /// Rows of tiles from the top.
     void bands(const std::function<void(const image::Picture&)>& take);
+
+    /// @param times  of the first frame; may be null
+    void time_first_frame(render::PassTimes* times) { times_ = times; }
+    /// Draws a frame of a panorama. depths_m() are then its own, rows from the top.
+    /// @param camera  of the picture that the frame is a part of
+    image::Picture panorama_frame(const PanoramaPart& part, const scene::Camera& camera);
 
     bool is_tiled() const { return tiles_.size() > 1; }
     bool shows_ground() const { return shows_ground_; }
@@ -68,7 +84,7 @@ class PictureMaker {
     glm::ivec2 picture_px_;
     std::vector<PictureTile> tiles_;
     render::PassTimes* times_ = nullptr;
-    bool keeps_depths_ = false, shows_ground_ = false;
+    bool keeps_depths_ = false, shows_ground_ = false, of_panorama_ = false;
     std::vector<float> depths_m_;
 };
 

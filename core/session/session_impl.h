@@ -102,6 +102,13 @@ struct Session::Impl {
     /// Size of frames [px]: that of the scene, or less if its picture is drawn in tiles.
     glm::ivec2 frame_px() const;
     image::Picture make_picture(const Session& session, render::PassTimes* times);
+    image::Picture make_panorama(const Session& session, render::PassTimes* times);
+    /// @throws Error (BadInput) for what a panorama cannot have
+    void check_panorama() const;
+    /// Whether a picture has marks, stamps or legends. @throws Error (BadInput) if it is too large
+    bool is_annotated(const Session& session) const;
+    /// Draws on a picture of any kind but linear light. @param draw  draws on its colours
+    void annotate(image::Picture& picture, const std::function<void(image::Image8&)>& draw) const;
     /// @param has_legends  which are not drawn; stamp_notes says so
     void make_bands(const std::function<void(const image::Picture&)>& take, bool has_legends);
     FaultyPicture faulty(const ActiveEffects& shown, int count);

@@ -39,7 +39,7 @@ class Stamper {
   public:
     /// @param stamped  must outlive this; its depths are moved from
     Stamper(Stamped& stamped, const image::Image8& picture)
-        : of_(stamped), wanted_(stamped.scene.stamps) {
+        : of_(stamped), wanted_(of_any_projection(stamped.scene, notes_)) {
         if (!needs_depths(wanted_)) return;
         seen_.emplace(of_.camera, picture.width, picture.height, std::move(stamped.depths_m));
         middle_ = seen_->middle();
@@ -75,9 +75,19 @@ class Stamper {
             notes_.emplace_back("stamp: graticule: no line is long enough to be named");
     }
 
-    std::vector<std::string> notes_;
+    std::vector<std::string>& notes() { return notes_; }
 
   private:
+    /// The stamps that a scene wants, without those that need a perspective picture.
+    static scene::Stamps of_any_projection(const scene::Scene& scene,
+                                           std::vector<std::string>& notes) {
+        scene::Stamps stamps = scene.stamps;
+        if (scene.view.panorama == scene::Panorama::None || !needs_depths(stamps)) return stamps;
+        stamps.scale = stamps.north = stamps.graticule = false;
+        notes.emplace_back("stamp: scale, north and graticule are not drawn on panoramas");
+        return stamps;
+    }
+
     /// The date and sun of an overlay come from its metadata or are omitted: those of the scene may
     /// differ.
     void add_line(const char* label, const std::string& words, const char* name,
@@ -124,8 +134,9 @@ class Stamper {
         return drawn_m >= height_m - kGround_px / seen_->px_per_m(depth_m);
     }
 
+    std::vector<std::string> notes_;
     const Stamped& of_;
-    const scene::Stamps& wanted_;
+    const scene::Stamps wanted_;
     std::optional<SeenGround> seen_;
     std::optional<glm::ivec2> middle_;
 };
@@ -159,7 +170,8 @@ std::vector<std::string> add_stamps(const Session& session,
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
     if (needs_depths(wanted) && depths_m) stamped.depths_m = *depths_m;
-    if (needs_depths(wanted) && !depths_m) session.read_depths(stamped.depths_m);
+    const bool perspective = session.scene().view.panorama == scene::Panorama::None;
+    if (needs_depths(wanted) && !depths_m && perspective) session.read_depths(stamped.depths_m);
     const std::optional<OverlayTime>& laid = session.overlay_time();
     if (wanted.date)
         stamped.clock =
@@ -175,10 +187,10 @@ std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Le
     chart::Stamps stamps = stamper.stamps(legends);
     stamper.add_graticule(picture, stamps);
     for (const std::string& name : chart::stamp(stamps, picture, &taken))
-        stamper.notes_.push_back(
+        stamper.notes().push_back(
             fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
                         picture.width, picture.height));
-    return std::move(stamper.notes_);
+    return std::move(stamper.notes());
 }
 
 }  // namespace relevo::session
