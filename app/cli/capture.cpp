@@ -24,6 +24,7 @@
 #include "effect/search_path.h"
 #include "geo/format.h"
 #include "scene/panorama.h"
+#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/picture_file.h"
 #include "session/record.h"
@@ -195,6 +196,7 @@ void capture(const Arguments& arguments) {
     const session::PictureFormat format = arguments.format.picture();
     const auto [scene, compared] = wanted(arguments);
     scene::check_panorama(scene);
+    scene::check_stereo(scene);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");
     image::check_encoding(output, encoding,

@@ -108,6 +108,8 @@ void View::take_lens_of(const View& other) {
     focal_length_mm = other.focal_length_mm;
     panorama = other.panorama;
     hfov_rad = other.hfov_rad;
+    stereo = other.stereo;
+    eye_distance_m = other.eye_distance_m;
 }
 
 double within_a_turn_deg(double angle_deg) {

@@ -21,6 +21,9 @@ struct Standpoint {
 /// How a picture all around the eye is projected: core/scene/panorama.h.
 enum class Panorama { None, Cylindrical, Equirectangular };
 
+/// How a pair of pictures for two eyes is put into one: core/scene/stereo.h.
+enum class Stereo { None, Parallel, CrossEyed, Anaglyph };
+
 /// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a
 /// place or along a heading.
 struct View {
@@ -33,6 +36,8 @@ struct View {
     double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
     Panorama panorama = Panorama::None;
     double hfov_rad = 2 * kPi;  ///< horizontal field of view of a panorama
+    Stereo stereo = Stereo::None;
+    double eye_distance_m = 0;  ///< between the eyes of a stereo pair; 0: by the near ground
 
     /// Takes what does not depend on the place of a camera from another.
     void take_lens_of(const View& other);

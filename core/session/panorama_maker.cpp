@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
 
 #include "base/error.h"
@@ -18,19 +19,6 @@ namespace {
 
 /// Enough for interpolation and the smoothing of silhouettes, without effects that read further.
 constexpr int kLeastMargin_px = 16;
-
-/// Restores a camera at its end.
-class CameraKept {
-  public:
-    explicit CameraKept(scene::Camera& camera) : camera_(camera), kept_(camera) {}
-    ~CameraKept() { camera_ = kept_; }
-    CameraKept(const CameraKept&) = delete;
-    CameraKept& operator=(const CameraKept&) = delete;
-
-  private:
-    scene::Camera& camera_;
-    scene::Camera kept_;
-};
 
 }  // namespace
 
@@ -53,19 +41,41 @@ scene::PanoramaMap panorama_map(const scene::Scene& scene, const geo::LocalFrame
             std::asin(std::clamp(ahead.z, -1.0, 1.0))};
 }
 
+void Session::Impl::refuse_with_several_cameras(const std::string& what) const {
+    if (!options.format->layers.empty()) bad_input(what + ": has no layers, remove --layers");
+    if (drawn->without()) bad_input(what + ": cannot be compared, remove --ab");
+    if (options.audited) bad_input(what + ": cannot be audited, remove --audit");
+    if (needs_bands(state.scene, *options.format, options.radiance))
+        bad_input(what + ": takes more than 1 GiB; use a smaller --size");
+}
+
 void Session::Impl::check_panorama() const {
     scene::check_panorama(state.scene);
-    if (!options.format->layers.empty()) bad_input("--panorama: has no layers, remove --layers");
-    if (drawn->without()) bad_input("--panorama: cannot be compared, remove --ab");
-    if (options.audited) bad_input("--panorama: cannot be audited, remove --audit");
-    if (needs_bands(state.scene, *options.format, options.radiance))
-        bad_input("--panorama: takes more than 1 GiB; use a smaller --size");
+    refuse_with_several_cameras("--panorama");
     refuse_whole_frame_effects(*drawn, "a picture without --panorama");
     if (drawn->renderer().shows_block() &&
         render::is_outside(state.ground(), state.inputs.camera.eye_m, state.scene.exaggeration))
         bad_input(
             "--panorama: the eye is outside of the DEM or far above it, from where the DEM is "
             "drawn as a block; choose another --eye");
+}
+
+void Session::Impl::draw_marks_around(image::Image8& picture, std::span<const chart::Rect> taken,
+                                      const MarkView::Around& around,
+                                      const std::vector<float>& distances_m) {
+    std::vector<LoadedMarks> of_files;
+    for (const LoadedMarks& list : drawn->marks()) {
+        if (list.places)
+            of_files.push_back(list);
+        else if (list.spec->from.empty())  // a module places them for one frame
+            stamp_notes.push_back(
+                fmt::format("{}: its {} are not drawn on panoramas", list.plugin, list.spec->name));
+    }
+    chart::Drawing drawing(picture.width, picture.height);
+    draw_marks(marks(of_files, drawn->effects(), drawn->renderer()),
+               view_of(state.inputs.camera, around, distances_m),
+               {0, 0, drawing.width(), drawing.height()}, taken, drawing);
+    chart::paint(drawing, 0, 0, 1, picture);
 }
 
 image::Picture Session::Impl::make_panorama(const Session& session, render::PassTimes* times) {
@@ -85,8 +95,11 @@ image::Picture Session::Impl::make_panorama(const Session& session, render::Pass
              parts_of(map, reads_around ? kMargin_px : kLeastMargin_px, kTileFrame_px,
                       context->info().max_picture_size)) {
             const glm::dmat3 turned = axes * shown.axes;
-            panorama.add(shown, maker.panorama_frame(
-                                    shown, {camera.eye_m, turned[2], turned[1], shown.fov_y_rad}));
+            const scene::Camera turned_camera{camera.eye_m, turned[2], turned[1], shown.fov_y_rad};
+            panorama.add(shown, maker.draw({.camera = turned_camera,
+                                            .picture_px = shown.picture_px,
+                                            .rect = shown.frame,
+                                            .of_panorama = true}));
             if (annotated) panorama.add_depths(shown, maker.depths_m());
         }
     }
@@ -99,6 +112,7 @@ image::Picture Session::Impl::make_panorama(const Session& session, render::Pass
         annotate(picture, [&](image::Image8& on) {
             std::vector<chart::Rect> taken;
             stamp_notes = add_stamps(session, session.legends(), on, taken);
+            draw_marks_around(on, taken, {map, axes}, panorama.distances_m());
         });
     return picture;
 }

@@ -69,8 +69,9 @@ bool fits(const scene::Scene& scene, const PictureFormat& format, int max_side_p
 
 RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
     const int samples = samples_of(scene);
-    const bool panorama = scene.view.panorama != scene::Panorama::None;
-    return {.deep = samples > 1 || format.bits > 8 || panorama,
+    const bool mixed = scene.view.panorama != scene::Panorama::None ||
+                       scene.view.stereo == scene::Stereo::Anaglyph;
+    return {.deep = samples > 1 || format.bits > 8 || mixed,
             .antialias = samples < kEnoughSamples,
             .data = !format.layers.empty()};
 }
@@ -100,8 +101,9 @@ PictureMaker::PictureMaker(Session::Impl& impl)
       linear_(impl.options.radiance),
       picture_px_(scene_.width_px, scene_.height_px) {
     const int max_side_px = impl.context->info().max_picture_size;
-    const bool panorama = scene_.view.panorama != scene::Panorama::None;
-    if (panorama || fits(scene_, format_, max_side_px)) {
+    const bool other =
+        scene_.view.panorama != scene::Panorama::None || scene_.view.stereo != scene::Stereo::None;
+    if (other || fits(scene_, format_, max_side_px)) {
         const PictureRect all{{0, 0}, picture_px_};
         tiles_ = {{all, all}};
         return;
@@ -114,9 +116,12 @@ PictureMaker::PictureMaker(Session::Impl& impl)
 void PictureMaker::draw_frame(const PictureTile& tile, const glm::dvec2& offset_px) {
     impl_.drawn->resize(tile.frame.size.x, tile.frame.size.y);
     impl_.part.reset();
-    if (is_tiled() || of_panorama_ || offset_px != glm::dvec2(0))
-        impl_.part = render::PicturePart{picture_px_, glm::dvec2(tile.frame.corner) + offset_px,
-                                         of_panorama_};
+    if (frame_)
+        impl_.part = render::PicturePart{
+            frame_->picture_px, glm::dvec2(tile.frame.corner) + frame_->moved_px + offset_px,
+            frame_->of_panorama};
+    else if (is_tiled() || offset_px != glm::dvec2(0))
+        impl_.part = render::PicturePart{picture_px_, glm::dvec2(tile.frame.corner) + offset_px};
     impl_.draw(render::Loading::Wait, std::exchange(times_, nullptr));
 }
 
@@ -135,7 +140,7 @@ void PictureMaker::take_depths(const PictureTile& tile, const std::vector<float>
                         return std::isfinite(depth_m);
                     });
     if (!keeps_depths_) return;
-    if (of_panorama_) {
+    if (frame_) {
         depths_m_ = depths_m;
         return;
     }
@@ -216,12 +221,11 @@ image::Picture PictureMaker::draw(const PictureTile& tile) {
     return picture;
 }
 
-image::Picture PictureMaker::panorama_frame(const PanoramaPart& part, const scene::Camera& camera) {
-    of_panorama_ = true;
-    picture_px_ = part.picture_px;
-    impl_.state.inputs.camera = camera;
-    const PictureTile frame{part.frame, part.frame};
-    return samples_of(scene_) == 1 ? draw_once(frame) : draw_samples(frame);
+image::Picture PictureMaker::draw(const Frame& frame) {
+    frame_ = frame;
+    impl_.state.inputs.camera = frame.camera;
+    const PictureTile tile{frame.rect, frame.rect};
+    return samples_of(scene_) == 1 ? draw_once(tile) : draw_samples(tile);
 }
 
 image::Picture PictureMaker::whole(render::PassTimes* times) {
@@ -297,7 +301,9 @@ void Session::Impl::annotate(image::Picture& picture,
                              const std::function<void(image::Image8&)>& draw) const {
     auto* const plain = std::get_if<image::Image8>(&picture.pixels);
     if (plain && plain->channels == 3) return draw(*plain);
-    const image::Image8 over = drawn_alone(state.scene.width_px, state.scene.height_px, draw);
+    const auto size = std::visit(
+        [](const auto& pixels) { return glm::ivec2(pixels.width, pixels.height); }, picture.pixels);
+    const image::Image8 over = drawn_alone(size.x, size.y, draw);
     if (plain)
         lay_over(over, *plain);
     else
@@ -306,6 +312,7 @@ void Session::Impl::annotate(image::Picture& picture,
 
 image::Picture Session::Impl::make_picture(const Session& session, render::PassTimes* times) {
     if (state.scene.view.panorama != scene::Panorama::None) return make_panorama(session, times);
+    if (state.scene.view.stereo != scene::Stereo::None) return make_stereo(session, times);
     PictureMaker maker(*this);
     const bool annotated = is_annotated(session);
     if (maker.is_tiled() && annotated) maker.keep_depths();

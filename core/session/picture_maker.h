@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "session/panorama_parts.h"
 #include "session/picture_tiles.h"
 #include "session/session_impl.h"
 
@@ -49,9 +48,17 @@ class PictureMaker {
 
     /// @param times  of the first frame; may be null
     void time_first_frame(render::PassTimes* times) { times_ = times; }
-    /// Draws a frame of a panorama. depths_m() are then its own, rows from the top.
-    /// @param camera  of the picture that the frame is a part of
-    image::Picture panorama_frame(const PanoramaPart& part, const scene::Camera& camera);
+    /// A frame of another camera than the scene's.
+    struct Frame {
+        scene::Camera camera;
+        glm::ivec2 picture_px{0};  ///< size of the camera's picture
+        PictureRect rect;          ///< of that picture
+        glm::dvec2 moved_px{0};    ///< further to the right and up
+        bool of_panorama = false;  ///< as render::PicturePart
+    };
+    /// Draws a frame with the scene's samples, in 8 bits only if the renderer has no more.
+    /// depths_m() are then its own, rows from the top. The session keeps the camera.
+    image::Picture draw(const Frame& frame);
 
     bool is_tiled() const { return tiles_.size() > 1; }
     bool shows_ground() const { return shows_ground_; }
@@ -84,7 +91,8 @@ class PictureMaker {
     glm::ivec2 picture_px_;
     std::vector<PictureTile> tiles_;
     render::PassTimes* times_ = nullptr;
-    bool keeps_depths_ = false, shows_ground_ = false, of_panorama_ = false;
+    bool keeps_depths_ = false, shows_ground_ = false;
+    std::optional<Frame> frame_;  // instead of tiles
     std::vector<float> depths_m_;
 };
 

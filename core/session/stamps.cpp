@@ -35,6 +35,10 @@ std::string length_text(double length_m) {
                              : fmt::format("{:.0f} m", length_m);
 }
 
+bool is_of_one_camera(const scene::View& view) {
+    return view.panorama == scene::Panorama::None && view.stereo == scene::Stereo::None;
+}
+
 class Stamper {
   public:
     /// @param stamped  must outlive this; its depths are moved from
@@ -82,9 +86,10 @@ class Stamper {
     static scene::Stamps of_any_projection(const scene::Scene& scene,
                                            std::vector<std::string>& notes) {
         scene::Stamps stamps = scene.stamps;
-        if (scene.view.panorama == scene::Panorama::None || !needs_depths(stamps)) return stamps;
+        if (is_of_one_camera(scene.view) || !needs_depths(stamps)) return stamps;
         stamps.scale = stamps.north = stamps.graticule = false;
-        notes.emplace_back("stamp: scale, north and graticule are not drawn on panoramas");
+        notes.emplace_back(
+            "stamp: scale, north and graticule are not drawn on panoramas and stereo pairs");
         return stamps;
     }
 
@@ -170,8 +175,8 @@ std::vector<std::string> add_stamps(const Session& session,
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
     if (needs_depths(wanted) && depths_m) stamped.depths_m = *depths_m;
-    const bool perspective = session.scene().view.panorama == scene::Panorama::None;
-    if (needs_depths(wanted) && !depths_m && perspective) session.read_depths(stamped.depths_m);
+    if (needs_depths(wanted) && !depths_m && is_of_one_camera(session.scene().view))
+        session.read_depths(stamped.depths_m);
     const std::optional<OverlayTime>& laid = session.overlay_time();
     if (wanted.date)
         stamped.clock =

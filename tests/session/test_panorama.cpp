@@ -2,9 +2,13 @@
 // computed from the posts, and its seams.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
@@ -136,6 +140,46 @@ TEST(Panorama, SkylineIsTheHorizonOfThePosts) {
             EXPECT_GE(summits.directions, 20);
             EXPECT_LT(summits.worst_deg, 0.03);
         }
+    }
+}
+
+/// Columns and rows of the pixels in which two pictures differ.
+struct Changed {
+    glm::ivec2 low{1 << 30}, high{-1};
+
+    Changed(const image::Image8& a, const image::Image8& b) {
+        for (int y = 0; y < a.height; ++y)
+            for (int x = 0; x < a.width; ++x)
+                if (std::abs(a.at(x, y, 0) - b.at(x, y, 0)) > 40) {
+                    low = min(low, glm::ivec2(x, y));
+                    high = max(high, glm::ivec2(x, y));
+                }
+    }
+};
+
+TEST(Panorama, NamesStandOverTheirPlaces) {
+    const std::filesystem::path file = test::scratch_dir() / "places.csv";
+    std::ofstream(file) << "name,lat,lon,height\nCloud,36.40,-84.10,1500\n";
+    for (const auto kind : {scene::Panorama::Cylindrical, scene::Panorama::Equirectangular}) {
+        scene::Scene scene = scene_of(kind, 250, 8, 400);
+        const Drawn without = drawn(scene);
+        scene.effects.switches.enable = {"labels"};
+        scene.effects.settings = {{"labels.file", file.string()}};
+        const Drawn with = drawn(scene);
+        const Changed changed(std::get<image::Image8>(without.picture.pixels),
+                              std::get<image::Image8>(with.picture.pixels));
+        // Azimuth and elevation on a sphere are near enough for a name.
+        const geo::Geodetic& eye = scene.view.eye->place;
+        const double north_m = radians(36.40) - eye.lat_rad,
+                     east_m = (radians(-84.10) - eye.lon_rad) * std::cos(radians(36.365));
+        const double azimuth = std::atan2(east_m, north_m);
+        const double away_m = 6.37e6 * std::hypot(east_m, north_m);
+        const double rise = (1500 - kEye_m) / away_m - away_m / (2 * 6.37e6);
+        const auto at = with.map.project({std::sin(azimuth), std::cos(azimuth), rise});
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(0.5 * (changed.low.x + changed.high.x), at->x, 4);
+        EXPECT_NEAR(changed.high.y, at->y, 6);
+        EXPECT_LT(changed.high.x - changed.low.x, 80);
     }
 }
 
