@@ -1,5 +1,6 @@
 #include "film/film.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "cli/job_run.h"
 #include "dem/files_of.h"
 #include "scene/film_job.h"
+#include "session/film_day.h"
 #include "sun/event_time.h"
 
 namespace relevo::cli {
@@ -23,18 +25,20 @@ namespace fs = std::filesystem;
 
 struct Arguments {
     JobArguments job;
-    std::string motion, along, span, save_job;
+    std::string motion, along, span, vary, save_job;
     double duration_s = 10, turns = 1;
     film::Settings film;
     std::optional<double> height_m, look_ahead_m, speed_m_s;
     std::optional<int> quality;
+    std::optional<bool> ease;
     bool no_loop = false;
 };
 
-constexpr const char* kDefaultSpan = "sunrise-30min,sunset+30min";
+const std::string kDefaultSpan = fmt::format("{},{}", session::kFilmDayFrom, session::kFilmDayTo);
 
 /// What moves: the words of --motion.
 std::vector<std::string> motions(const Arguments& arguments) {
+    if (arguments.motion.empty() && arguments.along.empty() && !arguments.vary.empty()) return {};
     if (arguments.motion.empty()) return {arguments.along.empty() ? "day" : "flight"};
     std::vector<std::string> words = split(arguments.motion, ',');
     const std::vector<std::string> known{"day", "year", "orbit", "flight"};
@@ -90,11 +94,16 @@ class Maker {
         for (const std::string& word : motions(arguments_)) {
             if (word == "day") job.day = day();
             if (word == "year") job.year = year();
-            if (word == "orbit") job.orbit = {arguments_.turns};
+            if (word == "orbit") job.orbit = {arguments_.turns, arguments_.ease.value_or(false)};
             if (word == "flight")
-                job.flight = {arguments_.along, arguments_.height_m, arguments_.look_ahead_m,
-                              arguments_.speed_m_s};
+                job.flight = {.along = arguments_.along,
+                              .views = {},
+                              .height_m = arguments_.height_m,
+                              .look_ahead_m = arguments_.look_ahead_m,
+                              .speed_m_s = arguments_.speed_m_s,
+                              .ease = arguments_.ease.value_or(true)};
         }
+        if (!arguments_.vary.empty()) job.value = value();
         if (!job.day && !job.year) fix_date();
         return job;
     }
@@ -114,44 +123,32 @@ class Maker {
     }
 
     scene::FilmJob::Day day() {
-        const std::vector<std::string> ends =
-            split(arguments_.span.empty() ? kDefaultSpan : arguments_.span, ',');
+        if (arguments_.span.empty()) {
+            const auto [day, note] =
+                session::film_day(scene_, sun::to_string(date()), zone_, times_);
+            if (!note.empty()) log::info(note);
+            return day;
+        }
+        const std::vector<std::string> ends = split(arguments_.span, ',');
         if (ends.size() != 2)
             bad_usage(fmt::format("--span: {}: expected FROM,TO such as {}",
                                   printable(arguments_.span), kDefaultSpan));
         scene::FilmJob::Day day{sun::to_string(date()), zone_, ends[0], ends[1]};
-        if (zone_.empty()) day.zone = zone_of(day.date);
-        if (arguments_.span.empty() && !has_sunrise_and_sunset(day)) {
-            day.from = "00:00";
-            day.to = "23:59";
-        }
+        if (zone_.empty()) day.zone = session::film_zone(scene_, day.date, times_);
         return day;
     }
 
-    /// The zone of the place by its name, so that the job says it.
-    std::string zone_of(const std::string& date) {
-        scene::Scene scene = scene_;
-        scene.time = {"noon", date, ""};
-        const std::string name = times_.of(scene).zone.name();
-        return name.starts_with("LMT") ? "" : name;
-    }
-
-    /// Where the sun does not rise or set, or sets after midnight, a day is the whole day.
-    bool has_sunrise_and_sunset(const scene::FilmJob::Day& day) {
-        const auto at = [&](const std::string& event) {
-            scene::Scene scene = scene_;
-            scene.time = {event, day.date, day.zone};
-            return times_.of(scene).utc;
-        };
-        try {
-            if (at(day.from) < at(day.to)) return true;
-            log::info(fmt::format("{}: the sun sets after midnight; the film shows the whole day",
-                                  day.date));
-        } catch (const Error& error) {
-            if (error.code() != ErrorCode::BadInput) throw;
-            log::info(fmt::format("the film shows the whole day: {}", error.what()));
-        }
-        return false;
+    scene::FilmJob::Value value() const {
+        const std::string& text = arguments_.vary;
+        const std::size_t equals = std::min(text.find('='), text.size());
+        const std::vector<std::string> ends =
+            split(equals < text.size() ? text.substr(equals + 1) : "", ',');
+        std::optional<double> from, to;
+        if (ends.size() == 2) from = parse_number(ends[0]), to = parse_number(ends[1]);
+        if (equals == 0 || !from || !to)
+            bad_usage(fmt::format("--vary: {}: expected ADDRESS=FROM,TO such as haze.density=0,0.2",
+                                  printable(text)));
+        return {text.substr(0, equals), *from, *to};
     }
 
     scene::FilmJob::Year year() {
@@ -209,6 +206,13 @@ void add_motion(CLI::App& verb, Arguments& arguments) {
         ->group("Film");
     verb.add_option("--turns", arguments.turns, "Turns of an orbit, clockwise from above (1)")
         ->check(in_range(-1000, 1000))
+        ->group("Film");
+    verb.add_flag("--ease,!--no-ease", arguments.ease,
+                  "Whether the camera begins and ends at rest (flights do, orbits do not)")
+        ->group("Film");
+    verb.add_option(
+            "--vary", arguments.vary,
+            "A parameter from one value to another, ADDRESS=FROM,TO; alone or with --motion")
         ->group("Film");
     verb.add_option("--along", arguments.along, "Line of a flight: GPX, CSV or GeoJSON")
         ->group("Film");

@@ -18,6 +18,11 @@ namespace {
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
 
+/// Height of the status line.
+float status_px() {
+    return 2 * ImGui::GetFontSize() + 4;
+}
+
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -111,43 +116,78 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         if (is_under) {
             // At the edge with more room, upper or lower.
             const float top = ImGui::GetFrameHeight() + 10;
-            at_px_.y = point->y - top > size_px.y - point->y ? top : size_px.y - extent_px_.y;
+            at_px_.y = point->y - top > size_px.y - point->y
+                           ? top
+                           : size_px.y - extent_px_.y - status_px();
         }
     }
     ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
     ImGui::SetNextWindowSize({extent_px_.x, extent_px_.y});
 }
 
+void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
+    const glm::vec2 sides = state.side_panel_px.value_or(glm::vec2(0));
+    // On the right of the side panel unless that is at the right edge.
+    const bool is_left = sides.x + sides.y < size_px.x;
+    const float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
+    if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
+    docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
+    ImGui::SetNextWindowPos({left, size_px.y - status_px()}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowSize({std::max(360 * unit, right - left), docked_px_});
+    state.docked_px = docked_px_;
+    is_open_ = false;  // place() begins anew
+}
+
+void ChartsPanel::tabs(State& state) {
+    const auto tab = [&](const char* name, bool is_there, const auto& draw_it) {
+        if (!ImGui::BeginTabItem(name)) return;
+        const ImVec2 room = ImGui::GetContentRegionAvail();
+        state.chart_px = {static_cast<int>(room.x), static_cast<int>(room.y)};
+        if (is_there)
+            draw_it();
+        else if (state.point && !state.point->error.empty())
+            ImGui::TextWrapped("%s", state.point->error.c_str());
+        else
+            ImGui::TextDisabled("computing its horizon ...");
+        ImGui::EndTabItem();
+    };
+    tab("Horizon", horizon_.chart != nullptr, [&] { horizon(state); });
+    tab("Year", year_.chart != nullptr, [&] { year(state); });
+    bool& is_docked = state.settings.charts_are_docked;
+    if (ImGui::TabItemButton(is_docked ? "Float" : "Dock", ImGuiTabItemFlags_Trailing))
+        is_docked = !is_docked;
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(is_docked ? "Moves freely" : "Stays at the lower edge of the window");
+}
+
 void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
     horizon_.take(state.point ? state.point->horizon : nullptr);
     year_.take(state.point ? state.point->year : nullptr);
     state.chart_px = {0, 0};
+    state.docked_px = 0;
     if (!state.settings.charts || !state.chosen) {
         is_open_ = false;
         return;
     }
-    place(state, size_px, static_cast<float>(px_a_unit));
+    const bool is_docked = state.settings.charts_are_docked;
+    if (is_docked)
+        dock(state, size_px, static_cast<float>(px_a_unit));
+    else
+        place(state, size_px, static_cast<float>(px_a_unit));
+    const ImGuiWindowFlags flags = is_docked ? ImGuiWindowFlags_NoMove : 0;
     const bool open =
         ImGui::Begin("Horizon and year of the point", &state.settings.charts,
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
+                     flags | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
                          ImGuiWindowFlags_NoScrollWithMouse);
-    at_px_ = {ImGui::GetWindowPos().x, ImGui::GetWindowPos().y};
-    if (open) extent_px_ = {ImGui::GetWindowSize().x, ImGui::GetWindowSize().y};
+    const glm::vec2 extent_px(ImGui::GetWindowSize().x, ImGui::GetWindowSize().y);
+    if (is_docked) {
+        if (open) docked_px_ = extent_px.y;
+    } else {
+        at_px_ = {ImGui::GetWindowPos().x, ImGui::GetWindowPos().y};
+        if (open) extent_px_ = extent_px;
+    }
     if (open && ImGui::BeginTabBar("charts")) {
-        const auto tab = [&](const char* name, bool is_there, const auto& draw_it) {
-            if (!ImGui::BeginTabItem(name)) return;
-            const ImVec2 room = ImGui::GetContentRegionAvail();
-            state.chart_px = {static_cast<int>(room.x), static_cast<int>(room.y)};
-            if (is_there)
-                draw_it();
-            else if (state.point && !state.point->error.empty())
-                ImGui::TextWrapped("%s", state.point->error.c_str());
-            else
-                ImGui::TextDisabled("computing its horizon ...");
-            ImGui::EndTabItem();
-        };
-        tab("Horizon", horizon_.chart != nullptr, [&] { horizon(state); });
-        tab("Year", year_.chart != nullptr, [&] { year(state); });
+        tabs(state);
         ImGui::EndTabBar();
     }
     ImGui::End();

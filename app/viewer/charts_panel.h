@@ -25,11 +25,15 @@ class ChartsPanel {
 
     /// Sets the panel's initial position: the last one, moved clear of the point.
     void place(const State& state, glm::vec2 size_px, float unit);
+    /// At the lower edge, next to the side panel, with a height that the user can change.
+    void dock(State& state, glm::vec2 size_px, float unit);
+    void tabs(State& state);
     void horizon(State& state);
     void year(State& state);
 
     bool is_open_ = false;
     glm::vec2 at_px_{0}, extent_px_{0};  // last position and size; 0: not opened yet
+    float docked_px_ = 0;                // last height when docked; 0: not docked yet
     Shown<HorizonPicture> horizon_;
     Shown<YearPicture> year_;
 };

@@ -18,6 +18,7 @@ enum class Command {
     CopyCommand,
     SaveScene,
     SaveJob,
+    Film,  ///< its panel
     Quit,
     Undo,
     Redo,
@@ -29,7 +30,10 @@ enum class Command {
     StandHere,  ///< at the chosen point
     LookThere,  ///< to the chosen point
     SaveView,
-    Measure,
+    Measure,  ///< begins or ends a line
+    EndMeasuring,
+    DropCorner,  ///< of the measured line
+    SaveProfile,
     Compare,
     Play,
     Earlier,
@@ -37,6 +41,8 @@ enum class Command {
     DayEarlier,
     DayLater,
     Panels,
+    PanelKeys,  ///< gives the keyboard to the panels, or back to the scene
+    MenuKeys,   ///< gives it to the menu
     Charts,
     Keys,
     CloseKeys,

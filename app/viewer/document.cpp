@@ -125,7 +125,8 @@ void add_stamps(Command& command, const scene::Stamps& stamps) {
 scene::Scene Document::whole(const Land& land) const {
     scene::Scene result = scene;
     result.view = view_of(pose, land);
-    result.time = {.at = sun::to_iso(utc, zone), .date = "", .zone = ""};
+    const int decimals = utc.unix_us() % 1'000'000 == 0 ? 0 : 6;
+    result.time = {.at = sun::to_iso(utc, zone, decimals), .date = "", .zone = ""};
     return result;
 }
 
@@ -186,19 +187,9 @@ scene::Effects without_values(scene::Effects effects, const std::string& of) {
     return effects;
 }
 
-std::string capture_command(const scene::Scene& scene, const std::string& output) {
-    Command command("relevo capture");
-    add_dem(command, scene);
-    if (!scene.time.at.empty()) {
-        command.option("--time", scene.time.at);
-        if (!scene.time.date.empty()) command.option("--date", scene.time.date);
-        if (!scene.time.zone.empty()) command.option("--tz", scene.time.zone);
-    }
-    add_view(command, scene.view);
-    add_stamps(command, scene.stamps);
-    add_options(command, scene);
-    if (scene.overlay) add_overlay(command, *scene.overlay);
-    const scene::Effects& effects = scene.effects;
+namespace {
+
+void add_effects(Command& command, const scene::Effects& effects) {
     if (effects.switches.only)
         command.option("--only", fmt::format("{}", fmt::join(*effects.switches.only, ",")));
     command.list("--enable", effects.switches.enable);
@@ -209,8 +200,85 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
         command.option("--plugin-path", folder);
     for (const effect::Setting& setting : effects.settings)
         command.option("--set", setting.address + "=" + setting.text);
+}
+
+void add_time(Command& command, const scene::TimeSpec& time) {
+    if (time.at.empty()) return;
+    command.option("--time", time.at);
+    if (!time.date.empty()) command.option("--date", time.date);
+    if (!time.zone.empty()) command.option("--tz", time.zone);
+}
+
+/// The rest of a scene, for any verb that draws it.
+void add_scene(Command& command, const scene::Scene& scene) {
+    add_view(command, scene.view);
+    add_stamps(command, scene.stamps);
+    add_options(command, scene);
+    if (scene.overlay) add_overlay(command, *scene.overlay);
+    add_effects(command, scene.effects);
     command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
+}
+
+/// What moves: --motion and its options.
+void add_motion(Command& command, const scene::FilmJob& film) {
+    std::vector<std::string> motions;
+    if (film.day) motions.emplace_back("day");
+    if (film.year) motions.emplace_back("year");
+    if (film.orbit) motions.emplace_back("orbit");
+    if (film.flight) motions.emplace_back("flight");
+    command.list("--motion", motions);
+    const auto number = [&](const char* flag, const std::optional<double>& value) {
+        if (value) command.option(flag, fmt::format("{}", *value));
+    };
+    bool ease = false;
+    if (film.orbit) {
+        number("--turns", film.orbit->turns);
+        ease = film.orbit->ease;
+    }
+    if (film.flight) {
+        command.option("--along", film.flight->along);
+        number("--above", film.flight->height_m);
+        number("--look-ahead", film.flight->look_ahead_m);
+        number("--speed", film.flight->speed_m_s);
+        ease = film.flight->ease;
+    }
+    if (film.orbit && ease) command.word("--ease");
+    if (film.flight && !ease) command.word("--no-ease");
+    if (film.value)
+        command.option("--vary", fmt::format("{}={},{}", film.value->address, film.value->from,
+                                             film.value->to));
+    number("--duration", film.duration_s);
+    number("--fps", film.film.fps);
+    if (film.film.quality) command.option("--quality", fmt::format("{}", *film.film.quality));
+}
+
+}  // namespace
+
+std::string capture_command(const scene::Scene& scene, const std::string& output) {
+    Command command("relevo capture");
+    add_dem(command, scene);
+    add_time(command, scene.time);
+    add_scene(command, scene);
     command.option("-o", output);
+    return command.take();
+}
+
+std::string film_command(const scene::Scene& scene, const scene::FilmJob& film) {
+    Command command("relevo film");
+    add_dem(command, scene);
+    if (film.day) {
+        command.option("--date", film.day->date);
+        if (!film.day->zone.empty()) command.option("--tz", film.day->zone);
+        command.option("--span", film.day->from + "," + film.day->to);
+    } else if (film.year) {
+        const scene::FilmJob::Year& year = *film.year;
+        add_time(command, {fmt::format("{}-06-21T{}", year.year, year.at), "", year.zone});
+    } else {
+        add_time(command, scene.time);
+    }
+    add_motion(command, film);
+    add_scene(command, scene);
+    command.option("-o", film.output);
     return command.take();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "effect/selection.h"
+#include "scene/film_job.h"
 #include "scene/scene.h"
 #include "session/active_effects.h"
 #include "sun/zone.h"
@@ -69,5 +70,7 @@ scene::Effects without_values(scene::Effects effects, const std::string& of);
 
 /// The command line that renders a scene to the file `output`, quoted for a POSIX shell.
 std::string capture_command(const scene::Scene& scene, const std::string& output);
+/// The command line that makes a film which `relevo film` knows: without views.
+std::string film_command(const scene::Scene& scene, const scene::FilmJob& film);
 
 }  // namespace relevo::viewer

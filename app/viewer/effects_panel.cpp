@@ -7,6 +7,7 @@
 #include <imgui_stdlib.h>
 
 #include "base/contains.h"
+#include "base/srgb.h"
 #include "base/text.h"
 #include "shader/params.h"
 #include "viewer/state.h"
@@ -26,6 +27,24 @@ bool mentions(const std::string& text, const std::string& word) {
 /// Logarithmic if the range spans several powers of ten.
 bool is_wide(const shader::ParamRange& range) {
     return range.min >= 0 && range.max >= 100;
+}
+
+/// A colour in linear light is edited as sRGB, so that the swatch has the colour that is drawn.
+bool colour_widget(const Param& param, std::array<float, 4>& v) {
+    constexpr ImGuiColorEditFlags kFlags =
+        ImGuiColorEditFlags_Uint8 | ImGuiColorEditFlags_DisplayHex;
+    const bool is_linear = param.role == ParamRole::Colour;
+    std::array<float, 4> shown = v;
+    for (std::size_t i = 0; i < 3 && is_linear; ++i)
+        shown[i] = static_cast<float>(srgb_of_linear(v[i]));
+    const bool changed = shader::component_count(param.type) == 3
+                             ? ImGui::ColorEdit3("##value", shown.data(), kFlags)
+                             : ImGui::ColorEdit4("##value", shown.data(), kFlags);
+    if (!changed) return false;
+    for (std::size_t i = 0; i < 3 && is_linear; ++i)
+        shown[i] = static_cast<float>(linear_of_srgb(shown[i]));
+    v = shown;
+    return true;
 }
 
 /// @returns true if the value was changed
@@ -64,9 +83,7 @@ bool widget(const Param& param, ParamValue& value) {
                       : ImGui::InputInt("##value", &number);
         v[0] = static_cast<float>(number);
     } else if (param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb) {
-        constexpr ImGuiColorEditFlags kFlags = ImGuiColorEditFlags_Float;
-        changed = components == 3 ? ImGui::ColorEdit3("##value", v.data(), kFlags)
-                                  : ImGui::ColorEdit4("##value", v.data(), kFlags);
+        changed = colour_widget(param, v);
     } else if (param.range) {
         const auto least = static_cast<float>(param.range->min);
         const auto most = static_cast<float>(param.range->max);
@@ -85,15 +102,42 @@ bool widget(const Param& param, ParamValue& value) {
     return changed;
 }
 
+/// The name of a row, left of its widget, or above if it is long.
+void row_label(const std::string& label) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label.c_str());
+    const float left = ImGui::GetContentRegionMax().x * 0.42f;
+    const float right = ImGui::GetCursorPosX() + ImGui::CalcTextSize(label.c_str()).x;
+    if (right + ImGui::GetStyle().ItemSpacing.x <= left)
+        ImGui::SameLine(left);
+    else
+        ImGui::SetCursorPosX(left);
+    ImGui::SetNextItemWidth(-2.2f * ImGui::GetFontSize());
+}
+
+/// Whether a parameter, or one of an effect, has a value of the user's.
+bool is_changed(const State& state, const std::string& of) {
+    const scene::Effects& effects = state.document.scene.effects;
+    return without_values(effects, of).settings.size() < effects.settings.size();
+}
+
+/// A button that resets a row. @param is_default  there is nothing to reset
+bool reset_button(bool is_default) {
+    ImGui::SameLine();
+    ImGui::BeginDisabled(is_default);
+    const bool pressed = ImGui::SmallButton("x");
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
+    return pressed;
+}
+
 void param_row(State& state, const Param& param, bool on) {
     ImGui::PushID(param.address.c_str());
     ParamValue value = state.effects->values.value(param.address);
-    ImGui::TextUnformatted(param.label.empty() ? param.address.c_str() : param.label.c_str());
+    row_label(param.label.empty() ? param.address : param.label);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
                           param.is_static ? "\nEach value compiles another shader." : "");
-    ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.42f);
-    ImGui::SetNextItemWidth(-34);
     if (widget(param, value) && shader::is_valid(param, value)) {
         const std::string text = shader::format_value(param, value);
         state.effects->values.set(param.address, text);
@@ -107,31 +151,26 @@ void param_row(State& state, const Param& param, bool on) {
             state.step = true;
     }
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
-    ImGui::SameLine();
-    if (ImGui::SmallButton("x"))
+    if (reset_button(!is_changed(state, param.address)))
         state.set_effects(without_values(state.document.scene.effects, param.address));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
     ImGui::PopID();
 }
 
 /// A text or a file, which is taken when Enter is pressed.
 void text_row(State& state, const shader::TextParam& text) {
     ImGui::PushID(text.address.c_str());
-    ImGui::TextUnformatted(text.label.c_str());
+    row_label(text.label);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s", text.address.c_str(), text.description.c_str());
-    ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.42f);
-    ImGui::SetNextItemWidth(-34);
     std::string value = state.effects->values.text(text.address);
-    if (ImGui::InputTextWithHint("##value", text.is_file ? "path, then Enter" : "then Enter",
-                                 &value, ImGuiInputTextFlags_EnterReturnsTrue)) {
+    if (ImGui::InputTextWithHint(
+            "##value", text.is_file ? "path, then Enter" : "then Enter", &value,
+            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
         if (text.is_file && !value.empty()) value = std::filesystem::absolute(value).string();
         state.set_effects(with_value(state.document.scene.effects, text.address, value));
     }
-    ImGui::SameLine();
-    if (ImGui::SmallButton("x"))
+    if (reset_button(!is_changed(state, text.address)))
         state.set_effects(without_values(state.document.scene.effects, text.address));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
     ImGui::PopID();
 }
 
@@ -171,8 +210,10 @@ void effect_row(State& state, const effect::Effect& effect) {
             text_row(state, text);
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);
+        ImGui::BeginDisabled(!is_changed(state, effect.id()));
         if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))
             state.set_effects(without_values(state.document.scene.effects, effect.id()));
+        ImGui::EndDisabled();
         ImGui::TreePop();
     }
     ImGui::PopID();
@@ -218,7 +259,8 @@ void effects_panel(State& state) {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("The left side stays, the right side follows. Drag the line.");
     ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
+    ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search,
+                             ImGuiInputTextFlags_AutoSelectAll);
     // A row may replace the model and its effects.
     const std::vector<effect::Effect>& effects = state.effects->registry.effects();
     for (std::size_t i = 0; i < effects.size() && !state.new_effects; ++i)

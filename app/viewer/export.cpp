@@ -41,12 +41,16 @@ std::string write_under_free_name(const std::string& ending,
     }
 }
 
-std::string free_picture_name() {
-    std::string name = "picture.png";
+std::string free_name(const std::string& stem, const std::string& ending) {
+    std::string name = stem + "." + ending;
     std::error_code ignored;
     for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
-        name = fmt::format("picture-{}.png", n);
+        name = fmt::format("{}-{}.{}", stem, n, ending);
     return name;
+}
+
+std::string free_picture_name() {
+    return free_name("picture", "png");
 }
 
 namespace {
@@ -100,6 +104,12 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
     const std::string name = save_json(scene::day_job_text(scene, of_day, ""));
     return fmt::format("{}: every hour of this day{}; run it with relevo run {}{}", name,
                        by_sun ? " from sunrise to sunset" : "", name, trust_option(scene));
+}
+
+std::string save_film_job(const scene::Scene& scene, const scene::FilmJob& film) {
+    const std::string name = save_json(scene::film_job_text(scene, film, ""));
+    return fmt::format("{0}: the job of the film; make it with relevo run {0}{1}", name,
+                       trust_option(scene));
 }
 
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/output_file.h"
 #include "chart/legend.h"
+#include "scene/film_job.h"
 #include "scene/scene.h"
 #include "session/overlay_time.h"
 #include "viewer/document.h"
@@ -25,6 +26,9 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 std::string write_under_free_name(const std::string& ending,
                                   const std::function<void(OutputFile&)>& write);
 
+/// A name in the working folder that no file has: "day.mp4", "day-2.mp4" ...
+/// @param stem  may have folders in front
+std::string free_name(const std::string& stem, const std::string& ending);
 /// A free name for a picture in the working folder: "picture.png", "picture-2.png" ...
 std::string free_picture_name();
 /// Writes the scene to the working folder under a free name.
@@ -34,6 +38,9 @@ std::string save_scene(const scene::Scene& scene);
 /// Writes a job that renders the scene at every hour of a day: from sunrise to sunset if the day
 /// has both. Returns and throws as save_scene().
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
+
+/// Writes the job of a film. Returns and throws as save_scene().
+std::string save_film_job(const scene::Scene& scene, const scene::FilmJob& film);
 
 /// The legends of a picture, and the time of its overlay if it is not the scene's.
 struct Coloured {

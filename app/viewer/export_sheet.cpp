@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "scene/name_template.h"
 #include "scene/scene_words.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
 namespace {
@@ -21,10 +22,11 @@ struct Format {
     const char* ending;
     int bits = 8;
     bool has_quality = false;
+    bool has_alpha = true;
 };
 constexpr std::array<Format, 7> kFormats = {{{"PNG", "png"},
                                              {"PNG, 16 bits", "png", 16},
-                                             {"JPEG", "jpg", 8, true},
+                                             {"JPEG", "jpg", 8, true, false},
                                              {"WebP", "webp", 8, true},
                                              {"AVIF", "avif", 8, true},
                                              {"TIFF", "tif"},
@@ -42,15 +44,6 @@ constexpr std::array<Size, 6> kSizes = {{{"window", {0, 0}},
                                          {"A2 at 300 dpi", {7016, 4961}}}};
 
 constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
-
-/// A name in the working folder that no file has.
-std::string free_name(const std::string& stem, const std::string& ending) {
-    std::string name = stem + "." + ending;
-    std::error_code ignored;
-    for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
-        name = fmt::format("{}-{}.{}", stem, n, ending);
-    return name;
-}
 
 }  // namespace
 
@@ -79,7 +72,10 @@ void ExportSheet::format_fields() {
             if (ImGui::Selectable(fmt::format("{} a pixel", samples).c_str())) samples_ = samples;
         ImGui::EndCombo();
     }
+    const bool has_alpha = kFormats[static_cast<std::size_t>(format_)].has_alpha;
+    ImGui::BeginDisabled(!has_alpha);
     ImGui::Checkbox("Transparent where there is no ground", &is_transparent_);
+    ImGui::EndDisabled();
 }
 
 void ExportSheet::stamp_fields(const scene::Scene& scene) {
@@ -91,7 +87,8 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
         if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
     }
-    if (stamps_->title) ImGui::InputText("Title", &stamps_->title_text);
+    if (stamps_->title)
+        ImGui::InputText("Title", &stamps_->title_text, ImGuiInputTextFlags_AutoSelectAll);
 }
 
 PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
@@ -102,7 +99,7 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.width_px = size_px_.x;
     order.scene.height_px = size_px_.y;
     order.scene.samples = samples_;
-    order.scene.transparent = is_transparent_;
+    order.scene.transparent = is_transparent_ && format.has_alpha;
     order.scene.stamps = stamps_.value_or(scene.stamps);
     order.encoding.bits = format.bits;
     if (format.has_quality) order.encoding.quality = quality_;
@@ -112,7 +109,7 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.path = free_name(stem, format.ending);
     image::check_encoding(
         order.path, order.encoding,
-        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = is_transparent_});
+        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = order.scene.transparent});
     return order;
 }
 
@@ -145,7 +142,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);
-        ImGui::InputText("Name", &name_);
+        ImGui::InputText("Name", &name_, ImGuiInputTextFlags_AutoSelectAll);
         if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
             ImGui::SetTooltip("{dem}, and {time:...} with the conversions of strftime");
         ImGui::PopItemWidth();

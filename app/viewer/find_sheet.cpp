@@ -56,9 +56,9 @@ void FindSheet::draw(glm::vec2 size_px, const EffectsModel* effects) {
     if (ImGui::Begin("Go to a place", &is_open_, ImGuiWindowFlags_NoCollapse)) {
         if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-1);
-        const bool enter =
-            ImGui::InputTextWithHint("##place", "coordinates, or a name that is shown", &text_,
-                                     ImGuiInputTextFlags_EnterReturnsTrue);
+        const bool enter = ImGui::InputTextWithHint(
+            "##place", "coordinates, or a name that is shown", &text_,
+            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
         if (searched_ != text_) {
             searched_ = text_;
             found_.clear();

@@ -30,6 +30,7 @@ ImportSheet::Fields ImportSheet::Fields::of(const dem::LoadOptions& options) {
     Fields fields;
     fields.crs = options.crs;
     fields.unit = options.unit;
+    fields.crop = options.crop;
     fields.band = options.band;
     fields.encoding = static_cast<int>(options.encoding);
     if (options.no_nodata)
@@ -56,6 +57,8 @@ dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) cons
         if (!options.nodata)
             bad_usage("nodata: expected a number or none, but got " + printable(value));
     }
+    options.crop = std::string(trimmed(crop));
+    if (!options.crop.empty()) dem::parse_bounds(options.crop, "crop");
     options.bounds.reset();
     if (!trimmed(bounds).empty()) options.bounds = dem::parse_bounds(trimmed(bounds), "bounds");
     return options;
@@ -85,7 +88,8 @@ void ImportSheet::want_preview() {
 }
 
 void ImportSheet::crs_field() {
-    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs);
+    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs,
+                             ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip(
             "A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place");
@@ -118,12 +122,14 @@ void ImportSheet::found_crs() {
 void ImportSheet::other_fields() {
     ImGui::InputTextWithHint("Edges", "W,S,E,N in degrees; of a file without them",
                              &fields_.bounds);
+    ImGui::InputTextWithHint("Crop", "W,S,E,N in degrees; only what is in there", &fields_.crop);
     int unit = 0;
     for (std::size_t i = 1; i < kUnits.size(); ++i)
         if (fields_.unit == kUnits[i]) unit = static_cast<int>(i);
     if (ImGui::Combo("Unit", &unit, kUnits.data(), static_cast<int>(kUnits.size())))
         fields_.unit = unit == 0 ? "" : kUnits[static_cast<std::size_t>(unit)];
-    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata);
+    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata,
+                             ImGuiInputTextFlags_AutoSelectAll);
     int band = std::max(1, fields_.band);
     if (ImGui::InputInt("Band", &band)) fields_.band = std::max(1, band);
     ImGui::Combo("Encoding", &fields_.encoding, kEncodings.data(),

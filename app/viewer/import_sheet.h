@@ -30,7 +30,7 @@ class ImportSheet {
   private:
     /// The fields as the user writes them.
     struct Fields {
-        std::string crs, bounds, unit, nodata;
+        std::string crs, bounds, crop, unit, nodata;
         int band = 0;
         int encoding = 0;  ///< index of a dem::Encoding
 

@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 
+#include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
 
 namespace relevo::viewer {
@@ -42,6 +43,7 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     comparison_ = std::make_unique<Comparison>(device_, *window_, messages_, discard_);
     point_ = std::make_unique<PointQuery>(state_);
     overlay_ = std::make_unique<OverlayController>(state_, messages_, discard_);
+    film_ = make_film();
     state_.effects = EffectsModel::of(scene.effects);
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
@@ -58,8 +60,8 @@ Clock::duration MainWindow::shown_for() const {
 }
 
 void MainWindow::run() {
-    while (!window_->should_close()) {
-        const bool is_animated = state_.playing || hand_->is_moving();
+    while (!ends()) {
+        const bool is_animated = state_.playing || hand_->is_moving() || film_->is_playing();
         const double wait_s = pacing_.wait_s(is_animated, is_drawing());
         const auto waits_from = Clock::now();
         window_->wait(wait_s);
@@ -71,12 +73,14 @@ void MainWindow::run() {
         process_keys();
         if (is_open()) {
             process_mouse(std::min(passed_s, 0.1));
+            process_film(passed_s);
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
         }
         open_requested_files();
         check_files();
-        if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing)
+        if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing &&
+            !film_->shows_frame())
             history_.end_step(state_.document);
         const bool is_idle = wait_s >= kIdle_s && !pacing_.needs_frames();
         if (is_idle || repeats_frame()) continue;
@@ -99,6 +103,7 @@ void MainWindow::leave() {
         log::info("view: the ordered picture is drawn before the end");
         picture_export_.reset();
     }
+    film_.reset();  // ends a film without a file
     discard_.take(std::move(comparison_));
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
@@ -108,8 +113,9 @@ void MainWindow::leave() {
 }
 
 bool MainWindow::repeats_frame() const {
-    const bool moves_scene =
-        is_open() && (hand_->is_busy() || state_.playing) && !ImGui::GetIO().WantCaptureMouse;
+    const bool moves_scene = is_open() &&
+                             (hand_->is_busy() || state_.playing || film_->is_playing()) &&
+                             !ImGui::GetIO().WantCaptureMouse;
     return moves_scene && pacing_.repeats_frame(window_->buttons());
 }
 
@@ -127,11 +133,17 @@ scene::Insets MainWindow::panel_insets() const {
     if (!state_.settings.panels) return {};
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;     // the menu
-    insets.bottom = 2.0 * text_px / size().y;  // the status line
+    insets.top = 1.5 * text_px / size().y;                          // the menu
+    insets.bottom = (2.0 * text_px + state_.docked_px) / size().y;  // the status line
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;
+}
+
+glm::vec2 MainWindow::free_middle() const {
+    const scene::Insets insets = panel_insets();
+    return size() * glm::vec2(0.5 * (1 + insets.left - insets.right),
+                              0.5 * (1 + insets.top - insets.bottom));
 }
 
 void MainWindow::draw_panels() {
@@ -143,11 +155,21 @@ void MainWindow::draw_panels() {
         return;
     }
     if (picture_) draw_over_image();
+    film_->draw_edges(size());
+    state_.can_undo =
+        history_.can_undo() || (!film_->shows_frame() && history_.differs(state_.document));
+    state_.can_redo = history_.can_redo();
     if (state_.settings.panels) {
         menu_bar(state_);
-        side_panel(state_, size(), unit());
-        charts_.draw(state_, size(), unit());
+        draw_film();
+        if (!film_->shows_frame()) side_panel(state_, size(), unit());
+        // The film panel takes the place of the charts.
+        if (film_->is_open())
+            state_.docked_px = 0;
+        else
+            charts_.draw(state_, size(), unit());
     }
+    if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
     import_sheet_.draw(size());
@@ -163,6 +185,7 @@ void MainWindow::draw_panels() {
 std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return "opening " + short_name(opening_->next_scene().dems) + " ...   Esc cancels";
+    if (const std::string film = film_->progress(); !film.empty()) return film;
     return is_drawing() ? "drawing ..." : "";
 }
 
@@ -175,9 +198,9 @@ void MainWindow::draw_over_image() {
     taken.push_back(north_place(size(), top));
     if (before) marks_before_.draw(before, window_->size_px(), 0, line, size(), taken);
     marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
-    draw_sun_path(state_, *picture_, size());
+    if (!film_->shows_frame()) draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
-    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
+    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), top);
     legend_.draw();
     if (comparison_->thread()) draw_sides(window_->line() * size().x, top);
 }
@@ -203,11 +226,12 @@ void MainWindow::hand_over_scene() {
         thread.want_exaggeration(now);
         stop_comparison();
     }
-    if (state_.step) {
+    if (state_.step && !film_->shows_frame()) {
         history_.add(state_.document);
         pacing_.need_frames(2);
     }
-    point_->update(opened, unit());
+    if (film_->update(opened, pacing_.is_at_rest())) pacing_.need_frames(2);
+    if (!film_->shows_frame()) point_->update(opened, unit());
     if (overlay_->update(opened, thread)) pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())
         comparison_->start(whole_scene(), opened, wanted_now(),

@@ -10,6 +10,7 @@
 #include "viewer/discard.h"
 #include "viewer/export_sheet.h"
 #include "viewer/file_kind.h"
+#include "viewer/film_controller.h"
 #include "viewer/find_sheet.h"
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
@@ -56,6 +57,8 @@ class MainWindow {
     /// Pixels per unit of a layout for the default text size.
     double unit() const;
     scene::Insets panel_insets() const;
+    /// The middle of what the panels leave free of the window.
+    glm::vec2 free_middle() const;
     void draw_panels();
     void draw_over_image();
     /// Reports changes since the last frame to the other parts.
@@ -130,6 +133,7 @@ class MainWindow {
     void close_dialogs();
     void open_neighbour(int step);
     void measure();
+    void save_profile();
     void toggle_overlay();
     void restore(const Document& document);
     void move(Command command);
@@ -148,10 +152,24 @@ class MainWindow {
     void copy_command();
     /// Saves the image as soon as it is complete.
     void take_picture();
+    /// The scene of a document for a picture.
+    /// @param is_centred  on what the panels leave free
+    scene::Scene scene_for(Document document, bool is_centred, double aspect) const;
     /// The scene of a picture of the sheet.
     scene::Scene scene_to_export() const;
     void start_picture_export();
     void poll_picture_export();
+
+    // ---- films: main_window_film.cpp
+
+    std::unique_ptr<FilmController> make_film();
+    /// Whether the window is closed: after a question if a film is being drawn.
+    bool ends();
+    /// Shows the frame of the film that is due, or ends its preview if the user moves the camera.
+    void process_film(double passed_s);
+    /// Restores the scene before a command that changes it.
+    void end_film_preview(Command before);
+    void draw_film();
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     Discard discard_;
@@ -178,6 +196,7 @@ class MainWindow {
     std::unique_ptr<Comparison> comparison_;
     std::unique_ptr<PointQuery> point_;
     std::unique_ptr<OverlayController> overlay_;
+    std::unique_ptr<FilmController> film_;
     std::unique_ptr<WindowStyle> style_;
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
@@ -187,7 +206,7 @@ class MainWindow {
     bool sun_moved_ = false;      // in the frame before
     bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
-    bool opens_point_menu_ = false;
+    bool opens_point_menu_ = false, quits_ = false;
 };
 
 }  // namespace relevo::viewer

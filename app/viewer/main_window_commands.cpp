@@ -16,12 +16,18 @@ void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
     const std::optional<Click> clicked = hand_->take_click();
+    if (hand_->is_busy() && window_->panels_have_keys()) window_->take_keys_back();
     Measurement& line = state_.measurement;
-    if (clicked && !std::exchange(line.follows_cursor, false)) {
+    if (clicked && !line.follows_cursor) {
         choose_point(clicked->point_m);
         opens_point_menu_ = clicked->asks_for_menu;
+    } else if (clicked && clicked->asks_for_menu) {
+        line.end();
+    } else if (clicked) {
+        line.set_corner(clicked->point_m, state_.land, state_.spacing_m);
     }
-    if (line.follows_cursor && state_.cursor) line.follow(state_.cursor->point_m, state_.land);
+    if (line.follows_cursor && state_.cursor)
+        line.follow(state_.cursor->point_m, state_.land, state_.spacing_m);
 }
 
 void MainWindow::choose_point(const glm::dvec3& point_m) {
@@ -38,6 +44,7 @@ void MainWindow::process_keys() {
     }
     for (const Command command : std::exchange(state_.commands, {}))
         if (!run_program_command(command) && is_open()) run_scene_command(command);
+    if (state_.view_to_go_to && is_open()) film_->end_preview();
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
     if (const auto place = find_sheet_.take(); place && is_open()) go_to_place(*place);
@@ -70,6 +77,15 @@ bool MainWindow::run_program_command(Command command) {
         case Command::Panels:
             state_.settings.panels = !state_.settings.panels;
             return true;
+        case Command::PanelKeys:
+        case Command::MenuKeys:
+            state_.settings.panels = true;
+            if (window_->panels_have_keys())
+                window_->take_keys_back();
+            else
+                window_->give_keys_to(film_->is_open() ? "Film" : "Relevo");
+            state_.opens_menu = command == Command::MenuKeys && window_->panels_have_keys();
+            return true;
         case Command::Charts:
             state_.settings.charts = !state_.settings.charts;
             return true;
@@ -88,7 +104,10 @@ bool MainWindow::run_program_command(Command command) {
 }
 
 void MainWindow::run_scene_command(Command command) {
+    end_film_preview(command);
     switch (command) {
+        case Command::Film:
+            return film_->toggle();
         case Command::ReadAgain:
             return reload_effects();
         case Command::TakePicture:
@@ -109,6 +128,12 @@ void MainWindow::run_scene_command(Command command) {
             return save_view();
         case Command::Measure:
             return measure();
+        case Command::EndMeasuring:
+            return state_.measurement.end();
+        case Command::DropCorner:
+            return state_.measurement.drop_corner(state_.land, state_.spacing_m);
+        case Command::SaveProfile:
+            return save_profile();
         case Command::Compare:
             state_.compare_is_wanted = !state_.compare_is_wanted;
             return;
@@ -119,6 +144,7 @@ void MainWindow::run_scene_command(Command command) {
         case Command::GiveUpSaving:
             return overlay_->cancel_export();
         case Command::Play:
+            if (film_->is_open()) return film_->play_or_pause();
             state_.playing = !state_.playing;
             return;
         case Command::Undo:
@@ -135,11 +161,13 @@ void MainWindow::run_scene_command(Command command) {
 
 void MainWindow::close_dialogs() {
     if (opening_->can_cancel()) return opening_->cancel();
-    shows_keys_ = state_.measurement.follows_cursor = false;
+    shows_keys_ = false;
+    state_.measurement.end();
     open_dialog_.close();
     import_sheet_.close();
     find_sheet_.close();
     export_sheet_.close();
+    film_->close();
     closes_menus_ = true;
     state_.message.clear();
 }
@@ -200,9 +228,23 @@ void MainWindow::move_to_point(Command command) {
 
 void MainWindow::measure() {
     Measurement& line = state_.measurement;
-    if (!state_.cursor && line.ends_m.empty() && !line.follows_cursor) return;
-    line.follows_cursor = !line.follows_cursor;
-    if (line.follows_cursor && line.ends_m.empty()) line.start(state_.cursor->point_m);
+    if (line.follows_cursor) return line.end();
+    // A line that is done is replaced by one from the chosen point.
+    if (line.corners_m.size() > 1) line.start(line.corners_m.front());
+    if (line.corners_m.empty() && state_.cursor) line.start(state_.cursor->point_m);
+    line.measure();
+}
+
+void MainWindow::save_profile() {
+    if (!state_.measurement.profile) return;
+    messages_.try_to([&] {
+        const std::string text = csv_text(*state_.measurement.profile);
+        const std::string name = write_under_free_name("csv", [&](OutputFile& file) {
+            file.write(text);
+            file.finish();
+        });
+        messages_.report(name + ": profile saved");
+    });
 }
 
 void MainWindow::restore(const Document& document) {
@@ -305,14 +347,17 @@ void MainWindow::take_picture() {
     });
 }
 
-scene::Scene MainWindow::scene_to_export() const {
-    Document document = state_.document;
-    if (export_sheet_.is_centred())
+scene::Scene MainWindow::scene_for(Document document, bool is_centred, double aspect) const {
+    if (is_centred)
         document.pose = centred(document.pose, state_.land, panel_insets(),
-                                static_cast<double>(size().x) / size().y, export_sheet_.aspect());
+                                static_cast<double>(size().x) / size().y, aspect);
     scene::Scene scene = viewer::whole_scene(document, state_.land, window_->size_px());
     overlay_->add_to(scene);
     return scene;
+}
+
+scene::Scene MainWindow::scene_to_export() const {
+    return scene_for(state_.document, export_sheet_.is_centred(), export_sheet_.aspect());
 }
 
 void MainWindow::start_picture_export() {

@@ -48,6 +48,8 @@ void MainWindow::open_requested_files() {
     std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
     const std::optional<RecentDem> imported = import_sheet_.take();
     if (!is_open()) return;
+    if (const std::string track = film_->take_track(); !track.empty()) files.push_back(track);
+    if (imported || recent || !dems.empty() || !files.empty()) film_->end_preview();
     if (imported) return open_imported(*imported);
     if (recent) return open_dem(*recent);
     if (!dems.empty()) return open_dem({.files = dems});

@@ -15,10 +15,11 @@ sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun:
 }
 
 bool same(const Wanted& a, const Wanted& b) {
-    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.exposure_ev == b.exposure_ev &&
-           a.width_px == b.width_px && a.height_px == b.height_px && a.moving == b.moving &&
-           a.sun_moving == b.sun_moving && a.view->heading_deg == b.view->heading_deg &&
-           a.view->pitch_deg == b.view->pitch_deg && a.view->fov_y_rad == b.view->fov_y_rad &&
+    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.seconds == b.seconds &&
+           a.exposure_ev == b.exposure_ev && a.width_px == b.width_px &&
+           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
+           a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
+           a.view->fov_y_rad == b.view->fov_y_rad &&
            a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&
            a.view->eye->place.lon_rad == b.view->eye->place.lon_rad &&
            a.view->eye->place.height_m == b.view->eye->place.height_m;
@@ -27,12 +28,14 @@ bool same(const Wanted& a, const Wanted& b) {
 }  // namespace
 
 void MainWindow::reload_effects() {
+    film_->end_preview();
     state_.set_effects(state_.document.scene.effects);
     state_.take_effects(/*is_step=*/false);
     pacing_.need_frames(3);
 }
 
 void MainWindow::reload_dem() {
+    film_->end_preview();
     scene::Scene scene = state_.document.scene;
     scene.view = view_of(state_.document.pose, state_.land);
     opening_->reload(std::move(scene), first_wanted());
@@ -53,6 +56,7 @@ void MainWindow::clear_scene() {
     export_sheet_.forget_stamps();
     point_->clear();
     overlay_->clear();
+    film_->forget();
     state_.measurement = {};
     state_.cursor.reset();
     hand_->rest();
@@ -82,6 +86,10 @@ Wanted MainWindow::wanted_now() const {
     wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
     wanted.utc = state_.document.utc;
     wanted.exposure_ev = state_.document.scene.exposure_ev;
+    if (film_->shows_frame()) {  // exactly
+        wanted.keep_above_m.reset();
+        wanted.seconds = state_.document.scene.seconds;
+    }
     wanted.width_px = size.x;
     wanted.height_px = size.y;
     wanted.moving = !pacing_.is_at_rest();
@@ -97,6 +105,7 @@ void MainWindow::poll_threads() {
         pacing_.need_frames(2);
     }
     if (point_->poll()) pacing_.need_frames(2);
+    if (film_->poll()) pacing_.need_frames(2);
     poll_picture_export();
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }
@@ -104,7 +113,9 @@ void MainWindow::poll_threads() {
 void MainWindow::poll_opening() {
     // State::land refers to this one until it refers to the next.
     const std::shared_ptr<const Opened> before = opening_->opened();
-    switch (opening_->poll()) {
+    const Opening::Event event = opening_->poll();
+    if (event != Opening::Event::None) film_->end_preview();
+    switch (event) {
         case Opening::Event::None:
             return;
         case Opening::Event::Opened:
@@ -234,7 +245,8 @@ void MainWindow::raise_eye() {
     state_.land.aim_m = picture_->aim_m;
     constexpr double kSame_m = 0.005;
     Pose& pose = state_.document.pose;
-    if (is_image_of_now() && distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
+    if (!film_->shows_frame() && is_image_of_now() &&
+        distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
         pose.eye_m = picture_->camera.eye_m;
 }
 

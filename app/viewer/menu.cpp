@@ -1,5 +1,6 @@
 #include <array>
 #include <filesystem>
+#include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -20,7 +21,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 30> kKeys = {{
+constexpr std::array<Key, 36> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -34,17 +35,23 @@ constexpr std::array<Key, 30> kKeys = {{
     {GLFW_KEY_Z, true, Command::Undo},
     {GLFW_KEY_Y, true, Command::Redo},
     {GLFW_KEY_F, true, Command::Find},
+    {GLFW_KEY_F, false, Command::Film},
     {GLFW_KEY_HOME, false, Command::Whole},
     {GLFW_KEY_N, false, Command::NorthUp},
     {GLFW_KEY_T, false, Command::FromAbove},
     {GLFW_KEY_G, false, Command::Walk},
     {GLFW_KEY_B, false, Command::SaveView},
     {GLFW_KEY_M, false, Command::Measure},
+    {GLFW_KEY_ENTER, false, Command::EndMeasuring},
+    {GLFW_KEY_KP_ENTER, false, Command::EndMeasuring},
+    {GLFW_KEY_BACKSPACE, false, Command::DropCorner},
     {GLFW_KEY_C, false, Command::Compare},
     {GLFW_KEY_SPACE, false, Command::Play},
     {GLFW_KEY_LEFT_BRACKET, false, Command::Earlier},
     {GLFW_KEY_RIGHT_BRACKET, false, Command::Later},
     {GLFW_KEY_TAB, false, Command::Panels},
+    {GLFW_KEY_F6, false, Command::PanelKeys},
+    {GLFW_KEY_F10, false, Command::MenuKeys},
     {GLFW_KEY_P, false, Command::Charts},
     {GLFW_KEY_O, false, Command::Overlay},
     {GLFW_KEY_E, true, Command::SaveOverlay},
@@ -86,6 +93,7 @@ void file_menu(State& state) {
     item(state, "Export overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
     item(state, "Save the day as a job", "Ctrl+J", Command::SaveJob);
+    item(state, "Film...", "F", Command::Film);
     ImGui::Separator();
     item(state, "Quit", "Ctrl+Q", Command::Quit);
     ImGui::EndMenu();
@@ -103,7 +111,7 @@ void saved_views(State& state) {
         }
         ImGui::SameLine();
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
-        ImGui::InputText("##name", &state.views[i].name);
+        ImGui::InputText("##name", &state.views[i].name, ImGuiInputTextFlags_AutoSelectAll);
         state.views_changed = state.views_changed || ImGui::IsItemDeactivatedAfterEdit();
         ImGui::SameLine();
         if (ImGui::SmallButton("x")) gone = i;
@@ -127,8 +135,8 @@ void view_menu(State& state) {
     item(state, "Walk at eye height", "G", Command::Walk);
     item(state, "Go to a place...", "Ctrl+F", Command::Find);
     ImGui::Separator();
-    item(state, "Undo", "Ctrl+Z", Command::Undo);
-    item(state, "Redo", "Ctrl+Y", Command::Redo);
+    item(state, "Undo", "Ctrl+Z", Command::Undo, false, state.can_undo);
+    item(state, "Redo", "Ctrl+Y", Command::Redo, false, state.can_redo);
     ImGui::Separator();
     item(state, "Save view", "B", Command::SaveView);
     saved_views(state);
@@ -139,6 +147,7 @@ void show_menu(State& state) {
     if (!ImGui::BeginMenu("Show")) return;
     Settings& settings = state.settings;
     item(state, "Panels", "Tab", Command::Panels, settings.panels);
+    item(state, "Keyboard in the panels", "F6", Command::PanelKeys);
     item(state, "Horizon and year of the point", "P", Command::Charts, settings.charts);
     item(state, "Sun hours of the day", "O", Command::Overlay,
          state.document.overlay.kind == OverlayKind::Day);
@@ -178,6 +187,7 @@ std::optional<Command> command_of(const KeyPress& press) {
 
 void menu_bar(State& state) {
     if (!ImGui::BeginMainMenuBar()) return;
+    if (std::exchange(state.opens_menu, false)) ImGui::OpenPopup("File");
     file_menu(state);
     view_menu(state);
     show_menu(state);

@@ -134,8 +134,9 @@ void OpenDialog::draw(glm::vec2 size_px) {
         if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-4 * line);
         ImGui::PushID(visits_);
-        const bool is_done =
-            ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
+        const bool is_done = ImGui::InputText(
+            "##name", &name_,
+            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
         ImGui::PopID();
         ImGui::SameLine();
         if (ImGui::Button("Open", {-1, 0}) || is_done) enter();

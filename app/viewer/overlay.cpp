@@ -19,7 +19,8 @@ namespace {
 constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
 constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
 
-/// The largest 1, 2 or 5 times a power of ten that is not above `length`.
+}  // namespace
+
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
     for (const double digit : {5.0, 2.0})
@@ -33,124 +34,6 @@ std::string length_text(double length_m) {
     if (length_m >= 10) return fmt::format("{:.0f} m", length_m);
     return length_m >= 1 ? fmt::format("{:.1f} m", length_m)
                          : fmt::format("{:.3g} cm", 100 * length_m);
-}
-
-/// Plots heights from the line's start on the left to its end. A tooltip shows the height under the
-/// cursor.
-void plot_profile(const Profile& profile, float low_m, float high_m) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 extent{ImGui::GetContentRegionAvail().x, 5 * ImGui::GetFontSize()};
-    ImGui::InvisibleButton("##profile", extent);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(at, {at.x + extent.x, at.y + extent.y},
-                       ImGui::GetColorU32(ImGuiCol_FrameBg));
-    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_PlotLines);
-    const auto last = static_cast<float>(profile.heights_m.size() - 1);
-    const float scale = extent.y * 0.9f / std::max(high_m - low_m, 1e-3f);
-    const auto point = [&](std::size_t i) {
-        return ImVec2{at.x + extent.x * static_cast<float>(i) / last,
-                      at.y + extent.y * 0.95f - scale * (profile.heights_m[i] - low_m)};
-    };
-    for (std::size_t i = 1; i < profile.heights_m.size(); ++i)
-        if (!std::isnan(profile.heights_m[i - 1] + profile.heights_m[i]))
-            list.AddLine(point(i - 1), point(i), ink, 1.5f);
-    if (!ImGui::IsItemHovered()) return;
-    const float across = (ImGui::GetIO().MousePos.x - at.x) / extent.x;
-    const auto i = static_cast<std::size_t>(std::lround(std::clamp(across, 0.0f, 1.0f) * last));
-    const std::string there = length_text(profile.level_m * static_cast<double>(i) / last);
-    if (std::isnan(profile.heights_m[i])) {
-        ImGui::SetTooltip("after %s: no height", there.c_str());
-        return;
-    }
-    list.AddCircleFilled(point(i), 4, kLine);
-    ImGui::SetTooltip("after %s: %.1f m", there.c_str(), profile.heights_m[i]);
-}
-
-/// "440.6 m" or "no height".
-std::string height_text(float height_m) {
-    return std::isnan(height_m) ? "no height" : fmt::format("{:.1f} m", height_m);
-}
-
-}  // namespace
-
-Profile Profile::between(const geo::Geodetic& from, const geo::Geodetic& to, const Land& land) {
-    constexpr int kSteps = 400;
-    Profile profile;
-    const geo::Geodesic line = geo::geodesic(from, to);
-    profile.level_m = line.distance_m;
-    profile.azimuth_rad = line.azimuth_rad;
-    double before_m = 0;
-    for (int i = 0; i <= kSteps; ++i) {
-        const geo::Geodetic at =
-            geo::destination(from, line.azimuth_rad, line.distance_m * i / kSteps);
-        const double height_m = land.height_m(at);
-        profile.heights_m.push_back(static_cast<float>(height_m));
-        if (std::isnan(height_m)) {
-            profile.has_holes = true;
-        } else {
-            if (i > 0 && !std::isnan(before_m)) {
-                const double rise_m = height_m - before_m;
-                profile.surface_m += std::hypot(line.distance_m / kSteps, rise_m);
-                (rise_m > 0 ? profile.up_m : profile.down_m) += std::abs(rise_m);
-            }
-        }
-        before_m = height_m;
-    }
-    return profile;
-}
-
-void Measurement::start(const glm::dvec3& point_m) {
-    ends_m = {point_m};
-    profile.reset();
-}
-
-void Measurement::follow(const glm::dvec3& point_m, const Land& land) {
-    if (ends_m.size() == 2 && ends_m[1] == point_m) return;
-    ends_m = {ends_m.front(), point_m};
-    profile = Profile::between(land.frame->to_geodetic(ends_m[0]), land.frame->to_geodetic(point_m),
-                               land);
-}
-
-void draw_measurement(const Measurement& measurement, const Picture& picture, glm::vec2 size_px) {
-    const std::optional<Profile>& profile = measurement.profile;
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const double aspect = static_cast<double>(size_px.x) / size_px.y;
-    std::optional<ImVec2> before;
-    for (const glm::dvec3& point : measurement.ends_m) {
-        const auto at = in_picture(picture.camera, point, aspect);
-        if (!at) return;
-        const glm::vec2 in_px = in_window(*at, size_px);
-        const ImVec2 px(in_px.x, in_px.y);
-        if (before) list.AddLine(*before, px, kLine, 2);
-        list.AddCircleFilled(px, 5, kLine);
-        list.AddCircle(px, 6, IM_COL32_WHITE, 0, 1.5f);
-        if (before && profile)
-            list.AddText({px.x + 10, px.y - 8}, kInk, length_text(profile->level_m).c_str());
-        before = px;
-    }
-}
-
-void profile_panel(const Profile& profile) {
-    float low_m = std::numeric_limits<float>::infinity(), high_m = -low_m;
-    for (const float height_m : profile.heights_m) {
-        low_m = std::fmin(low_m, height_m);
-        high_m = std::fmax(high_m, height_m);
-    }
-    if (low_m > high_m) {
-        ImGui::TextWrapped("No heights along this line.");
-        return;
-    }
-    plot_profile(profile, low_m, high_m);
-    const std::string text = fmt::format(
-        "{} at azimuth {:.0f}°, from {} to {}; {} over the ground{}, {:.0f} m up and {:.0f} m "
-        "down, between {:.0f} and {:.0f} m",
-        length_text(profile.level_m), std::fmod(degrees(profile.azimuth_rad) + 360, 360),
-        height_text(profile.heights_m.front()), height_text(profile.heights_m.back()),
-        length_text(profile.surface_m), profile.has_holes ? " without voids" : "", profile.up_m,
-        profile.down_m, low_m, high_m);
-    ImGui::PushTextWrapPos();
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
 }
 
 void draw_sides(float line_px, float top_px) {
@@ -186,7 +69,7 @@ chart::Rect north_place(glm::vec2 size_px, float top_px) {
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
     // True north at the eye, as if the arrow lay on level ground.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
@@ -228,7 +111,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 34> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 36> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -246,7 +129,7 @@ void key_sheet() {
         {"Click", "direct sun of the day at a point, its horizon and year"},
         {"Right click", "stand there, look there, measure from there, copy its coordinates"},
         {"P", "horizon and year on and off"},
-        {"M", "measure from the point to the cursor, until M or a click"},
+        {"M", "measure from the point: clicks set corners, Backspace goes back, M ends"},
         {"C", "compare: the left side stays, the right side follows; drag the line"},
         {"O", "sun hours of the day on the ground, on and off"},
         {"F12", "save the image as a picture"},
@@ -255,12 +138,14 @@ void key_sheet() {
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "export the sun overlay as GeoTIFF"},
         {"Ctrl + J", "save the day's hours as a job"},
+        {"F", "film: a day, a year, orbits and flights, on a time line"},
         {"Ctrl + O", "open a DEM, scene, photograph, track ...; files can be dropped too"},
         {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
         {"B, then 1 to 9", "save the view; go to a saved view"},
         {"F5", "reload effects (automatic if their files change)"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
         {"Tab", "panels and menu on and off"},
+        {"F6, F10, Esc", "keyboard to the panels, to the menu, back to the scene"},
         {"H, Esc", "this sheet; Esc also cancels opening a DEM"},
         {"Ctrl + Q", "quit"},
     }};

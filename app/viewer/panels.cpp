@@ -5,6 +5,8 @@
 #include <imgui.h>
 
 #include "base/text.h"
+#include "viewer/measurement_panel.h"
+#include "viewer/overlay.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {
@@ -57,12 +59,13 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     keep_in_reach(size_px);
     const float left = ImGui::GetWindowPos().x;
     state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
+    state.measurement.marked.reset();
+    if (state.measurement.profile && ImGui::CollapsingHeader("Measured line", kOpen))
+        measurement_panel(state);
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("View")) view_panel(state, double{size_px.x} / size_px.y);
     if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
-    const std::optional<Profile>& profile = state.measurement.profile;
-    if (profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*profile);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader("Export", kOpen)) export_panel(state);
     ImGui::End();

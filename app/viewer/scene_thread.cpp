@@ -343,7 +343,8 @@ struct SceneThread::Impl {
                           session->camera().eye_m == shadows_eye_m &&
                           Clock::now() - shadows_at < kShadowsAge;
         session->freeze_native(keep);
-        moves = session->is_animated();
+        moves = session->is_animated() && !now.seconds;
+        if (now.seconds) session->set_seconds(*now.seconds);
         if (moves)
             session->set_seconds(std::fmod(scene.seconds + milliseconds_since(opened_at) / 1000,
                                            scene::kMaxSeconds));

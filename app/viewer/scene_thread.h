@@ -19,10 +19,12 @@ namespace relevo::viewer {
 
 /// What the window requests. The latest request replaces earlier ones.
 struct Wanted {
-    std::optional<scene::View> view;    ///< nullopt: the scene's
-    double keep_above_m = 0;            ///< least height of the eye above the drawn ground [m]
+    std::optional<scene::View> view;  ///< nullopt: the scene's
+    /// Least height of the eye above the drawn ground [m]; nullopt: not raised.
+    std::optional<double> keep_above_m = 0;
     std::optional<sun::Instant> utc;    ///< nullopt: the scene's
     std::optional<double> exposure_ev;  ///< nullopt: the scene's
+    std::optional<double> seconds;      ///< of effects that move; nullopt: they move by themselves
     int width_px = 1, height_px = 1;    ///< of the window
     scene::Insets insets;               ///< of its panels, for the scene's view
     bool moving = false;  ///< the user moves the camera: a quick frame is better than a sharp one

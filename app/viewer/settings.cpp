@@ -188,6 +188,7 @@ Settings Memory::settings() const {
     take(from, "coordinates", coordinates);
     take(from, "panels", settings.panels);
     take(from, "charts", settings.charts);
+    take(from, "charts_are_docked", settings.charts_are_docked);
     settings.light_style = style == "light";
     settings.text_px = static_cast<int>(std::clamp<double>(text_px, kLeastText_px, kMostText_px));
     for (std::size_t i = 0; i < kCoordinates.size(); ++i)
@@ -202,7 +203,8 @@ void Memory::write(const Settings& settings) const {
                  {"text_px", settings.text_px},
                  {"coordinates", kCoordinates[static_cast<std::size_t>(settings.coordinates)]},
                  {"panels", settings.panels},
-                 {"charts", settings.charts}});
+                 {"charts", settings.charts},
+                 {"charts_are_docked", settings.charts_are_docked}});
 }
 
 std::vector<RecentDem> Memory::recent() const {

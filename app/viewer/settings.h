@@ -24,8 +24,9 @@ struct Settings {
     bool light_style = false;
     int text_px = kUsualText_px;  ///< kLeastText_px to kMostText_px
     Coordinates coordinates = Coordinates::Utm;
-    bool panels = true;  ///< shows all panels
-    bool charts = true;  ///< the chosen point's horizon and year
+    bool panels = true;              ///< shows all panels
+    bool charts = true;              ///< the chosen point's horizon and year
+    bool charts_are_docked = false;  ///< at the lower edge
 
     bool operator==(const Settings&) const = default;
 };

@@ -10,7 +10,7 @@
 #include "render/frame_block.h"
 #include "viewer/command.h"
 #include "viewer/document.h"
-#include "viewer/overlay.h"
+#include "viewer/measurement.h"
 #include "viewer/point_light.h"
 #include "viewer/scene_thread.h"
 #include "viewer/settings.h"
@@ -60,6 +60,8 @@ struct State {
     std::shared_ptr<const PointLight> point;  ///< its sunlight; null: not computed yet
     bool point_in_work = false;               ///< `point` is incomplete
     Measurement measurement;
+    bool can_undo = false, can_redo = false;
+    bool opens_menu = false;  ///< a request: the first menu
 
     std::shared_ptr<const OverlayShown> overlay;  ///< on the ground; null: none
     std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
@@ -77,6 +79,7 @@ struct State {
     /// Left and right edge of the side panel [px]; none: not drawn yet.
     std::optional<glm::vec2> side_panel_px;
     float point_room_px = 0;  ///< height of the point's text
+    float docked_px = 0;      ///< height of what is docked above the status line
     glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo

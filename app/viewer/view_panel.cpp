@@ -73,8 +73,9 @@ void exaggeration(State& state) {
 
 /// Of displayed times. "auto" is that of the place.
 void zone(State& state) {
-    ImGui::InputTextWithHint("Zone", state.document.zone.name().c_str(), &state.zone_text,
-                             ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::InputTextWithHint(
+        "Zone", state.document.zone.name().c_str(), &state.zone_text,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("Europe/Zurich, +05:30, solar, or auto: that of the place");
     if (!ImGui::IsItemDeactivatedAfterEdit()) return;

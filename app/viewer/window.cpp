@@ -237,6 +237,9 @@ struct Window::Impl {
         ImGuiStyle& style = ImGui::GetStyle();
         style = ImGuiStyle();
         light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+        // Text is not read through text.
+        style.Colors[ImGuiCol_WindowBg].w = 0.97f;
+        style.Colors[ImGuiCol_PopupBg].w = 1;
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
         style.FrameRounding = 3 * scale;
@@ -287,6 +290,10 @@ bool Window::should_close() const {
 
 void Window::close() {
     glfwSetWindowShouldClose(impl_->handle, GLFW_TRUE);
+}
+
+void Window::keep_open() {
+    glfwSetWindowShouldClose(impl_->handle, GLFW_FALSE);
 }
 
 void Window::hide() {
@@ -380,8 +387,34 @@ void Window::draw(const std::function<void()>& panels) {
 
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
-    if (ImGui::GetIO().WantTextInput) keys.clear();
+    // Esc closes the sheet of a text field.
+    if (ImGui::GetIO().WantTextInput)
+        std::erase_if(keys, [](const KeyPress& press) { return press.key != GLFW_KEY_ESCAPE; });
+    if (!panels_have_keys()) return keys;
+    // Esc first closes what is open in the panels.
+    const bool is_inside =
+        ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    std::erase_if(keys, [&](const KeyPress& press) {
+        const bool is_function = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
+        const bool leaves = press.key == GLFW_KEY_ESCAPE && !is_inside;
+        if (leaves) take_keys_back();
+        return !press.control && !is_function;
+    });
     return keys;
+}
+
+void Window::give_keys_to(const char* panel) {
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(panel);
+}
+
+void Window::take_keys_back() {
+    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(nullptr);
+}
+
+bool Window::panels_have_keys() const {
+    return (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0;
 }
 
 std::vector<std::string> Window::take_dropped_files() {
@@ -408,7 +441,7 @@ glm::vec2 Window::size() const {
 }
 
 bool Window::is_down(int key) const {
-    return !ImGui::GetIO().WantTextInput && impl_->held.contains(key);
+    return !ImGui::GetIO().WantTextInput && !panels_have_keys() && impl_->held.contains(key);
 }
 
 void Window::copy(const std::string& text) {

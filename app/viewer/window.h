@@ -39,6 +39,7 @@ class Window {
 
     bool should_close() const;
     void close();
+    void keep_open();  ///< after a request to close it
     /// Hides the window; the program continues.
     void hide();
     void set_title(const std::string& title);
@@ -72,7 +73,12 @@ class Window {
     /// Draws the frame, and the ImGui panels over it. @throws gl::DeviceLost
     void draw(const std::function<void()>& panels);
 
+    /// Without those that the panels take.
     std::vector<KeyPress> take_keys();
+    /// Has arrows, Enter, Space and Esc move through the panels. @param panel  the first one
+    void give_keys_to(const char* panel);
+    void take_keys_back();
+    bool panels_have_keys() const;
     std::vector<std::string> take_dropped_files();
     /// From the window's upper left corner, in units of size().
     glm::vec2 mouse() const;

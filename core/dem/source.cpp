@@ -15,6 +15,7 @@
 #include "base/parallel_for.h"
 #include "base/progress.h"
 #include "dem/cell_parts.h"
+#include "dem/clip.h"
 #include "dem/folder.h"
 #include "dem/piece.h"
 
@@ -345,6 +346,26 @@ void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
                              grid.crs().name()));
 }
 
+/// Leaves the posts of a rectangle. Pieces keep their posts, of which some are then outside.
+void crop(std::vector<Piece>& pieces, std::optional<Grid>& grid, const std::string& text) {
+    const Bounds edges = parse_bounds(text, "--crop");
+    const Clip clip{edges.west_deg,
+                    edges.south_deg,
+                    edges.east_deg,
+                    edges.north_deg,
+                    geo::Crs::parse("EPSG:4326", "--crop"),
+                    text};
+    const Window window = window_of(*grid, clip, "--crop");
+    if (window.columns < 2 || window.rows < 2)
+        bad_input(fmt::format("--crop: {}: {} x {} posts, expected 2 x 2 at least", text,
+                              window.columns, window.rows));
+    grid = grid->part(window, window.columns, window.rows);
+    for (Piece& piece : pieces) {
+        piece.place.column -= window.column;
+        piece.place.row -= window.row;
+    }
+}
+
 }  // namespace
 
 Source::Source(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -382,6 +403,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
         if (i < kMaxIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
+    if (!options.crop.empty()) crop(impl->pieces, impl->grid, options.crop);
     settle_earth(*impl->grid, impl->about, impl->leaves_earth);
     for (std::size_t i = 0; i < opened.size(); ++i)
         if (!impl->pieces[i].resampling)

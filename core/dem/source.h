@@ -23,6 +23,8 @@ struct LoadOptions {
     bool no_nodata = false;
     Encoding encoding = Encoding::None;  ///< `--encoding`: heights in the colours of a picture
     std::optional<Bounds> bounds = {};   ///< `--bounds`: instead of the file's georeference
+    /// `--crop W,S,E,N` in degrees: only the posts in there; empty: all.
+    std::string crop = {};
     /// The most posts that load() keeps; a larger raster is averaged down by a power of two and the
     /// description says by which. The default is 1 GiB of heights.
     std::int64_t max_posts = std::int64_t{1} << 28;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <GeographicLib/Geodesic.hpp>
+#include <GeographicLib/PolygonArea.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -51,6 +52,16 @@ Geodesic geodesic(const Geodetic& from, const Geodetic& to) {
                                              degrees(to.lat_rad), degrees(to.lon_rad), distance_m,
                                              start_deg, end_deg);
     return {distance_m, azimuth_from_deg(start_deg), azimuth_from_deg(end_deg)};
+}
+
+double polygon_area_m2(std::span<const Geodetic> corners) {
+    GeographicLib::PolygonArea polygon(GeographicLib::Geodesic::WGS84());
+    for (const Geodetic& corner : corners)
+        polygon.AddPoint(degrees(corner.lat_rad), degrees(corner.lon_rad));
+    double perimeter_m = 0;
+    double area_m2 = 0;
+    polygon.Compute(/*reverse=*/false, /*sign=*/true, perimeter_m, area_m2);
+    return std::abs(area_m2);
 }
 
 Geodetic destination(const Geodetic& from, double azimuth_rad, double distance_m) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -37,6 +38,12 @@ Geodesic geodesic(const Geodetic& from, const Geodetic& to);
 /// `azimuth_rad` (clockwise from true north). The height of `from` is kept.
 /// Accuracy and source: as geodesic().
 Geodetic destination(const Geodetic& from, double azimuth_rad, double distance_m);
+
+/// Area of a polygon whose sides are geodesics [m^2], whichever way round its corners are given;
+/// heights play no part. Where the outline crosses itself, parts count with opposite signs.
+/// Accuracy: 0.1 m^2 for each corner (Karney 2013, as geodesic()). Source:
+/// GeographicLib::PolygonArea.
+double polygon_area_m2(std::span<const Geodetic> corners);
 
 /// A place as the command line writes it.
 struct PlaceText {

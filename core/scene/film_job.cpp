@@ -15,9 +15,25 @@ ordered_json film_of(const FilmJob& job) {
     return film;
 }
 
-ordered_json flight_of(const FilmJob& job, const fs::path& folder) {
+ordered_json orbit_of(const FilmJob& job) {
+    ordered_json result{{"turns", job.orbit->turns}, {"duration_s", job.duration_s}};
+    if (job.orbit->ease) result["ease"] = true;
+    return result;
+}
+
+/// The camera of a view as a scene has it.
+ordered_json camera_of(Scene scene, const View& view) {
+    scene.view = view;
+    return ordered_json::parse(scene_text(scene, ""))["camera"];
+}
+
+ordered_json flight_of(const Scene& scene, const FilmJob& job, const fs::path& folder) {
     const FilmJob::Flight& flight = *job.flight;
-    ordered_json result{{"along", path_from(flight.along, folder)}};
+    ordered_json result;
+    if (flight.views.empty()) result["along"] = path_from(flight.along, folder);
+    for (const View& view : flight.views)
+        result["views"].push_back(camera_of(scene, view));
+    if (!flight.ease) result["ease"] = false;
     if (flight.height_m) result["height_m"] = *flight.height_m;
     if (flight.look_ahead_m) result["look_ahead_m"] = *flight.look_ahead_m;
     if (flight.speed_m_s)
@@ -57,9 +73,13 @@ std::string film_job_text(const Scene& scene, const FilmJob& job, const fs::path
         sweep.push_back(
             {{"dates", {{"year", year.year}, {"duration_s", job.duration_s}, {"at", year.at}}}});
     }
-    if (job.orbit)
-        sweep.push_back({{"orbit", {{"turns", job.orbit->turns}, {"duration_s", job.duration_s}}}});
-    if (job.flight) sweep.push_back({{"flight", flight_of(job, folder)}});
+    if (job.orbit) sweep.push_back({{"orbit", orbit_of(job)}});
+    if (job.flight) sweep.push_back({{"flight", flight_of(scene, job, folder)}});
+    if (job.value)
+        sweep.push_back({{"set", job.value->address},
+                         {"from", job.value->from},
+                         {"to", job.value->to},
+                         {"duration_s", job.duration_s}});
     if (sweep.size() > 1) json["combine"] = "zip";
     json["sweep"] = sweep;
     json["film"] = film_of(job);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "film/film.h"
 #include "scene/scene.h"
@@ -29,15 +30,24 @@ struct FilmJob {
     };
     struct Orbit {
         double turns = 1;
+        bool ease = false;
     };
     struct Flight {
-        std::string along;  ///< file of a line
-        std::optional<double> height_m, look_ahead_m, speed_m_s;
+        std::string along;        ///< file of a line
+        std::vector<View> views;  ///< instead of `along`: two or more
+        std::optional<double> height_m, look_ahead_m, speed_m_s;  ///< of a flight along a line
+        bool ease = true;
+    };
+    /// A number from one value to another.
+    struct Value {
+        std::string address;  ///< of a parameter, or "seconds"
+        double from = 0, to = 0;
     };
     std::optional<Day> day;
     std::optional<Year> year;  ///< not with `day`
     std::optional<Orbit> orbit;
     std::optional<Flight> flight;  ///< not with `orbit`
+    std::optional<Value> value;
 };
 
 /// The file of a job that makes a film of a scene, paths as scene_text() has them.

@@ -18,7 +18,8 @@ struct FilmOptions {
     bool allow_blank = false;  ///< also writes a film none of whose frames shows ground
     film::Settings settings;
     std::string comment;  ///< that the file carries
-    /// Called with the number of frames that are drawn.
+    /// Called with the number of frames that are drawn. What it throws ends the film, of which then
+    /// no file is left.
     std::function<void(std::size_t)> drawn = [](std::size_t) {};
 };
 

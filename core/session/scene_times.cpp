@@ -63,6 +63,13 @@ void SceneTimes::before_reading(std::function<void(const scene::Scene&)> call) {
     before_reading_ = std::move(call);
 }
 
+void SceneTimes::use(const scene::Scene& scene, std::shared_ptr<const LoadedDem> dem) {
+    auto known = std::make_unique<Dem>();
+    known->source = dem->source;
+    known->loaded = std::move(dem);
+    dems_[key_of(scene)] = std::move(known);
+}
+
 scene::Scene SceneTimes::with_absolute_paths(scene::Scene scene) {
     std::vector<std::string> given = std::exchange(scene.dems, {});
     scene = scene::with_absolute_paths(std::move(scene));

@@ -28,6 +28,9 @@ class SceneTimes {
     /// absolute paths.
     void before_reading(std::function<void(const scene::Scene&)> call);
 
+    /// Uses a DEM that has been read, all its posts, for the scenes that show it as `scene` does.
+    void use(const scene::Scene& scene, std::shared_ptr<const LoadedDem> dem);
+
     /// As scene::with_absolute_paths(), with results cached per list of DEMs.
     scene::Scene with_absolute_paths(scene::Scene scene);
 

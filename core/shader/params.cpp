@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -18,11 +19,6 @@ constexpr double kMaxFloat = static_cast<double>(std::numeric_limits<float>::max
 
 bool is_colour(const Param& param) {
     return param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb;
-}
-
-/// sRGB to linear light, IEC 61966-2-1.
-double linear_of_srgb(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 /// "#rrggbb", and "#rrggbbaa" for four components.

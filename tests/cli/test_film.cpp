@@ -206,6 +206,22 @@ TEST_F(FilmVerb, MotionsAreAxes) {
     EXPECT_EQ(both["film"]["fps"], 24);
     const nlohmann::json orbit = job_of({"-o", out(), "--motion", "orbit", "--turns", "-0.5"});
     EXPECT_EQ(orbit["sweep"][0]["orbit"]["turns"], -0.5);
+    EXPECT_FALSE(orbit["sweep"][0]["orbit"].contains("ease"));
+}
+
+TEST_F(FilmVerb, AParameterIsAnAxisAloneOrWithOthers) {
+    const nlohmann::json alone =
+        job_of({"-o", out(), "--time", "2026-06-21T15:00", "--vary", "haze.density=0.2,0"});
+    ASSERT_EQ(alone["sweep"].size(), 1u);
+    EXPECT_EQ(alone["sweep"][0]["set"], "haze.density");
+    EXPECT_EQ(alone["sweep"][0]["from"], 0.2);
+    EXPECT_EQ(alone["sweep"][0]["to"], 0);
+    const nlohmann::json with = job_of(
+        {"-o", out(), "--motion", "orbit", "--ease", "--vary", "seconds=0,10", "--duration", "3"});
+    EXPECT_EQ(with["combine"], "zip");
+    EXPECT_EQ(with["sweep"][0]["orbit"]["ease"], true);
+    EXPECT_EQ(with["sweep"][1]["set"], "seconds");
+    EXPECT_EQ(with["sweep"][1]["duration_s"], 3);
 }
 
 TEST_F(FilmVerb, MistakesSayWhatIsWrong) {
@@ -219,6 +235,11 @@ TEST_F(FilmVerb, MistakesSayWhatIsWrong) {
     EXPECT_THAT(message({"-o", out(), "--motion", "flight"}, 2),
                 HasSubstr("add --along TRACK.gpx"));
     EXPECT_THAT(message({"-o", out(), "--motion", "day,year"}, 2), HasSubstr("exclude each other"));
+    for (const char* const text : {"haze.density", "haze.density=1", "=0,1", "haze.density=a,1"})
+        EXPECT_THAT(message({"-o", out(), "--vary", text}, 2),
+                    HasSubstr("expected ADDRESS=FROM,TO"));
+    EXPECT_THAT(message({"-o", out(), "--vary", "haze.thickness=0,1"}, 3),
+                HasSubstr("haze.thickness"));
     EXPECT_THAT(message({"-o", out("a.png")}, 3), HasSubstr("unknown film format"));
     EXPECT_THAT(message({"-o", out("a.gif"), "--quality", "5"}, 3), HasSubstr("has no quality"));
     EXPECT_THAT(message({"-o", out(), "--motion", "orbit", "--date", "2026-10-01"}, 2),

@@ -1,7 +1,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "base/log.h"
@@ -324,6 +326,56 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
               }),
               "exit 3: " + p + ": cannot be joined with " + q +
                   ": pictures of encoded heights must be on one grid, tiles of one zoom");
+}
+
+/// W,S,E,N around the posts of columns and rows of the plane's grid.
+std::string around(const Grid& grid, glm::ivec2 first, glm::ivec2 last) {
+    double west = 1e9, east = -1e9, south = 1e9, north = -1e9;
+    for (const glm::dvec2& corner : {glm::dvec2(first), glm::dvec2(last),
+                                     glm::dvec2(first.x, last.y), glm::dvec2(last.x, first.y)}) {
+        const geo::Geodetic at = grid.place(corner.x, corner.y);
+        west = std::min(west, degrees(at.lon_rad));
+        east = std::max(east, degrees(at.lon_rad));
+        south = std::min(south, degrees(at.lat_rad));
+        north = std::max(north, degrees(at.lat_rad));
+    }
+    return fmt::format("{:.8f},{:.8f},{:.8f},{:.8f}", west, south, east, north);
+}
+
+TEST(Crop, LeavesThePostsOfARectangleOfOneFileAndOfSeveral) {
+    const Paths one{write_raster(folder() / "whole.tif", tile(0, 0, 60, 40))};
+    const Paths several{write_raster(folder() / "left.tif", tile(0, 0, 25, 40)),
+                        write_raster(folder() / "right.tif", tile(25, 0, 35, 40))};
+    for (const Paths& paths : {one, several}) {
+        const Source all = Source::open(paths);
+        LoadOptions options;
+        options.crop = around(all.grid(), {10, 5}, {49, 24});
+        const Source part = Source::open(paths, options);
+        ASSERT_EQ(part.grid().columns(), 40);
+        ASSERT_EQ(part.grid().rows(), 20);
+        const Affine& a = part.grid().affine();
+        EXPECT_EQ(a(0, 0), all.grid().affine()(10, 5));
+        expect_plane(load(paths, options), 1e-3);
+        const Array2d<float> means = part.read({0, 0, 40, 20}, 10, 5);
+        const Array2d<float> same = all.read({10, 5, 40, 20}, 10, 5);
+        for (int row = 0; row < 5; ++row)
+            for (int column = 0; column < 10; ++column)
+                EXPECT_EQ(means.at(column, row), same.at(column, row)) << column << " " << row;
+        EXPECT_EQ(part.stored(3, 4), all.stored(13, 9));
+    }
+}
+
+TEST(Crop, WithoutPostsOrWithNonsenseIsRefused) {
+    const Paths paths{write_raster(folder() / "whole.tif", tile(0, 0, 60, 40))};
+    const auto error = [&](const std::string& crop) {
+        LoadOptions options;
+        options.crop = crop;
+        return test::error_of([&] { Source::open(paths, options); });
+    };
+    EXPECT_THAT(error("-80,40,-79,41"),
+                testing::StartsWith("exit 3: --crop: -80,40,-79,41: not one post"));
+    EXPECT_THAT(error("9,46.9,9.00001,46.90001"), testing::StartsWith("exit 3: --crop:"));
+    EXPECT_THAT(error("9,46"), testing::StartsWith("exit 2: --crop: 9,46: expected WEST"));
 }
 
 }  // namespace

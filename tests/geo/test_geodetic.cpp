@@ -1,5 +1,6 @@
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "base/units.h"
 #include "geo/geodetic.h"
@@ -33,6 +34,17 @@ TEST(Geodesic, FromNewYorkToSingaporeIsAsPublished) {
     EXPECT_NEAR(way.distance_m, 15347628, 0.5);
     EXPECT_NEAR(degrees(way.azimuth_rad), dms(3, 18, 29.9), 0.05 / 3600);
     EXPECT_NEAR(degrees(way.end_azimuth_rad), dms(177, 29, 9.2), 0.05 / 3600);
+}
+
+TEST(PolygonArea, OfAnOctantIsAnEighthOfTheEllipsoid) {
+    // Surface of WGS 84: 510 065 621.724 km^2 (Moritz, Geodetic Reference System 1980, for the
+    // nearly equal GRS 80: 510 065 622 km^2).
+    const std::vector<Geodetic> octant{geodetic_deg(0, 0), geodetic_deg(0, 90),
+                                       geodetic_deg(90, 0)};
+    EXPECT_NEAR(polygon_area_m2(octant), 510065621.724e6 / 8, 1e3);
+    const std::vector<Geodetic> back(octant.rbegin(), octant.rend());
+    EXPECT_NEAR(polygon_area_m2(back), 510065621.724e6 / 8, 1e3);
+    EXPECT_EQ(polygon_area_m2(std::vector{octant[0], octant[1]}), 0);
 }
 
 TEST(Geodesic, AlongTheEquatorIsAnArcOfACircle) {

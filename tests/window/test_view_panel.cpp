@@ -88,5 +88,31 @@ TEST_F(ViewPanel, TimesAreShownInAnotherZone) {
     })) << now;
 }
 
+TEST_F(Viewer, KeysReachMenusAndPanelsAndGoBackToTheScene) {
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    const auto press = [&](const char* key) {
+        act({"key", key});
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    };
+    const double heading_deg = scene()["camera"]["heading"];
+    ASSERT_GT(heading_deg, 1);
+    // The second item of the second menu: north up.
+    for (const char* key : {"F10", "Right", "Down", "Down", "space"})
+        press(key);
+    const auto is_north = [&] {
+        return std::abs(scene()["camera"]["heading"].get<double>()) < 1e-6;
+    };
+    EXPECT_TRUE(wait(is_north));
+    press("Escape");
+    // In the panels arrows do not move the camera; afterwards they do.
+    press("F6");
+    for (int i = 0; i < 3; ++i)
+        press("Left");
+    EXPECT_TRUE(is_north());
+    press("Escape");
+    press("Left");
+    EXPECT_TRUE(wait([&] { return !is_north(); }));
+}
+
 }  // namespace
 }  // namespace relevo
