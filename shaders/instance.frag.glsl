@@ -3,6 +3,7 @@
 //!           instance_colour: square root of the reflectance, in alpha the share of the sun's light, above 0; instance_direction: its normal
 
 //@ include lib/octahedral.glsl
+//@ include lib/pixel.glsl
 
 in vec2 post;
 in float height_m;
@@ -24,9 +25,10 @@ float instance_shaped(inout vec3 normal, inout vec3 reflectance) {
     float side = mix(sqrt(max(1.0 - at.y * at.y, 0.0)), 1.0 - top, instance_shape.z);
     if (abs(at.x) > side || abs(at.y) > 1.0) discard;
     float across = at.x / max(side, 0.05);
-    vec3 right = normalize(frame.pixel_ray_dx.xyz), up = normalize(frame.pixel_ray_dy.xyz);
+    vec3 ahead = normalize(pixel_ray_at(gl_FragCoord.xy));
+    vec3 right = normalize(cross(ahead, frame.pixel_ray_dy.xyz)), up = cross(right, ahead);
     float rise = mix(at.y, 0.2, instance_shape.z);
-    vec3 rounded = across * right + rise * up + sqrt(max(1.05 - across * across, 0.05)) * cross(right, up);
+    vec3 rounded = across * right + rise * up + sqrt(max(1.05 - across * across, 0.05)) * -ahead;
     normal = normalize(mix(normalize(rounded), normal, instance_shape.w));
     reflectance *= 0.75 + 0.5 * top;
     return instance_half_width_m * sqrt(max(side * side - at.x * at.x, 0.0));

@@ -23,6 +23,8 @@
 #include "dem/files_of.h"
 #include "effect/search_path.h"
 #include "geo/format.h"
+#include "scene/panorama.h"
+#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/picture_file.h"
 #include "session/record.h"
@@ -194,6 +196,8 @@ void capture(const Arguments& arguments) {
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
     const session::PictureFormat format = arguments.format.picture();
     auto [scene, compared] = wanted(arguments);
+    scene::check_panorama(scene);
+    scene::check_stereo(scene);
     session::SceneTimes().fit_map(scene);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");

@@ -10,6 +10,8 @@
 #include "base/text.h"
 #include "cli/job_run.h"
 #include "film/film.h"
+#include "scene/panorama.h"
+#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/film_batch.h"
 
@@ -63,6 +65,10 @@ class FilmRun {
 
     void check_frames() const {
         const scene::Scene& first = work_.shots.front().scene;
+        for (const scene::Shot& shot : work_.shots) {
+            scene::check_panorama(shot.scene);
+            scene::check_stereo(shot.scene);
+        }
         for (const scene::Shot& shot : work_.shots)
             if (shot.scene.width_px != first.width_px || shot.scene.height_px != first.height_px)
                 bad_input(fmt::format(

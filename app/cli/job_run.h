@@ -27,7 +27,8 @@ struct JobArguments {
     FormatArguments format;         ///< of pictures
     std::string job;                ///< its file
     std::optional<JobText> text{};  ///< instead of a file
-    std::string output, device = "auto", shard;
+    std::string output, device = "auto", shard, contact_sheet;
+    int columns = 0;  ///< of the contact sheet; 0: chosen
     bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
     bool audit = false, allow_blank = false;
 };
@@ -53,6 +54,9 @@ struct JobRun {
 
 /// Checks, draws and encodes the film of a job.
 void run_film(const JobArguments& arguments, JobRun& work);
+
+/// Draws the pictures of a job into one file.
+void run_contact_sheet(const JobArguments& arguments, JobRun& work);
 
 /// Reads a job and makes its pictures or its film.
 void run_job(const JobArguments& arguments);

@@ -19,6 +19,8 @@
 #include "cli/job_run.h"
 #include "cli/shard.h"
 #include "scene/job.h"
+#include "scene/panorama.h"
+#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/made.h"
 #include "session/picture_file.h"
@@ -112,6 +114,8 @@ class Run {
 
   private:
     void check_format(const scene::Shot& shot) const {
+        scene::check_panorama(shot.scene);
+        scene::check_stereo(shot.scene);
         image::check_encoding(shot.output, arguments_.format.encoding(),
                               {.width_px = shot.scene.width_px,
                                .height_px = shot.scene.height_px,
@@ -367,7 +371,9 @@ class Run {
 void run_job(const JobArguments& arguments) {
     JobRun work;
     work.read(arguments);
-    if (work.job.is_film())
+    if (!arguments.contact_sheet.empty())
+        run_contact_sheet(arguments, work);
+    else if (work.job.is_film())
         run_film(arguments, work);
     else
         Run(arguments, work).run();
@@ -395,6 +401,16 @@ void add_run(CLI::App& app) {
     verb.add_flag("--audit", arguments->audit,
                   "Compare the drawn shadows with the computed ones; implies --sidecar");
     verb.add_flag("--allow-blank", arguments->allow_blank, "Accept pictures that show no ground");
+    CLI::Option* const sheet =
+        verb.add_option("--contact-sheet", arguments->contact_sheet,
+                        "Make one picture instead, with all pictures small and with captions")
+            ->group("Contact sheet");
+    verb.add_option("--columns", arguments->columns,
+                    "Columns of the contact sheet; default: by shape")
+        ->needs(sheet)
+        ->check(whole_number())
+        ->check(in_range(1, 1000))
+        ->group("Contact sheet");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.callback([arguments, template_given = output] {

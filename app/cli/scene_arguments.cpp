@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "scene/panorama.h"
 
 namespace relevo::cli {
 
@@ -98,12 +99,24 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     values.apply_to(result);
     check_map();
     apply_stamps_to(result.stamps);
+    apply_size_to(result);
+}
+
+void SceneArguments::apply_size_to(scene::Scene& result) const {
+    const bool panorama = result.view.panorama != scene::Panorama::None;
+    const bool lens = values.has("--fov") || values.has("--focal-length");
+    if (panorama && lens && !size.empty())
+        bad_usage(
+            "--fov and --size: a panorama has square pixels, so use one; --hfov is its width");
+    glm::ivec2 sides(result.width_px, result.height_px);
     if (!size.empty()) {
         result.resolution = 0;
-        const glm::ivec2 sides = parse_size(size);
-        result.width_px = sides.x;
-        result.height_px = sides.y;
+        sides = parse_size(size);
+    } else if (panorama && (lens || values.has("--panorama") || values.has("--hfov"))) {
+        sides = scene::default_panorama_px(result.view);
     }
+    result.width_px = sides.x;
+    result.height_px = sides.y;
 }
 
 void SceneArguments::check_map() const {

@@ -45,6 +45,7 @@ struct SceneArguments {
     /// @throws Error (Usage) for options that exclude each other
     void check_map() const;
     void apply_stamps_to(scene::Stamps& result) const;
+    void apply_size_to(scene::Scene& result) const;
 };
 
 }  // namespace relevo::cli

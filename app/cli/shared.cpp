@@ -165,8 +165,7 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
     if (!view.empty() || !eye.empty()) {
         const scene::View before = result;
         result = {};
-        result.fov_y_rad = before.fov_y_rad;
-        result.focal_length_mm = before.focal_length_mm;
+        result.take_lens_of(before);
     }
     if (!view.empty()) {
         const scene::View asked = scene::parse_view(view);

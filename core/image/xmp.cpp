@@ -9,6 +9,11 @@ namespace relevo::image {
 namespace {
 
 constexpr std::string_view kPrefix = "relevo:";
+/// Of Google's properties of panoramas, by which viewers show one as a sphere.
+constexpr std::string_view kPanoramaPrefix = "GPano:";
+constexpr std::string_view kPanoramaBegin =
+    "<rdf:Description rdf:about=\"\" "
+    "xmlns:GPano=\"http://ns.google.com/photos/1.0/panorama/\">";
 constexpr std::string_view kBegin =
     "<rdf:Description rdf:about=\"\" "
     "xmlns:relevo=\"https://relevo.invalid/ns/1.0/\">";
@@ -66,19 +71,26 @@ void append_chunk(std::vector<std::byte>& to, std::string_view name, std::string
 }  // namespace
 
 bool is_xmp_keyword(std::string_view keyword) {
-    return keyword.starts_with(kPrefix);
+    return keyword.starts_with(kPrefix) || keyword.starts_with(kPanoramaPrefix);
 }
 
 std::string xmp_packet(const Metadata& metadata) {
-    std::string properties;
-    for (const auto& [keyword, text] : metadata)
-        if (is_xmp_keyword(keyword))
-            properties += "<" + keyword + ">" + escaped(text) + "</" + keyword + ">";
-    if (properties.empty()) return {};
+    const auto properties_of = [&](std::string_view prefix) {
+        std::string properties;
+        for (const auto& [keyword, text] : metadata)
+            if (keyword.starts_with(prefix))
+                properties += "<" + keyword + ">" + escaped(text) + "</" + keyword + ">";
+        return properties;
+    };
+    const std::string properties = properties_of(kPrefix);
+    const std::string panorama = properties_of(kPanoramaPrefix);
+    if (properties.empty() && panorama.empty()) return {};
     return std::string("<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>") +
            "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
            "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">" +
            std::string(kBegin) + properties + std::string(kEnd) +
+           (panorama.empty() ? std::string()
+                             : std::string(kPanoramaBegin) + panorama + std::string(kEnd)) +
            "</rdf:RDF></x:xmpmeta><?xpacket end=\"r\"?>";
 }
 

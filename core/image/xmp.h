@@ -8,7 +8,8 @@
 #include "image/image.h"
 
 /// Texts in pictures as XMP (ISO 16684-1): those whose keyword begins with `relevo:`, each a
-/// property of the namespace https://relevo.invalid/ns/1.0/, which names nothing but itself.
+/// property of the namespace https://relevo.invalid/ns/1.0/, which names nothing but itself; and
+/// those that begin with `GPano:`, properties of Google's Photo Sphere XMP Metadata.
 namespace relevo::image {
 
 bool is_xmp_keyword(std::string_view keyword);

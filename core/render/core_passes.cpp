@@ -172,10 +172,7 @@ class Declaration {
                  .body = [](PassContext& frame) {
                      // All that the picture shows, also where the frame is a part of it: levels of
                      // detail, shadows and instances are then those of one large frame.
-                     const glm::ivec2 picture = frame.picture_px();
-                     frame.tiles = frame.terrain.select_for_frame(
-                         frame.inputs.camera, picture.x, picture.y, frame.inputs.exaggeration,
-                         frame.inputs.loading, frame.inputs.deterministic);
+                     frame.tiles = frame.terrain.select_for_frame(frame.inputs, frame.picture_px());
                  }});
         add(Pass{.name = "light",
                  .kind = PassKind::Host,

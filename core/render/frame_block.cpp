@@ -145,6 +145,12 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.part_left = static_cast<float>(std::round(corner.x));
     block.part_below = static_cast<float>(std::round(corner.y));
     block.picture = glm::vec4(glm::dvec2(picture), 1.0 / glm::dvec2(picture));
+    if (inputs.part && inputs.part->of_panorama) {
+        // In the middle of a picture so large that no pixel is off its middle.
+        constexpr float kLarge_px = 1 << 30;
+        block.part_left = block.part_below = kLarge_px / 2;
+        block.picture = glm::vec4(kLarge_px, kLarge_px, 1 / kLarge_px, 1 / kLarge_px);
+    }
 
     const geo::Geodetic eye = ground.frame.to_geodetic(camera.eye_m);
     block.eye_m = glm::vec4(camera.eye_m, eye.height_m);

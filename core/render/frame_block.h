@@ -56,6 +56,10 @@ struct PicturePart {
     glm::ivec2 picture_px{0};  ///< size of the whole picture
     /// Lower left corner of the frame, from that of the picture [px].
     glm::dvec2 corner_px{0};
+    /// The picture is itself a part of a panorama. What its pixels show must not depend on which
+    /// part they are in: levels of detail and shadows are those of all directions, and Pixel::
+    /// in_picture is the middle everywhere.
+    bool of_panorama = false;
 };
 
 /// Inputs of a frame.

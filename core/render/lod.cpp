@@ -83,6 +83,15 @@ LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height
     return view;
 }
 
+LodView LodView::around_camera(const scene::Camera& camera, int width_px, int height_px,
+                               double pixel_error, double exaggeration) {
+    constexpr double kPictures = 6;  // of a usual angle, in a panorama
+    LodView view = of_camera(camera, width_px, height_px, pixel_error, exaggeration);
+    view.planes.clear();
+    view.frames = kPictures;
+    return view;
+}
+
 TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo::LocalFrame& frame)
     : pyramid_(&pyramid), grid_(&grid), frame_(&frame) {
     earth_centre_m_ = frame.to_local({0, 0, -kEquatorialRadius_m});

@@ -73,6 +73,10 @@ struct LodView {
     /// @param pixel_error  tolerance in pixels at the frame's centre
     static LodView of_camera(const scene::Camera& camera, int width_px, int height_px,
                              double pixel_error, double exaggeration);
+
+    /// All directions from a camera's eye, as accurate as of_camera().
+    static LodView around_camera(const scene::Camera& camera, int width_px, int height_px,
+                                 double pixel_error, double exaggeration);
 };
 
 /// A tile to draw.

@@ -269,18 +269,22 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
     return selection;
 }
 
-TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_px, int height_px,
-                                        double exaggeration, Loading loading, bool deterministic) {
-    const LodView view =
-        LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
+TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px) {
+    const bool around = inputs.part && inputs.part->of_panorama;
+    const auto view_of = around ? LodView::around_camera : LodView::of_camera;
+    const LodView view = view_of(inputs.camera, picture_px.x, picture_px.y, options_.pixel_error,
+                                 inputs.exaggeration);
     complete_ = true;
     TileSelection selection =
-        loading == Loading::Background ? select_in_background(view) : select(view);
+        inputs.loading == Loading::Background ? select_in_background(view) : select(view);
     update_surface_layers();
-    const LodView pixels = LodView::of_camera(camera, width_px, height_px, 1, exaggeration);
-    prepare_surface(pixels, loading, deterministic);
+    // Levels of pages depend on the distance alone.
+    const LodView pixels =
+        LodView::of_camera(inputs.camera, picture_px.x, picture_px.y, 1, inputs.exaggeration);
+    prepare_surface(pixels, inputs.loading, inputs.deterministic);
     for (GroundRasters* const rasters : {&overlay_, &rasters_})
-        complete_ = rasters->prepare(tree_, pixels, loading, deterministic) && complete_;
+        complete_ =
+            rasters->prepare(tree_, pixels, inputs.loading, inputs.deterministic) && complete_;
     return selection;
 }
 

@@ -89,10 +89,8 @@ class Terrain {
     /// @param keep  another selection whose pages must stay resident
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
     /// Selects the tiles of a frame with the option's pixel error, and makes its pages.
-    /// @param deterministic  do not read finer pages that earlier frames left
-    TileSelection select_for_frame(const scene::Camera& camera, int width_px, int height_px,
-                                   double exaggeration, Loading loading = Loading::Wait,
-                                   bool deterministic = false);
+    /// @param picture_px  size of the picture that the frame belongs to [px]
+    TileSelection select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px);
     /// True if some of a selection's triangles may be in the view that it was made for. An
     /// orthographic view has ground in sight if it has tiles.
     bool sees_ground(const TileSelection& selection, const LodView& view);

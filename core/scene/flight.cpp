@@ -291,8 +291,11 @@ std::vector<View> flight_views(const FlightMotion& motion, const View& view,
         View at = view_from(pose.eye, ground);
         at.heading_deg = std::remainder(degrees(pose.heading_rad), 360.0);
         at.pitch_deg = degrees(pose.pitch_rad);
-        at.fov_y_rad = pose.fov_y_rad > 0 ? pose.fov_y_rad : view.fov_y_rad;
-        at.focal_length_mm = pose.fov_y_rad > 0 ? 0 : view.focal_length_mm;
+        at.take_lens_of(view);
+        if (pose.fov_y_rad > 0) {
+            at.fov_y_rad = pose.fov_y_rad;
+            at.focal_length_mm = 0;
+        }
         result.push_back(at);
     }
     return result;

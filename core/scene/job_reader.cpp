@@ -373,8 +373,7 @@ class JobReader {
             axis.values.push_back({name, [eye, along, name](Draft& draft) {
                                        View view = along;
                                        view.eye = eye;
-                                       view.fov_y_rad = draft.scene.view.fov_y_rad;
-                                       view.focal_length_mm = draft.scene.view.focal_length_mm;
+                                       view.take_lens_of(draft.scene.view);
                                        draft.scene.view = view;
                                        draft.site = eye.place;
                                        draft.names["site"] = name;

@@ -182,8 +182,7 @@ std::vector<View> orbit_views(const OrbitMotion& motion, const View& view,
     for (const geo::Geodetic& eye : eyes) {
         views.push_back(view_from(eye, ground));
         views.back().look_at = Standpoint{target, false};
-        views.back().fov_y_rad = view.fov_y_rad;
-        views.back().focal_length_mm = view.focal_length_mm;
+        views.back().take_lens_of(view);
     }
     return views;
 }

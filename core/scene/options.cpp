@@ -20,11 +20,13 @@ namespace {
 using json::Value;
 using Kind = Option::Kind;
 
-// In the order of dem::Encoding and of dem::Holes.
+// In the order of dem::Encoding, dem::Holes, Panorama and Stereo.
 constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
 constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
 constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
+constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
+constexpr std::array<std::string_view, 4> kStereos = {"none", "parallel", "cross-eyed", "anaglyph"};
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 Value number(double value) {
@@ -96,6 +98,25 @@ constexpr Option kOptions[] = {
      "Focal length instead of the field of view, mm on 35 mm film", Kind::Number, 1, 10000, {},
      [](const Scene& s) { return number(s.view.fov_y_rad > 0 ? 0 : s.view.focal_length_mm); },
      [](Scene& s, const Value& v) { set_lens(s, 0, v.number); }},
+    {"camera", "panorama", "--panorama", "View",
+     "Picture all around the eye: none, cylindrical, equirectangular; needs --eye", Kind::Word, 0, 0,
+     kPanoramas,
+     [](const Scene& s) { return text(kPanoramas[static_cast<std::size_t>(s.view.panorama)]); },
+     [](Scene& s, const Value& v) { s.view.panorama = Panorama{index_of(kPanoramas, v)}; }},
+    {"camera", "hfov", "--hfov", "View",
+     "Horizontal field of view of a panorama, degrees", Kind::Number, 1, 360, {},
+     [](const Scene& s) { return number(written_deg(s.view.hfov_rad)); },
+     [](Scene& s, const Value& v) { s.view.hfov_rad = radians(v.number); }},
+    {"camera", "stereo", "--stereo", "View",
+     "Pair for two eyes: none, parallel or cross-eyed (side by side), anaglyph (red and cyan)",
+     Kind::Word, 0, 0, kStereos,
+     [](const Scene& s) { return text(kStereos[static_cast<std::size_t>(s.view.stereo)]); },
+     [](Scene& s, const Value& v) { s.view.stereo = Stereo{index_of(kStereos, v)}; }},
+    {"camera", "eye_distance", "--eye-distance", "View",
+     "Distance between the eyes of a stereo pair, metres; default: 1/30 of that of the near ground",
+     Kind::Number, 0.001, 1e6, {},
+     [](const Scene& s) { return number(s.view.eye_distance_m); },
+     [](Scene& s, const Value& v) { s.view.eye_distance_m = v.number; }},
     {"", "exaggeration", "--exaggerate", "View",
      "Vertical exaggeration", Kind::Number, 0.01, 1000, {},
      [](const Scene& s) { return number(s.exaggeration); },

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "scene/options.h"
+#include "scene/panorama.h"
 #include "scene/scene_words.h"
 #include "sun/event_time.h"
 #include "sun/zone_of_place.h"
@@ -47,6 +48,11 @@ void check(const ObjectReader& object, const char* key, const Parse& parse) {
     }
 }
 
+void set_size(Scene& scene, const glm::ivec2& size_px) {
+    scene.width_px = size_px.x;
+    scene.height_px = size_px.y;
+}
+
 std::string joined(std::string_view path, const char* key) {
     return path.empty() ? key : fmt::format("{}.{}", path, key);
 }
@@ -72,6 +78,7 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
     if (const json::Value* const value = object.take("time"))
         time(*value, joined(path, "time"), scene.time);
     take_options(object, "", scene);
+    const Panorama before = scene.view.panorama;
     if (const json::Value* const value = object.take("camera"))
         take_camera(*value, joined(path, "camera"), scene);
     if (const json::Value* const value = object.take("effects"))
@@ -80,8 +87,11 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
         overlay(*value, joined(path, "overlay"), scene);
     if (const json::Value* const value = object.take("stamps"))
         stamps(*value, joined(path, "stamps"), scene);
+    bool sized = false;
     if (const json::Value* const value = object.take("picture"))
-        picture(*value, joined(path, "picture"), scene);
+        sized = picture(*value, joined(path, "picture"), scene);
+    if (scene.view.panorama != before && scene.view.panorama != Panorama::None && !sized)
+        set_size(scene, default_panorama_px(scene.view));
 }
 
 void SceneReader::take_options(ObjectReader& object, std::string_view name, Scene& scene) {
@@ -222,8 +232,7 @@ void SceneReader::take_camera(const json::Value& value, const std::string& path,
     if (orbit || eye) {
         const View before = std::exchange(view, {});
         if (orbit && !before.eye) view.orbit = before.orbit;
-        view.fov_y_rad = before.fov_y_rad;
-        view.focal_length_mm = before.focal_length_mm;
+        view.take_lens_of(before);
     }
     if (orbit) {
         ObjectReader of = inside(*orbit, path + ".orbit");
@@ -285,20 +294,21 @@ void SceneReader::stamps(const json::Value& value, const std::string& path, Scen
     object.finish();
 }
 
-void SceneReader::picture(const json::Value& value, const std::string& path, Scene& scene) const {
+bool SceneReader::picture(const json::Value& value, const std::string& path, Scene& scene) const {
     ObjectReader object = inside(value, path);
-    if (const json::Value* const size = object.take("size")) {
+    const json::Value* const size = object.take("size");
+    if (size) {
         const std::vector<double> v =
             numbers(object, *size, "size", 2, 2, "a width and a height in pixels");
         for (const double side : v)
             if (side != std::floor(side) || side < 1 || side > kMaxSide_px)
                 object.fail(size->line, "size",
                             fmt::format("expected 1 to {} but got {}", kMaxSide_px, side));
-        scene.width_px = static_cast<int>(v[0]);
-        scene.height_px = static_cast<int>(v[1]);
+        set_size(scene, {static_cast<int>(v[0]), static_cast<int>(v[1])});
     }
     take_options(object, "picture", scene);
     object.finish();
+    return size != nullptr;
 }
 
 }  // namespace relevo::scene

@@ -53,7 +53,8 @@ class SceneReader {
     void check_time(const json::ObjectReader& object, const TimeSpec& spec) const;
     void overlay(const json::Value& value, const std::string& path, Scene& scene) const;
     void stamps(const json::Value& value, const std::string& path, Scene& scene) const;
-    void picture(const json::Value& value, const std::string& path, Scene& scene) const;
+    /// @returns whether it has a size
+    bool picture(const json::Value& value, const std::string& path, Scene& scene) const;
 
     std::string who_, file_;
     std::filesystem::path folder_;

@@ -103,6 +103,15 @@ std::optional<glm::dvec3> first_ground(const glm::dvec3& eye_m, const glm::dvec3
     return std::nullopt;
 }
 
+void View::take_lens_of(const View& other) {
+    fov_y_rad = other.fov_y_rad;
+    focal_length_mm = other.focal_length_mm;
+    panorama = other.panorama;
+    hfov_rad = other.hfov_rad;
+    stereo = other.stereo;
+    eye_distance_m = other.eye_distance_m;
+}
+
 double within_a_turn_deg(double angle_deg) {
     return std::abs(angle_deg) <= 360 ? angle_deg : std::fmod(angle_deg, 360.0);
 }

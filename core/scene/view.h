@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/units.h"
 #include "geo/geodetic.h"
 #include "scene/camera.h"
 
@@ -17,6 +18,12 @@ struct Standpoint {
     bool above_ground = false;  ///< place.height_m counts from the ground
 };
 
+/// How a picture all around the eye is projected: core/scene/panorama.h.
+enum class Panorama { None, Cylindrical, Equirectangular };
+
+/// How a pair of pictures for two eyes is put into one: core/scene/stereo.h.
+enum class Stereo { None, Parallel, CrossEyed, Anaglyph };
+
 /// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a
 /// place or along a heading.
 struct View {
@@ -27,6 +34,13 @@ struct View {
     double pitch_deg = 0;
     double fov_y_rad = 0;        ///< 0: from the focal length, else the default
     double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
+    Panorama panorama = Panorama::None;
+    double hfov_rad = 2 * kPi;  ///< horizontal field of view of a panorama
+    Stereo stereo = Stereo::None;
+    double eye_distance_m = 0;  ///< between the eyes of a stereo pair; 0: by the near ground
+
+    /// Takes what does not depend on the place of a camera from another.
+    void take_lens_of(const View& other);
 };
 
 /// Beyond them the ground is less than a pixel, or less than a millimetre of it is seen.

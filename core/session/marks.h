@@ -19,6 +19,7 @@
 #include "effect/selection.h"
 #include "render/displacement.h"
 #include "scene/camera.h"
+#include "scene/panorama.h"
 #include "session/session.h"
 
 /// Marks of plugins: from their files and native modules to places on the ground to the picture.
@@ -124,12 +125,23 @@ struct MarkView {
     int width_px, height_px;
     /// Depths of pixels, counted from the upper left corner [m]; infinite without ground.
     std::function<std::vector<float>(std::span<const glm::ivec2> pixels)> depths_m;
+    /// Of a panorama around the camera's eye. Depths are then distances from the eye.
+    struct Around {
+        const scene::PanoramaMap& map;
+        glm::dmat3 axes;  ///< as eye_axes()
+    };
+    std::optional<Around> around{};
 };
 
 /// A picture with the depths of all its pixels, as render::Renderer::read_depths(), which must
 /// outlive the result.
 MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
                  const std::vector<float>& depths_m);
+
+/// A panorama with the distances of all its pixels, as PanoramaImage::distances_m(), which must
+/// outlive the result.
+MarkView view_of(const scene::Camera& camera, const MarkView::Around& around,
+                 const std::vector<float>& distances_m);
 
 /// The marks that are in the picture and not hidden by ground, the most important first. A mark on
 /// the ground stands where the frame shows ground at its place: displaced by effects, and coarser

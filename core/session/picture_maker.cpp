@@ -20,10 +20,6 @@ namespace {
 constexpr int kTransparentSamples = 8;
 /// With this many samples frames need no smoothing of their own.
 constexpr int kEnoughSamples = 4;
-/// Pixels of the frames that tiles are cut out of: their targets take 60 bytes each.
-constexpr double kTileFrame_px = 1 << 23;
-/// How far full-screen effects may read around a pixel: bloom's widest level reaches 157 px.
-constexpr int kMargin_px = 256;
 
 /// Cuts an image of a tile's frame to the tile.
 template <typename Pixels>
@@ -61,7 +57,9 @@ bool fits(const scene::Scene& scene, const PictureFormat& format, int max_side_p
 
 RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
     const int samples = samples_of(scene);
-    return {.deep = samples > 1 || format.bits > 8,
+    const bool mixed = scene.view.panorama != scene::Panorama::None ||
+                       scene.view.stereo == scene::Stereo::Anaglyph;
+    return {.deep = samples > 1 || format.bits > 8 || mixed,
             .antialias = samples < kEnoughSamples,
             .data = !format.layers.empty(),
             .orthographic = scene.ortho};
@@ -94,7 +92,9 @@ PictureMaker::PictureMaker(Session::Impl& impl)
     if (scene_.ortho && std::ranges::find(format_.layers, DataLayer::Depth) != format_.layers.end())
         bad_input("--layers: depth: a map of --ortho has no eye to measure from; name the others");
     const int max_side_px = impl.context->info().max_picture_size;
-    if (fits(scene_, format_, max_side_px)) {
+    const bool other =
+        scene_.view.panorama != scene::Panorama::None || scene_.view.stereo != scene::Stereo::None;
+    if (other || fits(scene_, format_, max_side_px)) {
         const PictureRect all{{0, 0}, picture_px_};
         tiles_ = {{all, all}};
         return;
@@ -107,7 +107,11 @@ PictureMaker::PictureMaker(Session::Impl& impl)
 void PictureMaker::draw_frame(const PictureTile& tile, const glm::dvec2& offset_px) {
     impl_.drawn->resize(tile.frame.size.x, tile.frame.size.y);
     impl_.part.reset();
-    if (is_tiled() || offset_px != glm::dvec2(0))
+    if (frame_)
+        impl_.part = render::PicturePart{
+            frame_->picture_px, glm::dvec2(tile.frame.corner) + frame_->moved_px + offset_px,
+            frame_->of_panorama};
+    else if (is_tiled() || offset_px != glm::dvec2(0))
         impl_.part = render::PicturePart{picture_px_, glm::dvec2(tile.frame.corner) + offset_px};
     impl_.draw(render::Loading::Wait, std::exchange(times_, nullptr));
 }
@@ -127,6 +131,10 @@ void PictureMaker::take_depths(const PictureTile& tile, const std::vector<float>
                         return std::isfinite(depth_m);
                     });
     if (!keeps_depths_) return;
+    if (frame_) {
+        depths_m_ = depths_m;
+        return;
+    }
     depths_m_.resize(static_cast<std::size_t>(picture_px_.x) *
                      static_cast<std::size_t>(picture_px_.y));
     const PictureRect& rect = tile.rect;
@@ -204,6 +212,13 @@ image::Picture PictureMaker::draw(const PictureTile& tile) {
     return picture;
 }
 
+image::Picture PictureMaker::draw(const Frame& frame) {
+    frame_ = frame;
+    impl_.state.inputs.camera = frame.camera;
+    const PictureTile tile{frame.rect, frame.rect};
+    return samples_of(scene_) == 1 ? draw_once(tile) : draw_samples(tile);
+}
+
 image::Picture PictureMaker::whole(render::PassTimes* times) {
     times_ = times;
     if (!is_tiled()) return draw(tiles_.front());
@@ -222,11 +237,17 @@ void PictureMaker::refuse_in_tiles() const {
     if (!format_.layers.empty()) refuse("--layers");
     if (impl_.drawn->without()) refuse("--ab");
     if (impl_.options.audited) refuse("--audit");
-    // What such passes measure is of one frame, and would differ from tile to tile.
-    for (const shader::PluginPass& pass : impl_.drawn->effects().loaded.selection.passes())
+    refuse_whole_frame_effects(*impl_.drawn,
+                               fmt::format("a picture of at most {:.0f} pixels but got {} x {}",
+                                           format_.frame_px, picture_px_.x, picture_px_.y));
+}
+
+void refuse_whole_frame_effects(const DrawnEffects& drawn, const std::string& expected) {
+    // What such passes measure is of one frame, and would differ from frame to frame.
+    for (const shader::PluginPass& pass : drawn.effects().loaded.selection.passes())
         if (pass.kind == shader::PluginPass::Kind::Compute)
-            refuse(pass.resource.substr(0, pass.resource.find('.')) +
-                   ", which computes from the whole frame");
+            bad_input(fmt::format("{}, which computes from the whole frame: expected {}",
+                                  pass.resource.substr(0, pass.resource.find('.')), expected));
 }
 
 void PictureMaker::check_bands() const {
@@ -254,9 +275,7 @@ void PictureMaker::bands(const std::function<void(const image::Picture&)>& take)
     }
 }
 
-image::Picture Session::Impl::make_picture(const Session& session, render::PassTimes* times) {
-    stamp_notes.clear();
-    map_corner_px = {0, 0};
+bool Session::Impl::is_annotated(const Session& session) const {
     const bool annotated =
         !options.radiance && (has_marks() || state.scene.stamps != scene::Stamps() ||
                               (state.scene.stamps.legend && !session.legends().empty()));
@@ -266,6 +285,28 @@ image::Picture Session::Impl::make_picture(const Session& session, render::PassT
             fmt::format("stamps, legends and names need sides of at most {} px; add "
                         "--no-legend, or use a smaller --size",
                         kMostAnnotated_px));
+    return annotated;
+}
+
+void Session::Impl::annotate(image::Picture& picture,
+                             const std::function<void(image::Image8&)>& draw) const {
+    auto* const plain = std::get_if<image::Image8>(&picture.pixels);
+    if (plain && plain->channels == 3) return draw(*plain);
+    const auto size = std::visit(
+        [](const auto& pixels) { return glm::ivec2(pixels.width, pixels.height); }, picture.pixels);
+    const image::Image8 over = drawn_alone(size.x, size.y, draw);
+    if (plain)
+        lay_over(over, *plain);
+    else
+        lay_over(over, std::get<image::Image16>(picture.pixels));
+}
+
+image::Picture Session::Impl::make_picture(const Session& session, render::PassTimes* times) {
+    stamp_notes.clear();
+    map_corner_px = {0, 0};
+    if (state.scene.view.panorama != scene::Panorama::None) return make_panorama(session, times);
+    if (state.scene.view.stereo != scene::Stereo::None) return make_stereo(session, times);
+    const bool annotated = is_annotated(session);
     if (annotated && state.scene.stamps.margin) return make_with_margin(session, times);
     PictureMaker maker(*this);
     if (maker.is_tiled() && annotated) maker.keep_depths();

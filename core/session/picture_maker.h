@@ -24,6 +24,15 @@ RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format);
 /// Samples of each pixel of a scene's picture.
 int samples_of(const scene::Scene& scene);
 
+/// How far full-screen effects may read around a pixel: bloom's widest level reaches 157 px.
+inline constexpr int kMargin_px = 256;
+/// Pixels of the frames that larger pictures are made of: their targets take 60 bytes each.
+inline constexpr double kTileFrame_px = 1 << 23;
+
+/// @throws Error (BadInput) for active effects that compute from the whole frame
+/// @param expected  what they would need, for the message
+void refuse_whole_frame_effects(const DrawnEffects& drawn, const std::string& expected);
+
 /// Size of the frames that a scene's picture is drawn in [px]: the picture's, or less.
 glm::ivec2 frame_px(const scene::Scene& scene, const PictureFormat& format, int max_side_px);
 
@@ -37,6 +46,20 @@ class PictureMaker {
     image::Picture whole(render::PassTimes* times);
     /// Rows of tiles from the top.
     void bands(const std::function<void(const image::Picture&)>& take);
+
+    /// @param times  of the first frame; may be null
+    void time_first_frame(render::PassTimes* times) { times_ = times; }
+    /// A frame of another camera than the scene's.
+    struct Frame {
+        scene::Camera camera;
+        glm::ivec2 picture_px{0};  ///< size of the camera's picture
+        PictureRect rect;          ///< of that picture
+        glm::dvec2 moved_px{0};    ///< further to the right and up
+        bool of_panorama = false;  ///< as render::PicturePart
+    };
+    /// Draws a frame with the scene's samples, in 8 bits only if the renderer has no more.
+    /// depths_m() are then its own, rows from the top. The session keeps the camera.
+    image::Picture draw(const Frame& frame);
 
     bool is_tiled() const { return tiles_.size() > 1; }
     bool shows_ground() const { return shows_ground_; }
@@ -70,6 +93,7 @@ class PictureMaker {
     std::vector<PictureTile> tiles_;
     render::PassTimes* times_ = nullptr;
     bool keeps_depths_ = false, shows_ground_ = false;
+    std::optional<Frame> frame_;  // instead of tiles
     std::vector<float> depths_m_;
 };
 

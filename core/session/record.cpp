@@ -14,6 +14,7 @@
 #include "dem/versions.h"
 #include "effect/selection.h"
 #include "session/active_effects.h"
+#include "session/panorama_maker.h"
 #include "session/words.h"
 #include "sun/position.h"
 
@@ -44,12 +45,21 @@ ordered_json camera_json(const Session& session) {
     const geo::Axes axes = frame.axes(eye.lat_rad, eye.lon_rad);
     const double heading_deg =
         degrees(std::atan2(dot(camera.forward, axes.east), dot(camera.forward, axes.north)));
-    return {{"lat_deg", degrees(eye.lat_rad)},
-            {"lon_deg", degrees(eye.lon_rad)},
-            {"height_m", eye.height_m / session.scene().exaggeration},
-            {"heading_deg", heading_deg < 0 ? heading_deg + 360 : heading_deg},
-            {"pitch_deg", degrees(std::asin(std::min(1.0, dot(camera.forward, axes.up))))},
-            {"fov_deg", degrees(camera.fov_y_rad)}};
+    ordered_json json{
+        {"lat_deg", degrees(eye.lat_rad)},
+        {"lon_deg", degrees(eye.lon_rad)},
+        {"height_m", eye.height_m / session.scene().exaggeration},
+        {"heading_deg", heading_deg < 0 ? heading_deg + 360 : heading_deg},
+        {"pitch_deg", degrees(std::asin(std::min(1.0, dot(camera.forward, axes.up))))}};
+    if (session.scene().view.panorama == scene::Panorama::None) {
+        json["fov_deg"] = degrees(camera.fov_y_rad);
+        return json;
+    }
+    const scene::PanoramaMap map = panorama_map(session.scene(), frame, camera);
+    json["hfov_deg"] = degrees(session.scene().view.hfov_rad);
+    json["elevations_deg"] = {degrees(map.elevation_rad(map.picture_px().y)),
+                              degrees(map.elevation_rad(0))};
+    return json;
 }
 
 ordered_json dem_json(const Session& session, const std::vector<HashedFile>& files) {
@@ -74,6 +84,28 @@ std::string origin_line(const geo::Geodetic& origin) {
 scene::Scene drawn(scene::Scene scene, const Session& session) {
     scene.effects = with(std::move(scene.effects), session.compared());
     return scene;
+}
+
+/// Properties by which viewers show an equirectangular panorama as a sphere.
+/// source: Google, Photo Sphere XMP Metadata,
+/// developers.google.com/streetview/spherical-metadata
+image::Metadata sphere_metadata(const scene::PanoramaMap& map) {
+    if (!map.is_equirectangular()) return {};
+    const auto whole = [](double px) { return fmt::format("{}", std::lround(px)); };
+    const glm::ivec2 size = map.picture_px();
+    const double turn_px = 2 * kPi * map.px_per_rad();
+    double heading_deg = std::fmod(degrees(map.azimuth_rad(0.5 * size.x)), 360);
+    if (heading_deg < 0) heading_deg += 360;
+    return {
+        {"GPano:ProjectionType", "equirectangular"},
+        {"GPano:UsePanoramaViewer", "True"},
+        {"GPano:PoseHeadingDegrees", fmt::format("{:.3f}", heading_deg)},
+        {"GPano:FullPanoWidthPixels", whole(turn_px)},
+        {"GPano:FullPanoHeightPixels", whole(0.5 * turn_px)},
+        {"GPano:CroppedAreaImageWidthPixels", whole(size.x)},
+        {"GPano:CroppedAreaImageHeightPixels", whole(size.y)},
+        {"GPano:CroppedAreaLeftPixels", whole(0.5 * (turn_px - size.x))},
+        {"GPano:CroppedAreaTopPixels", whole((kPi / 2 - map.elevation_rad(0)) * map.px_per_rad())}};
 }
 
 }  // namespace
@@ -142,6 +174,9 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
         metadata[kSceneKeyword] = line;
     else
         metadata[kSceneDigestKeyword] = sha256_of_text(line);
+    if (scene.view.panorama != scene::Panorama::None)
+        metadata.merge(
+            sphere_metadata(panorama_map(scene, session.ground().frame, session.camera())));
     if (!session.compared().empty())
         metadata[kComparedKeyword] = fmt::format("{}", fmt::join(session.compared(), ","));
     return metadata;

@@ -1,35 +1,13 @@
 #include "session/sample_sum.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
-#include "base/srgb.h"
+#include "session/srgb16.h"
 
 namespace relevo::session {
 namespace {
-
-constexpr float kMost = 65535;
-
-/// Linear light, 0 to 1, of each value of sRGB with 16 bits.
-const std::array<float, 65536>& decoded() {
-    static const std::array<float, 65536> table = [] {
-        std::array<float, 65536> values{};
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            values[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / kMost));
-        }
-        return values;
-    }();
-    return table;
-}
-
-std::uint16_t encoded(float linear) {
-    const float v = std::clamp(linear, 0.0F, 1.0F);
-    // srgb_of_linear() in single precision, for every pixel.
-    const float srgb = v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F;
-    return static_cast<std::uint16_t>(std::lround(kMost * srgb));
-}
 
 /// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH
 /// 2014 course, slide 123: interleaved gradient noise
@@ -63,8 +41,7 @@ void SampleSum::add_pixels(const Pixels& pixels, std::span<const float> depths_m
 }
 
 void SampleSum::add(const image::Image16& colours, std::span<const float> depths_m) {
-    const std::array<float, 65536>& table = decoded();
-    add_pixels(colours, depths_m, [&](std::uint16_t value) { return table[value]; });
+    add_pixels(colours, depths_m, decoded);
 }
 
 void SampleSum::add(const image::ImageF& radiance, std::span<const float> depths_m) {
@@ -80,7 +57,7 @@ image::Image16 SampleSum::colours() const {
             *to++ = weight > 0 ? encoded(sums_[c] / weight) : std::uint16_t{0};
         if (transparent_)
             *to++ = static_cast<std::uint16_t>(
-                std::lround(kMost * weight / static_cast<float>(frames_)));
+                std::lround(kMost16 * weight / static_cast<float>(frames_)));
     }
     return result;
 }
@@ -104,7 +81,7 @@ image::Image8 dithered(const image::Image16& image, int left_px, int below_px) {
         for (int x = 0; x < image.width; ++x) {
             const float offset = noise(static_cast<float>(left_px + x) + 0.5F, row) - 0.5F;
             for (int c = 0; c < image.channels; ++c) {
-                const float value = 255 * static_cast<float>(image.at(x, y, c)) / kMost;
+                const float value = 255 * static_cast<float>(image.at(x, y, c)) / kMost16;
                 const float wanted = value + (c == 3 ? 0 : offset);
                 result.row(y)[x * image.channels + c] =
                     static_cast<std::uint8_t>(std::lround(std::clamp(wanted, 0.0F, 255.0F)));

@@ -7,6 +7,7 @@
 
 #include "geo/format.h"
 #include "scene/map_view.h"
+#include "scene/stereo.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
 #include "session/stamps.h"
@@ -72,8 +73,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
     const auto camera_of = [&](const scene::View& of) {
         return scene::make_camera(of, heights_to_aim_at(dem_, shape.displacement), ground_->frame,
                                   of.eye ? scene::Outline() : outline(shape),
-                                  static_cast<double>(scene.width_px) / scene.height_px,
-                                  scene.exaggeration);
+                                  scene::view_aspect(scene), scene.exaggeration);
     };
     inputs.camera = standing(view, {ground_->frame, scene.exaggeration, shape.height_m, camera_of},
                              keep_above_m);

@@ -11,6 +11,7 @@
 #include "scene/default_time.h"
 #include "scene/framing.h"
 #include "scene/map_view.h"
+#include "scene/stereo.h"
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/event_time.h"
@@ -169,7 +170,7 @@ scene::MotionGround SceneTimes::motion_ground(const scene::Scene& scene) {
                                .frame = ground.frame,
                                .exaggeration = scene.exaggeration,
                                .points = to_show.points,
-                               .aspect = static_cast<double>(scene.width_px) / scene.height_px};
+                               .aspect = scene::view_aspect(scene)};
     const auto base = render::block_below(to_show.rim, ground, scene.exaggeration);
     result.points.insert(result.points.end(), base.begin(), base.end());
     result.camera = [this, scene, height_m = result.height_m, frame = ground.frame,

@@ -6,6 +6,7 @@
 
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
+#include "scene/panorama.h"
 #include "session/non_finite.h"
 #include "session/picture_maker.h"
 #include "session/standing.h"
@@ -265,7 +266,13 @@ void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wan
 
 void Session::Impl::look(const scene::View& view) {
     check_eye_height(view, state.dem()->field.about.path);
-    state.look(view, shape());
+    if (!options.format || view.panorama == scene::Panorama::None) return state.look(view, shape());
+    // Levels of detail, and the height of the ground below the eye, depend on the size of pixels.
+    scene::View as_fine = view;
+    as_fine.fov_y_rad = scene::perspective_fov_y_rad(
+        view, static_cast<double>(state.scene.width_px) / state.scene.height_px);
+    state.look(as_fine, shape());
+    state.scene.view.take_lens_of(view);
 }
 
 DrawnShape Session::Impl::shape() {

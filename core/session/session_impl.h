@@ -36,6 +36,19 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
     return both;
 }
 
+/// Restores a camera at its end.
+class CameraKept {
+  public:
+    explicit CameraKept(scene::Camera& camera) : camera_(camera), kept_(camera) {}
+    ~CameraKept() { camera_ = kept_; }
+    CameraKept(const CameraKept&) = delete;
+    CameraKept& operator=(const CameraKept&) = delete;
+
+  private:
+    scene::Camera& camera_;
+    scene::Camera kept_;
+};
+
 /// A scene on a device: its state, the effects that draw it, and its terrain.
 struct Session::Impl {
     Options options;
@@ -99,6 +112,9 @@ struct Session::Impl {
     /// @param depths_m  of the picture, if it is not the last frame
     void draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
                        const std::vector<float>* depths_m = nullptr);
+    /// The same of the places of files, on a panorama.
+    void draw_marks_around(image::Image8& picture, std::span<const chart::Rect> taken,
+                           const MarkView::Around& around, const std::vector<float>& distances_m);
     /// Whether active effects may draw marks.
     bool has_marks() const;
     /// Size of frames [px]: that of the scene, or less if its picture is drawn in tiles.
@@ -106,6 +122,18 @@ struct Session::Impl {
     image::Picture make_picture(const Session& session, render::PassTimes* times);
     /// The same with the scene's stamps in a margin around the picture (Stamps::margin).
     image::Picture make_with_margin(const Session& session, render::PassTimes* times);
+    image::Picture make_panorama(const Session& session, render::PassTimes* times);
+    /// @throws Error (BadInput) for what a panorama cannot have
+    void check_panorama() const;
+    image::Picture make_stereo(const Session& session, render::PassTimes* times);
+    /// @throws Error (BadInput) for what a stereo pair cannot have
+    void check_stereo() const;
+    /// Of pictures of several cameras. @param what  "--stereo"
+    void refuse_with_several_cameras(const std::string& what) const;
+    /// Whether a picture has marks, stamps or legends. @throws Error (BadInput) if it is too large
+    bool is_annotated(const Session& session) const;
+    /// Draws on a picture of any kind but linear light. @param draw  draws on its colours
+    void annotate(image::Picture& picture, const std::function<void(image::Image8&)>& draw) const;
     /// @param has_legends  which are not drawn; stamp_notes says so
     void make_bands(const std::function<void(const image::Picture&)>& take, bool has_legends);
     FaultyPicture faulty(const ActiveEffects& shown, int count);

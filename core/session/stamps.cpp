@@ -37,11 +37,15 @@ std::string length_text(double length_m) {
                              : fmt::format("{:.0f} m", length_m);
 }
 
+bool is_of_one_camera(const scene::View& view) {
+    return view.panorama == scene::Panorama::None && view.stereo == scene::Stereo::None;
+}
+
 class Stamper {
   public:
     /// @param stamped  must outlive this; its depths are moved from
     Stamper(Stamped& stamped, const image::Image8& picture)
-        : of_(stamped), wanted_(stamped.scene.stamps) {
+        : of_(stamped), wanted_(of_any_projection(stamped.scene, notes_)) {
         if (!needs_depths(wanted_)) return;
         seen_.emplace(of_.camera, picture.width, picture.height, std::move(stamped.depths_m));
         middle_ = seen_->middle();
@@ -94,9 +98,20 @@ class Stamper {
             notes_.emplace_back("stamp: graticule: no line is long enough to be named");
     }
 
-    std::vector<std::string> notes_;
+    std::vector<std::string>& notes() { return notes_; }
 
   private:
+    /// The stamps that a scene wants, without those that need a perspective picture.
+    static scene::Stamps of_any_projection(const scene::Scene& scene,
+                                           std::vector<std::string>& notes) {
+        scene::Stamps stamps = scene.stamps;
+        if (is_of_one_camera(scene.view) || !needs_depths(stamps)) return stamps;
+        stamps.scale = stamps.north = stamps.graticule = false;
+        notes.emplace_back(
+            "stamp: scale, north and graticule are not drawn on panoramas and stereo pairs");
+        return stamps;
+    }
+
     /// The date and sun of an overlay come from its metadata or are omitted: those of the scene may
     /// differ.
     void add_line(const char* label, const std::string& words, const char* name,
@@ -146,8 +161,9 @@ class Stamper {
         return drawn_m >= height_m - kGround_px / seen_->px_per_m(depth_m);
     }
 
+    std::vector<std::string> notes_;
     const Stamped& of_;
-    const scene::Stamps& wanted_;
+    const scene::Stamps wanted_;
     std::optional<SeenGround> seen_;
     std::optional<glm::ivec2> middle_;
 };
@@ -203,7 +219,8 @@ std::vector<std::string> add_stamps(const Session& session,
     Stamped stamped = stamped_of(session);
     const bool deep = needs_depths(session.scene().stamps);
     if (deep && depths_m) stamped.depths_m = *depths_m;
-    if (deep && !depths_m) session.read_depths(stamped.depths_m);
+    if (deep && !depths_m && is_of_one_camera(session.scene().view))
+        session.read_depths(stamped.depths_m);
     return add_stamps(std::move(stamped), legends, picture, taken, map);
 }
 
@@ -221,10 +238,10 @@ std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Le
     for (chart::Stamps::Label& label : stamps.graticule)
         label.at_px += glm::dvec2(corner);
     for (const std::string& name : chart::stamp(stamps, picture, &taken, map))
-        stamper.notes_.push_back(
+        stamper.notes().push_back(
             fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
                         picture.width, picture.height));
-    return std::move(stamper.notes_);
+    return std::move(stamper.notes());
 }
 
 }  // namespace relevo::session

@@ -5,6 +5,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "base/units.h"
 #include "session/marks.h"
@@ -35,13 +36,43 @@ struct Candidate {
     int samples = 1;        ///< from top to bottom
 };
 
+/// Where points are in a picture of one camera or around it.
+class Projection {
+  public:
+    explicit Projection(const MarkView& view)
+        : view_(view), plane_(view.camera, view.width_px, view.height_px, {}) {}
+
+    std::optional<glm::dvec2> project(const glm::dvec3& point_m) const {
+        if (!view_.around) return plane_.project(point_m);
+        const glm::dvec3 way_m = point_m - view_.camera.eye_m;
+        return view_.around->map.project(transpose(view_.around->axes) * way_m);
+    }
+    double depth_m(const glm::dvec3& point_m) const {
+        const glm::dvec3 way_m = point_m - view_.camera.eye_m;
+        return view_.around ? length(way_m) : dot(way_m, view_.camera.forward);
+    }
+    double px_per_m(double depth_m) const {
+        return view_.around ? view_.around->map.px_per_rad() / depth_m : plane_.px_per_m(depth_m);
+    }
+    /// As SeenGround::moved().
+    glm::dvec2 moved(const glm::dvec3& point_m, const glm::dvec3& direction) const {
+        if (!view_.around) return plane_.moved(point_m, direction);
+        const auto at = project(point_m), then = project(point_m + direction);
+        return at && then ? *then - *at : glm::dvec2(1, 0);
+    }
+
+  private:
+    const MarkView& view_;
+    SeenGround plane_;
+};
+
 /// Projects marks, and finds which of them are on ground or visible before it.
 class Finder {
   public:
     Finder(const Marks& marks, const MarkView& view)
         : marks_(marks),
           view_(view),
-          projection_(view.camera, view.width_px, view.height_px, {}),
+          projection_(view),
           reach_px_(std::max(kHidden_px, marks.pixel_error)) {}
 
     std::vector<chart::MarkPoint> run() {
@@ -76,9 +107,7 @@ class Finder {
         return at.x >= 0 && at.y >= 0 && at.x < view_.width_px && at.y < view_.height_px;
     }
 
-    double depth_m(const glm::dvec3& point_m) const {
-        return dot(point_m - view_.camera.eye_m, view_.camera.forward);
-    }
+    double depth_m(const glm::dvec3& point_m) const { return projection_.depth_m(point_m); }
 
     std::optional<Candidate> project(const StandingMarks::Mark& mark) const {
         const glm::dvec3 up(mark.up);
@@ -158,7 +187,7 @@ class Finder {
 
     const Marks& marks_;
     const MarkView& view_;
-    SeenGround projection_;
+    Projection projection_;
     double reach_px_;  // of the drawn ground above and below the posts
     std::vector<Candidate> candidates_;
     std::vector<glm::ivec2> pixels_;
@@ -178,6 +207,22 @@ MarkView view_of(const scene::Camera& camera, int width_px, int height_px,
                                              static_cast<std::size_t>(at.x)]);
                 return found;
             }};
+}
+
+MarkView view_of(const scene::Camera& camera, const MarkView::Around& around,
+                 const std::vector<float>& distances_m) {
+    const glm::ivec2 size = around.map.picture_px();
+    return {camera, size.x, size.y,
+            [width = static_cast<std::size_t>(size.x),
+             &distances_m](std::span<const glm::ivec2> pixels) {
+                std::vector<float> found;
+                found.reserve(pixels.size());
+                for (const glm::ivec2& at : pixels)
+                    found.push_back(distances_m[static_cast<std::size_t>(at.y) * width +
+                                                static_cast<std::size_t>(at.x)]);
+                return found;
+            },
+            around};
 }
 
 std::vector<chart::MarkPoint> visible_marks(const Marks& marks, const MarkView& view) {
