@@ -11,7 +11,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/name_template.h"
+#include "scene/panorama.h"
 #include "scene/scene_words.h"
+#include "scene/stereo.h"
 #include "viewer/export.h"
 
 namespace relevo::viewer {
@@ -45,7 +47,50 @@ constexpr std::array<Size, 6> kSizes = {{{"window", {0, 0}},
 
 constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
 
+struct Kind {
+    const char* name;
+    glm::ivec2 size_px;
+    bool is_ortho = false;
+    scene::Panorama panorama = scene::Panorama::None;
+    scene::Stereo stereo = scene::Stereo::None;
+
+    bool is_picture() const {
+        return panorama == scene::Panorama::None && stereo == scene::Stereo::None;
+    }
+};
+constexpr std::array<Kind, 6> kKinds = {
+    {{"picture", {1920, 1080}},
+     {"map of all of the DEM, with georeference", {2048, 2048}, true},
+     {"panorama", {8192, 1024}, false, scene::Panorama::Cylindrical},
+     {"sphere (equirectangular)", {4096, 2048}, false, scene::Panorama::Equirectangular},
+     {"stereo pair", {2560, 1024}, false, scene::Panorama::None, scene::Stereo::Parallel},
+     {"anaglyph", {1920, 1080}, false, scene::Panorama::None, scene::Stereo::Anaglyph}}};
+
+/// Index of the kind of a scene.
+int kind_of(const scene::Scene& scene) {
+    const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) {
+        return kind.is_ortho == scene.ortho && kind.panorama == scene.view.panorama &&
+               kind.stereo == scene.view.stereo;
+    });
+    return found == kKinds.end() ? 0 : static_cast<int>(found - kKinds.begin());
+}
+
 }  // namespace
+
+/// A kind sets a size that suits it.
+void ExportSheet::kind_field(const scene::Scene& scene) {
+    if (!what_) what_ = kind_of(scene);
+    if (!ImGui::BeginCombo("What", kKinds[static_cast<std::size_t>(*what_)].name)) return;
+    for (std::size_t i = 0; i < kKinds.size(); ++i) {
+        if (!ImGui::Selectable(kKinds[i].name, static_cast<int>(i) == *what_)) continue;
+        what_ = static_cast<int>(i);
+        size_px_ = kKinds[i].size_px;
+    }
+    ImGui::Separator();
+    if (ImGui::Selectable("film ...")) command_ = Command::Film;
+    if (ImGui::Selectable("figures of the overlay, as GeoTIFF")) command_ = Command::SaveOverlay;
+    ImGui::EndCombo();
+}
 
 void ExportSheet::size_fields(glm::vec2 window_px) {
     if (ImGui::BeginCombo("Size", fmt::format("{} x {}", size_px_.x, size_px_.y).c_str())) {
@@ -56,10 +101,9 @@ void ExportSheet::size_fields(glm::vec2 window_px) {
     }
     if (ImGui::InputInt2("Pixels", &size_px_.x))
         size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
-    bool is_map = is_map_.value_or(false);
-    if (ImGui::Checkbox("Map: all of the DEM from above, with georeference", &is_map))
-        is_map_ = is_map;
-    if (!is_map) ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
+    ImGui::BeginDisabled(kKinds[static_cast<std::size_t>(what_.value_or(0))].is_ortho);
+    ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
+    ImGui::EndDisabled();
 }
 
 void ExportSheet::format_fields() {
@@ -90,6 +134,9 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
         if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
     }
+    ImGui::BeginDisabled(!kKinds[static_cast<std::size_t>(what_.value_or(0))].is_picture());
+    ImGui::Checkbox("Around the picture, so that nothing lies on it", &stamps_->margin);
+    ImGui::EndDisabled();
     if (stamps_->title)
         ImGui::InputText("Title", &stamps_->title_text, ImGuiInputTextFlags_AutoSelectAll);
 }
@@ -104,8 +151,14 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.samples = samples_;
     order.scene.transparent = is_transparent_ && format.has_alpha;
     order.scene.stamps = stamps_.value_or(scene.stamps);
-    order.scene.ortho = is_map_.value_or(scene.ortho);
+    const Kind& kind = kKinds[static_cast<std::size_t>(what_.value_or(kind_of(scene)))];
+    order.scene.ortho = kind.is_ortho;
+    order.scene.view.panorama = kind.panorama;
+    order.scene.view.stereo = kind.stereo;
+    order.scene.stamps.margin = order.scene.stamps.margin && kind.is_picture();
     order.scene.resolution = 0;  // the sheet has a size
+    scene::check_panorama(order.scene);
+    scene::check_stereo(order.scene);
     order.encoding.bits = format.bits;
     if (format.has_quality) order.encoding.quality = quality_;
     const std::string dem = std::filesystem::path(scene.dems.front()).stem().string();
@@ -144,7 +197,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
     if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushItemWidth(-4 * line);
-        if (!is_map_) is_map_ = scene.ortho;
+        kind_field(scene);
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);

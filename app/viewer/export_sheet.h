@@ -6,17 +6,21 @@
 
 #include <glm/vec2.hpp>
 
+#include "viewer/command.h"
 #include "viewer/picture_export.h"
 
 namespace relevo::viewer {
 
-/// Asks what is exported as a picture: size, format, samples, transparency, stamps, name.
+/// Asks what is exported: kind of picture, size, format, samples, transparency, stamps, name.
 class ExportSheet {
   public:
     void open() { is_open_ = true; }
     void close() { is_open_ = false; }
     /// Takes the stamps of another scene.
-    void forget_stamps() { stamps_.reset(); }
+    void forget_scene() {
+        stamps_.reset();
+        what_.reset();
+    }
     bool is_open() const { return is_open_; }
     /// What the sheet does to the view: centres the picture on what the panels leave free.
     bool is_centred() const { return is_centred_; }
@@ -31,7 +35,11 @@ class ExportSheet {
     /// What was ordered since the last call.
     std::optional<PictureOrder> take() { return std::exchange(order_, std::nullopt); }
 
+    /// The film panel, or the export of the overlay, if the user wants that instead.
+    std::optional<Command> take_command() { return std::exchange(command_, std::nullopt); }
+
   private:
+    void kind_field(const scene::Scene& scene);
     void size_fields(glm::vec2 window_px);
     void format_fields();
     void stamp_fields(const scene::Scene& scene);
@@ -43,9 +51,10 @@ class ExportSheet {
     glm::ivec2 size_px_{1920, 1080};
     int format_ = 0, samples_ = 4, quality_ = image::kQuality;
     std::optional<scene::Stamps> stamps_;  // nullopt: the scene's
-    std::optional<bool> is_map_;           // the same
+    std::optional<int> what_;              // index of a kind of picture; nullopt: the scene's
     std::string name_ = "{dem}_{time:%Y%m%dT%H%M}";
     std::optional<PictureOrder> order_;
+    std::optional<Command> command_;
 };
 
 }  // namespace relevo::viewer

@@ -42,6 +42,10 @@ void MainWindow::process_keys() {
         else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
             state_.view_to_go_to = static_cast<std::size_t>(press.key - GLFW_KEY_1);
     }
+    if (const std::optional<Command> command = export_sheet_.take_command()) {
+        export_sheet_.close();
+        if (*command != Command::Film || !film_->is_open()) state_.commands.push_back(*command);
+    }
     for (const Command command : std::exchange(state_.commands, {}))
         if (!run_program_command(command) && is_open()) run_scene_command(command);
     if (state_.view_to_go_to && is_open()) film_->end_preview();

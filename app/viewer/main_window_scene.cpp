@@ -53,7 +53,7 @@ Wanted MainWindow::first_wanted() const {
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
     wanted_exaggeration_ = state_.document.scene.exaggeration;
-    export_sheet_.forget_stamps();
+    export_sheet_.forget_scene();
     point_->clear();
     overlay_->clear();
     film_->forget();
