@@ -309,8 +309,7 @@ struct Renderer::Impl : FrameServices {
         describe(terrain, inputs, block);
         probe.aim(inputs, ground, block);
         const glm::ivec2 picture = picture_px(inputs, options.width_px, options.height_px);
-        const TileSelection below = terrain.select_below(inputs.camera, picture.x, picture.y,
-                                                         inputs.exaggeration, inputs.deterministic);
+        const TileSelection below = terrain.select_below(inputs, picture);
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);

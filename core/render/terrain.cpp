@@ -269,11 +269,15 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
     return selection;
 }
 
-TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px) {
+LodView Terrain::view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const {
     const bool around = inputs.part && inputs.part->of_panorama;
-    const auto view_of = around ? LodView::around_camera : LodView::of_camera;
-    const LodView view = view_of(inputs.camera, picture_px.x, picture_px.y, options_.pixel_error,
-                                 inputs.exaggeration);
+    const auto make = around ? LodView::around_camera : LodView::of_camera;
+    return make(inputs.camera, picture_px.x, picture_px.y, options_.pixel_error,
+                inputs.exaggeration);
+}
+
+TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px) {
+    const LodView view = view_of(inputs, picture_px);
     complete_ = true;
     TileSelection selection =
         inputs.loading == Loading::Background ? select_in_background(view) : select(view);

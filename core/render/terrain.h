@@ -96,8 +96,7 @@ class Terrain {
     bool sees_ground(const TileSelection& selection, const LodView& view);
     /// Selects tiles on the vertical through a camera's eye at the camera's levels, for
     /// GroundProbe.
-    TileSelection select_below(const scene::Camera& camera, int width_px, int height_px,
-                               double exaggeration, bool deterministic);
+    TileSelection select_below(const FrameInputs& inputs, const glm::ivec2& picture_px);
     /// True if the last frame had all its pages, as always with Loading::Wait.
     bool is_complete() const { return complete_; }
     /// True if pages are being made in the background.
@@ -173,6 +172,8 @@ class Terrain {
     TileSelection select_in_background(const LodView& view);
     /// A selection of tiles with resident pages.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
+    /// What a frame draws, with the option's pixel error.
+    LodView view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const;
     bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
     /// The view's tolerance, or the smallest larger one within the vertex budget.
     double tolerance_in_budget(const LodView& wanted);

@@ -31,12 +31,12 @@ bool Terrain::sees_ground(const TileSelection& selection, const LodView& view) {
     });
 }
 
-TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, int height_px,
-                                    double exaggeration, bool deterministic) {
+TileSelection Terrain::select_below(const FrameInputs& inputs, const glm::ivec2& picture_px) {
     const double pixel_error = options_.pixel_error;
-    const double tolerance = tolerance_in_budget(
-        LodView::of_camera(camera, width_px, height_px, pixel_error, exaggeration));
-    scene::Camera vertical = GroundProbe::camera_below(camera, frame_, tolerance, pixel_error);
+    const double exaggeration = inputs.exaggeration;
+    const double tolerance = tolerance_in_budget(view_of(inputs, picture_px));
+    scene::Camera vertical =
+        GroundProbe::camera_below(inputs.camera, frame_, tolerance, pixel_error);
     LodView view = LodView::of_camera(vertical, 1, 1, pixel_error, exaggeration);
     // Includes coarser ancestors, which Loading::Background requires.
     std::vector<TileKey> keys;
@@ -50,7 +50,7 @@ TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, i
     heights_.require(keys);
     update_surface_layers();
     prepare_surface(LodView::of_camera(vertical, 1, 1, 1, exaggeration), Loading::Wait,
-                    deterministic);
+                    inputs.deterministic);
     return ready(view, draws);
 }
 

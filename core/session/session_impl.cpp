@@ -266,21 +266,26 @@ void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wan
 
 void Session::Impl::look(const scene::View& view) {
     check_eye_height(view, state.dem()->field.about.path);
-    if (!options.format || view.panorama == scene::Panorama::None) return state.look(view, shape());
+    if (!options.format || view.panorama == scene::Panorama::None)
+        return state.look(view, shape(/*around=*/false));
     // Levels of detail, and the height of the ground below the eye, depend on the size of pixels.
     scene::View as_fine = view;
     as_fine.fov_y_rad = scene::perspective_fov_y_rad(
         view, static_cast<double>(state.scene.width_px) / state.scene.height_px);
-    state.look(as_fine, shape());
+    state.look(as_fine, shape(/*around=*/true));
     state.scene.view.take_lens_of(view);
 }
 
 DrawnShape Session::Impl::shape() {
-    return {drawn->renderer().displacement(), drawn->renderer().shows_block(),
-            [this](const scene::Camera& camera) { return drawn_height_m(camera); }};
+    return shape(options.format && state.scene.view.panorama != scene::Panorama::None);
 }
 
-std::optional<double> Session::Impl::drawn_height_m(const scene::Camera& camera) {
+DrawnShape Session::Impl::shape(bool around) {
+    return {drawn->renderer().displacement(), drawn->renderer().shows_block(),
+            [this, around](const scene::Camera& camera) { return drawn_height_m(camera, around); }};
+}
+
+std::optional<double> Session::Impl::drawn_height_m(const scene::Camera& camera, bool around) {
     const render::Ground& ground = state.ground();
     const auto [lowest_m, highest_m] =
         drawn->renderer().displacement().range_m(ground.lowest_m, ground.highest_m);
@@ -289,7 +294,9 @@ std::optional<double> Session::Impl::drawn_height_m(const scene::Camera& camera)
     context->make_current();
     render::FrameInputs frame = state.inputs;
     frame.camera = camera;
-    frame.part = {{state.scene.width_px, state.scene.height_px}, {0, 0}};
+    frame.part = render::PicturePart{.picture_px = {state.scene.width_px, state.scene.height_px},
+                                     .corner_px = {0, 0},
+                                     .of_panorama = around};
     return drawn->renderer().drawn_height_m(*terrain, ground, frame);
 }
 

@@ -100,7 +100,9 @@ struct Session::Impl {
     void set_overlay(std::shared_ptr<const render::OverlayRaster> wanted, bool without_shadows);
     void look(const scene::View& view);
     DrawnShape shape();
-    std::optional<double> drawn_height_m(const scene::Camera& camera);
+    /// @param around  as drawn in a panorama
+    DrawnShape shape(bool around);
+    std::optional<double> drawn_height_m(const scene::Camera& camera, bool around);
     /// For scenes as given, not while a user moves the eye.
     void warn_of_eye() { state.warn_of_eye(shape()); }
     void draw(render::Loading loading, render::PassTimes* times = nullptr);
