@@ -224,6 +224,58 @@ TEST_F(FilmVerb, AParameterIsAnAxisAloneOrWithOthers) {
     EXPECT_EQ(with["sweep"][1]["duration_s"], 3);
 }
 
+TEST_F(FilmVerb, ASpanMakesAParameterMoveThroughADay) {
+    const nlohmann::json job =
+        job_of({"-o", out(), "--vary", "haze.density=0,1", "--span", "15:00,sunset"});
+    ASSERT_EQ(job["sweep"].size(), 2u);
+    EXPECT_EQ(job["sweep"][0]["times"]["from"], "15:00");
+    EXPECT_EQ(job["sweep"][1]["set"], "haze.density");
+}
+
+TEST_F(FilmVerb, OptionsNeedTheirMotion) {
+    const auto expect = [&](std::vector<std::string> more, const std::string& message) {
+        more.insert(more.begin(), {"film", bundled_dem(), "-o", out()});
+        expect_failure(more, 2, message);
+    };
+    expect({"--motion", "orbit", "--span", "10:00,12:00"}, "--span: needs --motion day");
+    expect({"--turns", "2"}, "--turns: needs --motion orbit");
+    expect({"--no-ease"}, "--ease: needs --motion orbit or flight");
+    expect({"--vary", "haze.density=0,1", "--ease"}, "--ease: needs --motion orbit or flight");
+    expect({"--above", "200"}, "--above: needs --motion flight");
+}
+
+TEST_F(FilmVerb, PanoramasAndMapsHaveAnEvenSize) {
+    const auto size_of = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{
+            "film", bundled_dem(), "-o",          out(),        "--duration",
+            "0.1",  "--dry-run",   "--overwrite", "--save-job", (dir_ / "job.json").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(read_text(dir_ / "job.json", "test"))["picture"]["size"];
+    };
+    const std::vector<int> equirectangular{1280, 640}, cylindrical{1280, 148};
+    EXPECT_EQ(size_of({"--eye", "36.33,-84.25,700", "--panorama", "equirectangular"}),
+              equirectangular);
+    EXPECT_EQ(size_of({"--eye", "36.33,-84.25,700", "--panorama", "cylindrical"}), cylindrical);
+    // The largest map in these has an odd side.
+    for (const char* const size : {"64x50", "66x50", "68x52", "70x54"})
+        size_of({"--ortho", "--size", size});
+    const Result map = relevo({"-q", "film", bundled_dem(), "-o", out(), "--ortho", "--duration",
+                               "0.1", "--size", "70x54"});
+    ASSERT_EQ(map.status, 0) << map.err;
+    const image::Image8 frame = decode_film(out()).frames.front();
+    EXPECT_EQ(frame.width % 2 + frame.height % 2, 0);
+}
+
+TEST_F(FilmVerb, RefusesAMarginAndAMapThatMoves) {
+    expect_failure({"film", bundled_dem(), "-o", out(), "--ortho", "--motion", "orbit"}, 2,
+                   "--motion orbit: a map has no camera; remove --ortho");
+    const Result margin = film({"-q", "-o", out(), "--margin"});
+    EXPECT_EQ(margin.status, 3);
+    EXPECT_THAT(margin.err, HasSubstr("--margin: not of films"));
+}
+
 TEST_F(FilmVerb, MistakesSayWhatIsWrong) {
     const auto message = [&](const std::vector<std::string>& more, int status) {
         const Result run = film(more);
