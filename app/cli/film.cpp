@@ -1,6 +1,7 @@
 #include "film/film.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -243,8 +244,10 @@ void add_motion(CLI::App& verb, Arguments& arguments) {
     verb.add_option("--turns", arguments.turns, "Turns of an orbit, clockwise from above (1)")
         ->check(in_range(-1000, 1000))
         ->group("Film");
-    verb.add_flag("--ease,!--no-ease", arguments.ease,
-                  "Whether the camera begins and ends at rest (flights do, orbits do not)")
+    // add_flag() gives an optional the value false where there is no flag.
+    verb.add_flag_function(
+            "--ease,!--no-ease", [&arguments](std::int64_t given) { arguments.ease = given > 0; },
+            "Whether the camera begins and ends at rest (flights do, orbits do not)")
         ->group("Film");
     verb.add_option(
             "--vary", arguments.vary,

@@ -203,6 +203,7 @@ TEST_F(FilmVerb, MotionsAreAxes) {
     EXPECT_EQ(both["sweep"][0]["times"]["to"], "sunset");
     EXPECT_EQ(both["sweep"][1]["flight"]["along"], "line.csv");
     EXPECT_EQ(both["sweep"][1]["flight"]["height_m"], 200);
+    EXPECT_FALSE(both["sweep"][1]["flight"].contains("ease")) << "flights do by default";
     EXPECT_EQ(both["film"]["fps"], 24);
     const nlohmann::json orbit = job_of({"-o", out(), "--motion", "orbit", "--turns", "-0.5"});
     EXPECT_EQ(orbit["sweep"][0]["orbit"]["turns"], -0.5);

@@ -119,7 +119,7 @@ TEST(Stereo, EyesTooFarApartAreRefused) {
     Session session(scene, {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
                     files);
     const std::string error = test::error_of([&] { session.make_picture(); });
-    EXPECT_TRUE(error.starts_with("--eye-distance: moves the frames by ")) << error;
+    EXPECT_TRUE(error.starts_with("exit 3: --eye-distance: moves the frames by ")) << error;
     EXPECT_TRUE(error.ends_with(" px, more than their width of 1200 px; use a smaller one"))
         << error;
 }
