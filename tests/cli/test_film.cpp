@@ -63,6 +63,24 @@ TEST_F(FilmJob, HasTheFramesThatItsPicturesHave) {
     EXPECT_EQ(record["relevo:job"]["dem"]["files"][0], bundled_dem());
 }
 
+TEST_F(FilmJob, MakesPanoramasAndAnaglyphsAsPicturesAndAsAFilm) {
+    for (const std::string camera :
+         {R"("eye": [36.33, -84.25, 700], "panorama": "equirectangular")",
+          R"("eye": [36.33, -84.25, 700], "panorama": "cylindrical")", R"("stereo": "anaglyph")"}) {
+        const fs::path job =
+            this->job("\"camera\": {" + camera +
+                      "}, \"time\": {\"at\": \"2026-06-21T10:00\"}, \"sweep\": [{\"set\": "
+                      "\"haze.density\", \"from\": 0.1, \"to\": 0.3, \"frames\": 2}]");
+        for (const char* const output : {"a.mp4", "{n}.png"}) {
+            const Result run = relevo({"-q", "run", job.string(), "--size", "64x32", "--overwrite",
+                                       "-o", (dir_ / output).string()});
+            EXPECT_EQ(run.status, 0) << camera << run.err;
+        }
+        EXPECT_EQ(decode_film(dir_ / "a.mp4").frames.size(), 2u) << camera;
+        EXPECT_EQ(image::read(dir_ / "2.png").width, 64) << camera;
+    }
+}
+
 TEST_F(FilmJob, FilmsAreTheSameBytesAgain) {
     const fs::path job = morning(5);
     ASSERT_EQ(relevo({"-q", "run", job.string()}).status, 0);
