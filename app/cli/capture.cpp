@@ -196,9 +196,13 @@ void capture(const Arguments& arguments) {
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
     const session::PictureFormat format = arguments.format.picture();
     auto [scene, compared] = wanted(arguments);
+    const bool linear = image::holds_linear_light(output);
+    const bool stamped = scene.stamps != scene::Stamps();
+    if (linear) scene.stamps.margin = false;  // without stamps
     scene::check_panorama(scene);
     scene::check_stereo(scene);
-    session::SceneTimes().fit_map(scene);
+    session::SceneTimes times;
+    times.fit_map(scene);
     if (arguments.audit && !compared.empty())
         bad_usage("--audit: cannot audit a comparison; remove --ab");
     image::check_encoding(output, encoding,
@@ -206,9 +210,11 @@ void capture(const Arguments& arguments) {
                            .height_px = scene.height_px,
                            .alpha = scene.transparent,
                            .layers = !format.layers.empty()});
-    const bool linear = image::holds_linear_light(output);
     const bool in_bands = session::needs_bands(scene, format, linear);
-    if (in_bands) image::check_bands(output);
+    if (in_bands) {
+        image::check_bands(output);
+        session::check_in_bands(scene, linear);
+    }
     if (in_bands && (arguments.audit || !compared.empty()))
         bad_usage("--audit and --ab need a picture of less than 1 GiB; use a smaller --size");
     FilesInUse files;
@@ -234,6 +240,8 @@ void capture(const Arguments& arguments) {
     if (arguments.format.is_standard_output(arguments.output) && !beside.empty())
         bad_usage(
             "-o -: the place of a map is in a file next to it; name a file, or add --format tif");
+    if (!arguments.format.is_standard_output(arguments.output))
+        session::warn_of_files_beside(scene, output);
     if (arguments.format.is_standard_output(arguments.output) && (sidecar || arguments.watch))
         bad_usage(
             "-o -: --sidecar, --audit, --watch and scenes that are too long for the format "
@@ -245,6 +253,7 @@ void capture(const Arguments& arguments) {
         beside_files.push_back(open(path.string(), "--ortho"));
 
     session::Options options{.device = arguments.device,
+                             .source = scene.ortho ? times.source(scene) : nullptr,
                              .radiance = linear,
                              .format = format,
                              .audited = arguments.audit,
@@ -281,8 +290,7 @@ void capture(const Arguments& arguments) {
     timings.add("write", milliseconds_since(write_began));
     for (const std::string& note : session.stamp_notes())
         log::info(note);
-    if (options.radiance && scene.stamps != scene::Stamps())
-        log::info("--stamp has no effect: EXR has linear light without stamps");
+    if (linear && stamped) log::info("--stamp has no effect: EXR has linear light without stamps");
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));

@@ -1,10 +1,13 @@
 #include "film/film.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/common.hpp>
 
 #include "base/contains.h"
 #include "base/error.h"
@@ -15,6 +18,7 @@
 #include "cli/job_run.h"
 #include "dem/files_of.h"
 #include "scene/film_job.h"
+#include "scene/panorama.h"
 #include "session/film_day.h"
 #include "sun/event_time.h"
 
@@ -26,9 +30,9 @@ namespace fs = std::filesystem;
 struct Arguments {
     JobArguments job;
     std::string motion, along, span, vary, save_job;
-    double duration_s = 10, turns = 1;
+    double duration_s = 10;
     film::Settings film;
-    std::optional<double> height_m, look_ahead_m, speed_m_s;
+    std::optional<double> turns, height_m, look_ahead_m, speed_m_s;
     std::optional<int> quality;
     std::optional<bool> ease;
     bool no_loop = false;
@@ -38,8 +42,11 @@ const std::string kDefaultSpan = fmt::format("{},{}", session::kFilmDayFrom, ses
 
 /// What moves: the words of --motion.
 std::vector<std::string> motions(const Arguments& arguments) {
-    if (arguments.motion.empty() && arguments.along.empty() && !arguments.vary.empty()) return {};
-    if (arguments.motion.empty()) return {arguments.along.empty() ? "day" : "flight"};
+    if (arguments.motion.empty()) {
+        if (!arguments.along.empty()) return {"flight"};
+        if (!arguments.vary.empty() && arguments.span.empty()) return {};
+        return {"day"};
+    }
     std::vector<std::string> words = split(arguments.motion, ',');
     const std::vector<std::string> known{"day", "year", "orbit", "flight"};
     for (const std::string& word : words)
@@ -61,6 +68,30 @@ std::vector<std::string> motions(const Arguments& arguments) {
     return words;
 }
 
+/// @throws Error (Usage) for options of a motion that the film does not have
+void check_options(const Arguments& arguments, const std::vector<std::string>& motions) {
+    const auto need = [&](bool given, const char* option, const std::vector<std::string>& one_of) {
+        const auto is_one = [&](const std::string& word) { return contains(one_of, word); };
+        if (given && std::ranges::none_of(motions, is_one))
+            bad_usage(fmt::format("{}: needs --motion {}", option, fmt::join(one_of, " or ")));
+    };
+    need(!arguments.span.empty(), "--span", {"day"});
+    need(arguments.turns.has_value(), "--turns", {"orbit"});
+    need(arguments.ease.has_value(), "--ease", {"orbit", "flight"});
+    need(arguments.height_m.has_value(), "--above", {"flight"});
+    need(arguments.look_ahead_m.has_value(), "--look-ahead", {"flight"});
+    need(arguments.speed_m_s.has_value(), "--speed", {"flight"});
+}
+
+/// Size of a film's frames where none is given [px]. That of a panorama has its field of view.
+glm::ivec2 default_px(const scene::View& view) {
+    constexpr double kWidth_px = 1280;
+    if (view.panorama == scene::Panorama::None) return {kWidth_px, 720};
+    const glm::dvec2 whole(scene::default_panorama_px(view));
+    const glm::ivec2 size(whole * (kWidth_px / std::max(whole.x, whole.y)));
+    return glm::max(size / 2 * 2, glm::ivec2(2));  // even sides
+}
+
 /// Makes a film's job from the command line.
 class Maker {
   public:
@@ -76,8 +107,9 @@ class Maker {
         scene_ = arguments_.job.scene.scene();
         if (scene_.time.at.empty() && !zone_.empty()) scene_.time.zone = zone_;
         if (arguments_.job.scene.size.empty() && arguments_.job.scene.file.empty()) {
-            scene_.width_px = 1280;
-            scene_.height_px = 720;
+            const glm::ivec2 size = default_px(scene_.view);
+            scene_.width_px = size.x;
+            scene_.height_px = size.y;
         }
         if (!date_.empty()) sun::parse_date(date_);
     }
@@ -91,10 +123,15 @@ class Maker {
         job.film.quality = arguments_.quality;
         if (arguments_.no_loop) job.film.loop = false;
         film::check(job.output, scene_.width_px, scene_.height_px, job.film);
-        for (const std::string& word : motions(arguments_)) {
+        const std::vector<std::string> moving = motions(arguments_);
+        check_options(arguments_, moving);
+        for (const std::string& word : moving) {
+            if (scene_.ortho && (word == "orbit" || word == "flight"))
+                bad_usage(fmt::format("--motion {}: a map has no camera; remove --ortho", word));
             if (word == "day") job.day = day();
             if (word == "year") job.year = year();
-            if (word == "orbit") job.orbit = {arguments_.turns, arguments_.ease.value_or(false)};
+            if (word == "orbit")
+                job.orbit = {arguments_.turns.value_or(1), arguments_.ease.value_or(false)};
             if (word == "flight")
                 job.flight = {.along = arguments_.along,
                               .views = {},
@@ -207,8 +244,10 @@ void add_motion(CLI::App& verb, Arguments& arguments) {
     verb.add_option("--turns", arguments.turns, "Turns of an orbit, clockwise from above (1)")
         ->check(in_range(-1000, 1000))
         ->group("Film");
-    verb.add_flag("--ease,!--no-ease", arguments.ease,
-                  "Whether the camera begins and ends at rest (flights do, orbits do not)")
+    // add_flag() gives an optional the value false where there is no flag.
+    verb.add_flag_function(
+            "--ease,!--no-ease", [&arguments](std::int64_t given) { arguments.ease = given > 0; },
+            "Whether the camera begins and ends at rest (flights do, orbits do not)")
         ->group("Film");
     verb.add_option(
             "--vary", arguments.vary,

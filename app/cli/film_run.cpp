@@ -77,6 +77,12 @@ class FilmRun {
                     name_, first.width_px, first.height_px, shot.number, shot.scene.width_px,
                     shot.scene.height_px));
         for (const scene::Shot& shot : work_.shots)
+            if (shot.scene.stamps.margin)
+                bad_input(
+                    fmt::format("run: {}: --margin: not of films, whose view would change its "
+                                "size with the stamps",
+                                name_));
+        for (const scene::Shot& shot : work_.shots)
             if (shot.scene.transparent)
                 bad_input(
                     fmt::format("run: {}: films have no transparency, remove transparent of "

@@ -1,10 +1,13 @@
 #include "cli/job_run.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "image/image.h"
 #include "session/trust.h"
 
 namespace relevo::cli {
@@ -47,6 +50,18 @@ void JobRun::read_job(const JobArguments& arguments) {
     files.add_input(arguments.job, "the job");
 }
 
+void JobRun::fit(scene::Shot& shot) {
+    scene::Scene& scene = shot.scene;
+    const bool linear =
+        image::is_picture_name(shot.output) && image::holds_linear_light(shot.output);
+    if (linear) scene.stamps.margin = false;  // without stamps
+    times.fit_map(scene);
+    // Most films have even sides; the pixels of a map need not be quite square.
+    if (!scene.ortho || !job.is_film()) return;
+    scene.width_px = std::max(scene.width_px / 2 * 2, 2);
+    scene.height_px = std::max(scene.height_px / 2 * 2, 2);
+}
+
 void JobRun::read(const JobArguments& arguments) {
     if (!arguments.dry_run) times.before_reading([this](const auto& scene) { hash(scene); });
     read_job(arguments);
@@ -67,7 +82,7 @@ void JobRun::read(const JobArguments& arguments) {
         });
     for (scene::Shot& shot : drawn_up.shots) {
         trusted.keep_folders(shot.scene.effects);
-        times.fit_map(shot.scene);
+        fit(shot);
     }
     trusted.tell();
     warn_of_skipped(drawn_up.left_out);

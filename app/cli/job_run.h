@@ -50,6 +50,8 @@ struct JobRun {
     /// Hashes the files of a scene, so that changes after they were read are noticed.
     void hash(const scene::Scene& scene);
     void read_job(const JobArguments& arguments);
+    /// Gives a map its size, as its file allows.
+    void fit(scene::Shot& shot);
 };
 
 /// Checks, draws and encodes the film of a job.

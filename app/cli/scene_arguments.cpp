@@ -97,7 +97,7 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     if (values.has("--fov") && values.has("--focal-length"))
         bad_usage("--fov and --focal-length exclude each other; use one");
     values.apply_to(result);
-    check_map();
+    check_map(result);
     apply_stamps_to(result.stamps);
     apply_size_to(result);
 }
@@ -119,10 +119,10 @@ void SceneArguments::apply_size_to(scene::Scene& result) const {
     result.height_px = sides.y;
 }
 
-void SceneArguments::check_map() const {
+void SceneArguments::check_map(const scene::Scene& result) const {
     if (values.has("--resolution") && !size.empty())
         bad_usage("--resolution and --size exclude each other; use one");
-    if (values.has("--ortho") && view.any())
+    if (result.ortho && view.any())
         bad_usage(
             "--ortho and the camera of --view, --eye, --look-at, --heading or --pitch exclude each "
             "other; --view top is a picture from above that has a camera");

@@ -43,7 +43,7 @@ struct SceneArguments {
 
   private:
     /// @throws Error (Usage) for options that exclude each other
-    void check_map() const;
+    void check_map(const scene::Scene& result) const;
     void apply_stamps_to(scene::Stamps& result) const;
     void apply_size_to(scene::Scene& result) const;
 };

@@ -1,6 +1,7 @@
 #include "output/georeference.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <memory>
 
@@ -77,7 +78,9 @@ std::vector<std::filesystem::path> georeference_files(const std::filesystem::pat
     const std::string ending = picture.extension().string();
     if (holds_georeference(picture) || ending.size() < 3) return {};
     std::filesystem::path world = picture, aux = picture;
-    world.replace_extension(std::string{ending[1], ending.back(), 'w'});
+    // On file systems that distinguish them, GDAL looks for .pgw and .PGW.
+    const char last = std::isupper(static_cast<unsigned char>(ending.back())) ? 'W' : 'w';
+    world.replace_extension(std::string{ending[1], ending.back(), last});
     aux += ".aux.xml";
     return {world, aux};
 }

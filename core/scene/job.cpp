@@ -144,6 +144,8 @@ class Expansion {
 
     std::vector<Change> values_of(const Axis& axis, const Draft& draft) {
         if (axis.range) return times_of(axis, draft);
+        if (axis.kind == "camera" && draft.scene.ortho)
+            fail(axis.line, axis.path, "a map has no camera; remove picture.ortho, or this");
         return axis.motion ? views_of(axis, draft) : axis.values;
     }
 

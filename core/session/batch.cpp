@@ -86,6 +86,7 @@ class Batch {
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
         for (const std::filesystem::path& path : files_beside(shot.scene, shot.output))
             outputs->beside.push_back(files_.open_alone(path, overwrite, "--ortho"));
+        warn_of_files_beside(shot.scene, shot.output);
         inputs_.record(shot.scene);  // before files are read, to notice later changes
         session.show(shot.scene, shot.utc);
         auto picture = std::make_shared<image::Picture>(session.make_picture());

@@ -1,5 +1,11 @@
 #include "session/picture_file.h"
 
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
 #include "scene/map_view.h"
 
 namespace relevo::session {
@@ -18,6 +24,18 @@ std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
                                                 const std::filesystem::path& picture) {
     if (!scene.ortho) return {};
     return output::georeference_files(picture);
+}
+
+void warn_of_files_beside(const scene::Scene& scene, const std::filesystem::path& picture) {
+    if (scene.ortho) return;
+    for (const std::filesystem::path& path : output::georeference_files(picture)) {
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) continue;
+        return log::warning(
+            fmt::format("{}: belongs to another picture, and this one is no map; delete it, or GIS "
+                        "programs place this one by it",
+                        printable(path.string())));
+    }
 }
 
 void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,

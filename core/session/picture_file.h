@@ -20,6 +20,9 @@ std::optional<output::Georeference> georeference_of(const Session& session);
 std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
                                                 const std::filesystem::path& picture);
 
+/// Warns of files that georeference another picture of this name, if the scene's is no map.
+void warn_of_files_beside(const scene::Scene& scene, const std::filesystem::path& picture);
+
 /// Writes a picture to a file, all of it but finish(). @param where  of a map
 /// @throws Error as image::write() and output::write_geotiff()
 void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,

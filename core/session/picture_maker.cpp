@@ -53,6 +53,13 @@ bool fits(const scene::Scene& scene, const PictureFormat& format, int max_side_p
            double{1} * scene.width_px * scene.height_px <= format.frame_px;
 }
 
+[[noreturn]] void refuse_in_bands(const scene::Scene& scene, const std::string& what) {
+    bad_input(
+        fmt::format("capture: a picture of {} x {} px is written in bands, without {}; use a "
+                    "smaller --size",
+                    scene.width_px, scene.height_px, what));
+}
+
 }  // namespace
 
 RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
@@ -81,6 +88,18 @@ bool needs_bands(const scene::Scene& scene, const PictureFormat& format, bool li
     const double bytes = linear ? 4 : format.bits / 8;
     const int channels = scene.transparent ? 4 : 3;
     return bytes * channels * scene.width_px * scene.height_px > kMaxPictureBytes;
+}
+
+void check_in_bands(const scene::Scene& scene, bool linear) {
+    const auto refuse_view = [](const char* option) {
+        bad_input(fmt::format("{}: takes more than 1 GiB; use a smaller --size", option));
+    };
+    if (scene.view.panorama != scene::Panorama::None) refuse_view("--panorama");
+    if (scene.view.stereo != scene::Stereo::None) refuse_view("--stereo");
+    if (linear) refuse_in_bands(scene, "linear light");
+    scene::Stamps stamps = scene.stamps;
+    stamps.legend = false;
+    if (stamps != scene::Stamps{.legend = false}) refuse_in_bands(scene, "stamps");
 }
 
 PictureMaker::PictureMaker(Session::Impl& impl)
@@ -250,22 +269,9 @@ void refuse_whole_frame_effects(const DrawnEffects& drawn, const std::string& ex
                                   pass.resource.substr(0, pass.resource.find('.')), expected));
 }
 
-void PictureMaker::check_bands() const {
-    const auto refuse = [&](const std::string& what) {
-        bad_input(
-            fmt::format("capture: a picture of {} x {} px is written in bands, without {}; use a "
-                        "smaller --size",
-                        picture_px_.x, picture_px_.y, what));
-    };
-    if (linear_) refuse("linear light");
-    if (impl_.has_marks()) refuse("the names of effects");
-    scene::Stamps stamps = scene_.stamps;
-    stamps.legend = false;
-    if (stamps != scene::Stamps{.legend = false}) refuse("stamps");
-}
-
 void PictureMaker::bands(const std::function<void(const image::Picture&)>& take) {
-    check_bands();
+    check_in_bands(scene_, linear_);
+    if (impl_.has_marks()) refuse_in_bands(scene_, "the names of effects");
     image::Picture band;
     for (const PictureTile& tile : tiles_) {
         put(draw(tile), {picture_px_.x, tile.rect.size.y}, tile.rect.corner.x, 0, band);

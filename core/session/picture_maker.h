@@ -71,7 +71,6 @@ class PictureMaker {
     /// @throws Error (BadInput) for what needs the whole picture
     /// @throws Error (BadInput) for what only a single frame can have
     void refuse_in_tiles() const;
-    void check_bands() const;
     image::Picture draw(const PictureTile& tile);
     image::Picture draw_once(const PictureTile& tile);
     image::Picture draw_samples(const PictureTile& tile);

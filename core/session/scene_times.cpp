@@ -99,6 +99,10 @@ SceneTimes::Dem& SceneTimes::dem_of(const scene::Scene& scene) {
     return *dem;
 }
 
+std::shared_ptr<const dem::Source> SceneTimes::source(const scene::Scene& scene) {
+    return dem_of(scene).source;
+}
+
 std::shared_ptr<const LoadedDem> SceneTimes::loaded(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
     if (dem.loaded) return dem.loaded;

@@ -38,6 +38,9 @@ class SceneTimes {
     /// parse()
     sun::ParsedTime of(const scene::Scene& scene);
 
+    /// The scene's DEM, opened if necessary. @throws Error as dem::Source::open()
+    std::shared_ptr<const dem::Source> source(const scene::Scene& scene);
+
     /// The scene's DEM with its heights, read if necessary. Frees the heights of other DEMs, so
     /// that a job of many DEMs needs the memory of one.
     std::shared_ptr<const LoadedDem> loaded(const scene::Scene& scene);

@@ -75,6 +75,9 @@ struct PictureFormat {
 /// True if a scene's picture takes more than kMaxPictureBytes: Session::make_bands().
 bool needs_bands(const scene::Scene& scene, const PictureFormat& format, bool linear);
 inline constexpr double kMaxPictureBytes = double{1 << 30};
+/// @throws Error (BadInput) for what pictures in bands do not have: panoramas, stereo pairs, linear
+///     light and stamps
+void check_in_bands(const scene::Scene& scene, bool linear);
 
 struct Options {
     std::string device = "auto";  ///< as gl::Context
@@ -82,6 +85,8 @@ struct Options {
     std::function<gl::Context()> context{};
     /// The scene's DEM if it has been read; otherwise the session reads it.
     std::shared_ptr<const LoadedDem> dem{};
+    /// The scene's DEM if it has been opened but not read; otherwise the session opens it.
+    std::shared_ptr<const dem::Source> source{};
     /// Start with a preview of a large DEM if possible. Session::dem() then has `is_preview`, and
     /// Session::take() replaces it.
     bool allow_preview = false;

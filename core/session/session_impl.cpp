@@ -22,8 +22,12 @@ double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
 
-std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool allow_preview) {
-    auto source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
+/// @param source  null: it is opened
+std::shared_ptr<const LoadedDem> load(const scene::Scene& scene,
+                                      std::shared_ptr<const dem::Source> source,
+                                      bool allow_preview) {
+    if (!source)
+        source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
     if (allow_preview)
         if (auto preview = load_preview(source, scene)) return preview;
     return load_dem(std::move(source), scene);
@@ -63,7 +67,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
     const bool timed = !state.scene.time.at.empty();
-    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.time)));
+    return load(state.scene, options.source,
+                options.allow_preview && !(timed && needs_dem(state.scene.time)));
 }
 
 void Session::Impl::open_device(FilesInUse& files) {

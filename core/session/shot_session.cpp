@@ -16,7 +16,9 @@ std::string reason_of(const std::exception_ptr& thrown) {
 }
 
 scene::Scene of_any_view(scene::Scene scene) {
-    scene.view = {};
+    const scene::View given = std::exchange(scene.view, {});
+    scene.view.panorama = given.panorama;  // which renderers depend on: needs_of()
+    scene.view.stereo = given.stereo;
     return scene;
 }
 

@@ -12,6 +12,18 @@
 // The stereo pair of a session's scene.
 
 namespace relevo::session {
+namespace {
+
+/// Eyes whose frames are moved apart by more than their width have nothing in common.
+void check_shift(double shift_px, int width_px) {
+    if (shift_px <= width_px) return;
+    bad_input(
+        fmt::format("--eye-distance: moves the frames by {:.6g} px, more than their width of {} "
+                    "px; use a smaller one",
+                    shift_px, width_px));
+}
+
+}  // namespace
 
 void Session::Impl::check_stereo() const {
     scene::check_stereo(state.scene);
@@ -43,6 +55,7 @@ image::Picture Session::Impl::make_stereo(const Session& session, render::PassTi
         const scene::StereoPair pair = scene::stereo_pair(view.eye_distance_m, maker.depths_m());
         const double focal_px = 0.5 * size.y / std::tan(middle.fov_y_rad / 2);
         const double shift_px = pair.shift_px(focal_px);
+        check_shift(shift_px, size.x);
         // The picture that levels of detail are for is wide enough for a frame that is moved.
         const int aside_px = static_cast<int>(std::ceil(shift_px));
         const auto draw_eye = [&](double side) {

@@ -63,6 +63,24 @@ TEST_F(FilmJob, HasTheFramesThatItsPicturesHave) {
     EXPECT_EQ(record["relevo:job"]["dem"]["files"][0], bundled_dem());
 }
 
+TEST_F(FilmJob, MakesPanoramasAndAnaglyphsAsPicturesAndAsAFilm) {
+    for (const std::string camera :
+         {R"("eye": [36.33, -84.25, 700], "panorama": "equirectangular")",
+          R"("eye": [36.33, -84.25, 700], "panorama": "cylindrical")", R"("stereo": "anaglyph")"}) {
+        const fs::path job =
+            this->job("\"camera\": {" + camera +
+                      "}, \"time\": {\"at\": \"2026-06-21T10:00\"}, \"sweep\": [{\"set\": "
+                      "\"haze.density\", \"from\": 0.1, \"to\": 0.3, \"frames\": 2}]");
+        for (const char* const output : {"a.mp4", "{n}.png"}) {
+            const Result run = relevo({"-q", "run", job.string(), "--size", "64x32", "--overwrite",
+                                       "-o", (dir_ / output).string()});
+            EXPECT_EQ(run.status, 0) << camera << run.err;
+        }
+        EXPECT_EQ(decode_film(dir_ / "a.mp4").frames.size(), 2u) << camera;
+        EXPECT_EQ(image::read(dir_ / "2.png").width, 64) << camera;
+    }
+}
+
 TEST_F(FilmJob, FilmsAreTheSameBytesAgain) {
     const fs::path job = morning(5);
     ASSERT_EQ(relevo({"-q", "run", job.string()}).status, 0);
@@ -203,6 +221,7 @@ TEST_F(FilmVerb, MotionsAreAxes) {
     EXPECT_EQ(both["sweep"][0]["times"]["to"], "sunset");
     EXPECT_EQ(both["sweep"][1]["flight"]["along"], "line.csv");
     EXPECT_EQ(both["sweep"][1]["flight"]["height_m"], 200);
+    EXPECT_FALSE(both["sweep"][1]["flight"].contains("ease")) << "flights do by default";
     EXPECT_EQ(both["film"]["fps"], 24);
     const nlohmann::json orbit = job_of({"-o", out(), "--motion", "orbit", "--turns", "-0.5"});
     EXPECT_EQ(orbit["sweep"][0]["orbit"]["turns"], -0.5);
@@ -222,6 +241,58 @@ TEST_F(FilmVerb, AParameterIsAnAxisAloneOrWithOthers) {
     EXPECT_EQ(with["sweep"][0]["orbit"]["ease"], true);
     EXPECT_EQ(with["sweep"][1]["set"], "seconds");
     EXPECT_EQ(with["sweep"][1]["duration_s"], 3);
+}
+
+TEST_F(FilmVerb, ASpanMakesAParameterMoveThroughADay) {
+    const nlohmann::json job =
+        job_of({"-o", out(), "--vary", "haze.density=0,1", "--span", "15:00,sunset"});
+    ASSERT_EQ(job["sweep"].size(), 2u);
+    EXPECT_EQ(job["sweep"][0]["times"]["from"], "15:00");
+    EXPECT_EQ(job["sweep"][1]["set"], "haze.density");
+}
+
+TEST_F(FilmVerb, OptionsNeedTheirMotion) {
+    const auto expect = [&](std::vector<std::string> more, const std::string& message) {
+        more.insert(more.begin(), {"film", bundled_dem(), "-o", out()});
+        expect_failure(more, 2, message);
+    };
+    expect({"--motion", "orbit", "--span", "10:00,12:00"}, "--span: needs --motion day");
+    expect({"--turns", "2"}, "--turns: needs --motion orbit");
+    expect({"--no-ease"}, "--ease: needs --motion orbit or flight");
+    expect({"--vary", "haze.density=0,1", "--ease"}, "--ease: needs --motion orbit or flight");
+    expect({"--above", "200"}, "--above: needs --motion flight");
+}
+
+TEST_F(FilmVerb, PanoramasAndMapsHaveAnEvenSize) {
+    const auto size_of = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{
+            "film", bundled_dem(), "-o",          out(),        "--duration",
+            "0.1",  "--dry-run",   "--overwrite", "--save-job", (dir_ / "job.json").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(read_text(dir_ / "job.json", "test"))["picture"]["size"];
+    };
+    const std::vector<int> equirectangular{1280, 640}, cylindrical{1280, 148};
+    EXPECT_EQ(size_of({"--eye", "36.33,-84.25,700", "--panorama", "equirectangular"}),
+              equirectangular);
+    EXPECT_EQ(size_of({"--eye", "36.33,-84.25,700", "--panorama", "cylindrical"}), cylindrical);
+    // The largest map in these has an odd side.
+    for (const char* const size : {"64x50", "66x50", "68x52", "70x54"})
+        size_of({"--ortho", "--size", size});
+    const Result map = relevo({"-q", "film", bundled_dem(), "-o", out(), "--ortho", "--duration",
+                               "0.1", "--size", "70x54"});
+    ASSERT_EQ(map.status, 0) << map.err;
+    const image::Image8 frame = decode_film(out()).frames.front();
+    EXPECT_EQ(frame.width % 2 + frame.height % 2, 0);
+}
+
+TEST_F(FilmVerb, RefusesAMarginAndAMapThatMoves) {
+    expect_failure({"film", bundled_dem(), "-o", out(), "--ortho", "--motion", "orbit"}, 2,
+                   "--motion orbit: a map has no camera; remove --ortho");
+    const Result margin = film({"-q", "-o", out(), "--margin"});
+    EXPECT_EQ(margin.status, 3);
+    EXPECT_THAT(margin.err, HasSubstr("--margin: not of films"));
 }
 
 TEST_F(FilmVerb, MistakesSayWhatIsWrong) {

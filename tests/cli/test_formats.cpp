@@ -136,6 +136,11 @@ TEST_F(Formats, BadWishesAreOneError) {
     EXPECT_THAT(fault({png, "--format", "png"}), HasSubstr("--format: only of -o -"));
     EXPECT_THAT(fault({(dir_ / "a.tif").string(), "--size", "30000x20000"}),
                 HasSubstr("tiff cannot be written in bands"));
+    EXPECT_THAT(fault({png, "--size", "40000x20000", "--eye", "36.33,-84.25", "--panorama",
+                       "equirectangular"}),
+                HasSubstr("--panorama: takes more than 1 GiB; use a smaller --size"));
+    EXPECT_THAT(fault({png, "--size", "40000x20000", "--stereo", "anaglyph"}),
+                HasSubstr("--stereo: takes more than 1 GiB; use a smaller --size"));
     EXPECT_THAT(fault({"-", "--format", "png", "--sidecar"}), HasSubstr("need a file; name one"));
     EXPECT_THAT(fault({png, "--samples", "0"}), HasSubstr("--samples"));
     EXPECT_FALSE(std::filesystem::exists(png));

@@ -338,6 +338,65 @@ TEST_F(Ortho, RefusesWhatExcludesIt) {
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST_F(Ortho, ASceneOfAMapRefusesACamera) {
+    const std::filesystem::path map = draw(bundled_dem(), "scene.tif", {"--size", "40x40"});
+    expect_failure({"-q", "capture", "--from", map.string(), "--view", "top", "-o",
+                    (dir_ / "seen.png").string()},
+                   2,
+                   "--ortho and the camera of --view, --eye, --look-at, --heading or --pitch "
+                   "exclude each other; --view top is a picture from above that has a camera");
+    const std::filesystem::path job = dir_ / "cameras.json";
+    std::ofstream(job) << R"({"format": 1, "dem": {"files": [")" << bundled_dem()
+                       << R"("]}, "picture": {"ortho": true}, "sweep": [
+                       {"cameras": [{"name": "a"}, {"name": "b"}]}], "output": "{camera}.png"})";
+    expect_failure({"-q", "run", job.string()}, 3,
+                   "job: " + job.string() +
+                       ":2: sweep[0].cameras: a map has no camera; remove picture.ortho, or this");
+}
+
+TEST_F(Ortho, LinearLightHasNoMargin) {
+    const image::ImageF plain =
+        image::read_float(draw(bundled_dem(), "plain.exr", {"--size", "200x90"}));
+    const image::ImageF margin =
+        image::read_float(draw(bundled_dem(), "margin.exr", {"--size", "200x90", "--margin"}));
+    EXPECT_LT(plain.width, 200);
+    EXPECT_EQ(margin.width, plain.width);
+    EXPECT_EQ(margin.values, plain.values);
+}
+
+TEST_F(Ortho, FilesOfAnEarlierMapAreReported) {
+    const std::filesystem::path map = draw(bundled_dem(), "again.png", {"--size", "40x40"});
+    const auto capture = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"capture", bundled_dem(), "-o", map.string(), "--size", "40x40",
+                                   "--overwrite", "--time", "2026-06-21T16:30", "--only", ""});
+        const Result run = relevo(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.err;
+    };
+    EXPECT_THAT(capture({"--view", "top"}),
+                HasSubstr((dir_ / "again.pgw").string() +
+                          ": belongs to another picture, and this one is no map; delete it, or "
+                          "GIS programs place this one by it"));
+    EXPECT_THAT(capture({"--ortho"}), testing::Not(HasSubstr("belongs to another")));
+}
+
+TEST_F(Ortho, OpensItsDemOnce) {
+    const std::filesystem::path dem = dir_ / "undeclared.asc";
+    std::ofstream file(dem);
+    file << "ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5200000\ncellsize 30\n";
+    for (int i = 0; i < 400; ++i)
+        file << (i == 150 ? -9999 : 100 + 3 * (i / 20) + 2 * (i % 20)) << '\n';
+    file.close();
+    const Result run =
+        relevo({"-v", "capture", dem.string(), "--crs", "EPSG:32632", "--ortho", "-o",
+                (dir_ / "once.png").string(), "--size", "40x40", "--only", "", "--overwrite"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const std::string guess = "-9999 is taken as a void";
+    const std::size_t first = run.err.find(guess);
+    ASSERT_NE(first, std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find(guess, first + 1), std::string::npos) << run.err;
+}
+
 TEST_F(Ortho, LeavesNothingWhereAFileIsInTheWay) {
     std::ofstream(dir_ / "taken.pgw") << "mine";
     const Result run = relevo({"-q", "capture", bundled_dem(), "--ortho", "-o",

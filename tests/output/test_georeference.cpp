@@ -23,6 +23,8 @@ TEST(Georeference, FilesAreNamedAsGdalLooksForThem) {
                 ElementsAre(fs::path("map.jgw"), fs::path("map.jpeg.aux.xml")));
     EXPECT_THAT(georeference_files("map.webp"),
                 ElementsAre(fs::path("map.wpw"), fs::path("map.webp.aux.xml")));
+    EXPECT_THAT(georeference_files("map.PNG"),
+                ElementsAre(fs::path("map.PGW"), fs::path("map.PNG.aux.xml")));
     EXPECT_THAT(georeference_files("map.TIF"), ElementsAre());
 }
 

@@ -112,6 +112,18 @@ TEST(Stereo, CrossEyedIsParallelWithItsHalvesSwapped) {
             ASSERT_EQ(parallel.at(x, y, 1), crossed.at((x + kWidth_px / 2) % kWidth_px, y, 1));
 }
 
+TEST(Stereo, EyesTooFarApartAreRefused) {
+    FilesInUse files;
+    scene::Scene scene = scene_of(scene::Stereo::Anaglyph);
+    scene.view.eye_distance_m = 1e6;
+    Session session(scene, {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
+                    files);
+    const std::string error = test::error_of([&] { session.make_picture(); });
+    EXPECT_TRUE(error.starts_with("exit 3: --eye-distance: moves the frames by ")) << error;
+    EXPECT_TRUE(error.ends_with(" px, more than their width of 1200 px; use a smaller one"))
+        << error;
+}
+
 TEST(Stereo, EyesAreAThirtiethOfTheNearGroundsDistanceApart) {
     std::vector<float> depths_m(1000, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < 500; ++i)
