@@ -18,9 +18,9 @@ namespace {
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
 
-/// Height of the status line.
+/// Height of the status line and the scale.
 float status_px() {
-    return 2 * ImGui::GetFontSize() + 4;
+    return 3.4f * ImGui::GetFontSize();
 }
 
 /// Draws a chart unscaled. @returns its upper left corner in the window
@@ -129,12 +129,16 @@ void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
     const glm::vec2 sides = state.side_panel_px.value_or(glm::vec2(0));
     // On the right of the side panel unless that is at the right edge.
     const bool is_left = sides.x + sides.y < size_px.x;
-    const float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
+    float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
+    if (right - left < 360 * unit) {  // over the side panel
+        left = 10;
+        right = size_px.x - 10;
+    }
     if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
     docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
     ImGui::SetNextWindowPos({left, size_px.y - status_px()}, ImGuiCond_Always, {0, 1});
-    ImGui::SetNextWindowSize({std::max(360 * unit, right - left), docked_px_});
-    state.docked_px = docked_px_;
+    ImGui::SetNextWindowSize({right - left, docked_px_});
+    state.docked_px = docked_px_ + status_px() - 2 * ImGui::GetFontSize();
     is_open_ = false;  // place() begins anew
 }
 

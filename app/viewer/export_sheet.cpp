@@ -15,6 +15,7 @@
 #include "scene/scene_words.h"
 #include "scene/stereo.h"
 #include "viewer/export.h"
+#include "viewer/sheet.h"
 
 namespace relevo::viewer {
 namespace {
@@ -207,6 +208,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
         ImGui::PopItemWidth();
         ImGui::Separator();
         result(scene, utc, zone, is_busy);
+        if (closes_sheet()) is_open_ = false;
     }
     ImGui::End();
 }

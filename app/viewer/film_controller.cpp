@@ -155,6 +155,7 @@ bool FilmController::update(const Opened& opened, bool is_at_rest) {
 void FilmController::act(FilmAction action) {
     switch (action) {
         case FilmAction::ShowFrame:
+            if (plan_->frames.shots.empty()) clock_.pause();
             if (preview_.is_on() || plan_->frames.shots.empty()) return;
             preview_.begin();
             shown_frame_ = -1;
@@ -208,7 +209,7 @@ bool FilmController::draw_question(glm::vec2 window_px) {
     ImGui::TextUnformatted(progress().c_str());
     const bool quits = ImGui::Button("Quit without the film");
     ImGui::SameLine();
-    if (ImGui::Button("Draw it to its end")) asks_to_quit_ = false;
+    if (ImGui::Button("Continue drawing")) asks_to_quit_ = false;
     ImGui::End();
     return quits;
 }

@@ -85,8 +85,8 @@ void track_fields(FilmChoice& choice, WidgetRows& rows) {
     number("##above", choice.height_m, 0.1, 1e6, "%.0f m");
     rows.next("Look ahead", 5);
     number("##ahead", choice.look_ahead_m, 0, 1e6,
-           choice.look_ahead_m > 0 ? "%.0f m" : "by itself");
-    tooltip("How far ahead the camera looks; bends narrower than it are cut. 0: by itself");
+           choice.look_ahead_m > 0 ? "%.0f m" : "automatic");
+    tooltip("How far ahead the camera looks; bends narrower than it are cut. 0: automatic");
     const DisabledIf disabled(!choice.can_have_speed());
     rows.next("Speed", 5);
     number("##speed", choice.speed_m_s, 0, 1e6, choice.speed_m_s > 0 ? "%.0f m/s" : "by length");
@@ -158,7 +158,7 @@ void film_choice_fields(FilmChoice& choice, const State& state) {
                        {Camera::Views, "through the views"},
                        {Camera::Track, "along a track"}}});
     tooltip(
-        "Around the ground in the middle of the picture, or around all of the DEM; through the "
+        "Around the ground in the middle of the view, or around all of the DEM; through the "
         "saved views (B) in their order; above the line of a file");
     if (choice.camera != before) choice.ease = choice.is_flight();
     if (choice.is_orbit()) {

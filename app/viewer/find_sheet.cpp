@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "dem/places.h"
 #include "geo/format.h"
+#include "viewer/sheet.h"
 
 namespace relevo::viewer {
 namespace {
@@ -74,6 +75,7 @@ void FindSheet::draw(glm::vec2 size_px, const EffectsModel* effects) {
                                                       "32TPT8347355234"
                                                     : "nothing found");
         if (enter && !found_.empty()) choose(found_.front().place);
+        if (closes_sheet()) close();
     }
     ImGui::End();
 }

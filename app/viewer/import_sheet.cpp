@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "viewer/image_texture.h"
+#include "viewer/sheet.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -188,7 +189,7 @@ void ImportSheet::draw(glm::vec2 size_px) {
         }
         if (!can_open) ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button("Cancel", {5 * line, 0})) is_open_ = false;
+        if (ImGui::Button("Cancel", {5 * line, 0}) || closes_sheet()) is_open_ = false;
     }
     ImGui::End();
 }

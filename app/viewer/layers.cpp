@@ -57,7 +57,7 @@ Layer layer_of(const EffectsModel& effects, const effect::Effect& effect) {
     layer.name = effect.manifest.name;
     layer.is_on = effects.selection.has(effect.id());
     layer.opacity = address_of(effect, [](const shader::Param& param) {
-        return param.address.ends_with(".opacity") && param.words.empty();
+        return param.type == shader::ParamType::Float && param.address.ends_with(".opacity");
     });
     layer.light = address_of(effect, is_light);
     layer.file = file_of(effect.manifest);
@@ -139,15 +139,22 @@ bool can_move(const std::vector<Layer>& layers, std::size_t layer, int by) {
 effect::Switches moved(effect::Switches switches, std::vector<Layer> layers, std::size_t layer,
                        int by) {
     std::swap(layers[layer], layers[layer + static_cast<std::size_t>(by)]);
-    switches.order.clear();
+    std::vector<std::string> now;  // from bottom to top
     for (auto each = layers.rbegin(); each != layers.rend(); ++each)
-        if (each->is_on && each->group != Layer::Group::Marks) switches.order.push_back(each->id);
+        if (each->is_on && each->group != Layer::Group::Marks) now.push_back(each->id);
+    // Takes the places that they have in the order already; what else is in it keeps its own.
+    std::size_t taken = 0;
+    for (std::string& id : switches.order)
+        if (contains(now, id)) id = now[taken++];
+    switches.order.insert(switches.order.end(), now.begin() + static_cast<std::ptrdiff_t>(taken),
+                          now.end());
     return switches;
 }
 
 scene::Effects without_layer(scene::Effects effects, const std::string& id, bool is_default) {
     effects = without_values(switched(std::move(effects), id, false), id);
-    if (!is_default) std::erase(effects.switches.disable, id);
+    // A preset may switch it on.
+    if (!is_default && effects.presets.empty()) std::erase(effects.switches.disable, id);
     std::erase(effects.switches.order, id);
     return effects;
 }

@@ -28,12 +28,19 @@ void slider(State& state, double& share, bool has_light) {
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
 }
 
+/// A share of the parameter's range.
 void effect_opacity(State& state, const Layer& layer) {
     const shader::Param& param = state.effects->values.param(layer.opacity);
+    const shader::ParamRange range = param.range.value_or(shader::ParamRange{0, 1});
     shader::ParamValue value = state.effects->values.value(layer.opacity);
-    const double before = value[0];
-    slider(state, value[0], !layer.light.empty());
-    if (value[0] != before) state.set_value(param, shader::format_value(param, value), layer.is_on);
+    const double width = std::max(range.max - range.min, 1e-9);
+    const double before = (value[0] - range.min) / width;
+    double share = before;
+    slider(state, share, !layer.light.empty());
+    if (share == before) return;
+    value[0] = range.min + share * width;
+    if (shader::is_valid(param, value))
+        state.set_value(param, shader::format_value(param, value), layer.is_on);
 }
 
 void light(State& state, const Layer& layer) {

@@ -162,19 +162,26 @@ void MainWindow::draw_panels() {
     if (state_.settings.panels) {
         menu_bar(state_);
         draw_film();
-        if (!film_->shows_frame()) side_panel(state_, size(), unit());
+        // A side panel that takes most of the window has no room beside the film panel.
+        const scene::Insets side = side_panel_insets(state_, size(), unit());
+        const bool has_room = side.left > 0 || side.right > 0 || !film_->is_open();
+        if (!film_->shows_frame() && has_room) side_panel(state_, size(), unit());
         // The film panel takes the place of the charts.
         if (film_->is_open())
             state_.docked_px = 0;
         else
             charts_.draw(state_, size(), unit());
     }
+    if (const auto to = std::exchange(gives_keys_, std::nullopt))
+        window_->give_keys_to(*to == Command::MenuKeys ? nullptr
+                              : film_->is_open()       ? "Film"
+                                                       : "Relevo");
     if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
     open_dialog_.draw(size());
     import_sheet_.draw(size());
     find_sheet_.draw(size(), state_.effects.get());
-    if (export_sheet_.is_open())
+    if (export_sheet_.is_open() && !film_->shows_frame())
         export_sheet_.draw(size(), scene_to_export(), state_.document.utc, state_.document.zone,
                            picture_export_ != nullptr);
     status_line(state_, work_in_progress());
@@ -232,7 +239,10 @@ void MainWindow::hand_over_scene() {
     }
     if (film_->update(opened, pacing_.is_at_rest())) pacing_.need_frames(2);
     if (!film_->shows_frame()) point_->update(opened, unit());
-    if (overlay_->update(opened, thread)) pacing_.need_frames(2);
+    if (film_->shows_frame())
+        overlay_->show_frame(thread);
+    else if (overlay_->update(opened, thread))
+        pacing_.need_frames(2);
     if (state_.compare_is_wanted && !comparison_->thread())
         comparison_->start(whole_scene(), opened, wanted_now(), overlay_->laid());
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();

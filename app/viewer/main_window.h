@@ -207,6 +207,7 @@ class MainWindow {
     bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
     bool opens_point_menu_ = false, quits_ = false;
+    std::optional<Command> gives_keys_;  // PanelKeys or MenuKeys: when they are drawn
 };
 
 }  // namespace relevo::viewer

@@ -51,9 +51,15 @@ void MainWindow::process_keys() {
     if (state_.view_to_go_to && is_open()) film_->end_preview();
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
-    if (const auto place = find_sheet_.take(); place && is_open()) go_to_place(*place);
+    if (const auto place = find_sheet_.take(); place && is_open()) {
+        film_->end_preview();
+        go_to_place(*place);
+    }
     const std::string zone = std::exchange(state_.zone_to_show, {});
-    if (!zone.empty() && is_open()) messages_.try_to([&] { show_zone(zone); });
+    if (!zone.empty() && is_open()) {
+        film_->end_preview();
+        messages_.try_to([&] { show_zone(zone); });
+    }
     if (std::exchange(state_.views_changed, false)) remember_views();
 }
 
@@ -84,11 +90,11 @@ bool MainWindow::run_program_command(Command command) {
         case Command::PanelKeys:
         case Command::MenuKeys:
             state_.settings.panels = true;
-            if (window_->panels_have_keys())
+            if (command == Command::PanelKeys && window_->panels_have_keys())
                 window_->take_keys_back();
             else
-                window_->give_keys_to(film_->is_open() ? "Film" : "Relevo");
-            state_.opens_menu = command == Command::MenuKeys && window_->panels_have_keys();
+                gives_keys_ = command;
+            state_.opens_menu = command == Command::MenuKeys;
             return true;
         case Command::Charts:
             state_.settings.charts = !state_.settings.charts;
@@ -111,6 +117,10 @@ void MainWindow::run_scene_command(Command command) {
     end_film_preview(command);
     switch (command) {
         case Command::Film:
+            if (!film_->is_open()) {
+                state_.playing = false;
+                state_.settings.panels = true;
+            }
             return film_->toggle();
         case Command::ReadAgain:
             return reload_effects();

@@ -38,6 +38,8 @@ void MainWindow::reload_dem() {
     film_->end_preview();
     scene::Scene scene = state_.document.scene;
     scene.view = view_of(state_.document.pose, state_.land);
+    const OverlayChoice& overlay = state_.document.overlay;
+    if (overlay.kind != OverlayKind::File || !overlay.visible) scene.overlay.reset();
     opening_->reload(std::move(scene), first_wanted());
     pacing_.need_frames(3);
 }

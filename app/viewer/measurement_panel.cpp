@@ -237,8 +237,7 @@ void line_of_sight_of(Measurement& measurement) {
                         "ground after {}",
                         -sight->missing_m, length_text(sight->highest.distance_m)));
     wrapped(
-        fmt::format("the end is hidden by the ground after {}; what is {:.1f} m higher would "
-                    "be visible",
+        fmt::format("the end is hidden by the ground after {}; a target {:.1f} m higher is visible",
                     length_text(sight->highest.distance_m), sight->missing_m));
 }
 
@@ -260,7 +259,7 @@ void measurement_panel(State& state) {
     if (is_straight) line_of_sight_of(measurement);
     if (ImGui::SmallButton("Save as CSV")) state.commands.push_back(Command::SaveProfile);
     if (!measurement.follows_cursor) return;
-    ImGui::TextDisabled("click: a corner; Backspace: one back; M: done");
+    ImGui::TextDisabled("Click sets a corner, Backspace removes the last, M ends");
 }
 
 }  // namespace relevo::viewer

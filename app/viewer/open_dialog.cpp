@@ -13,6 +13,7 @@
 
 #include "base/text.h"
 #include "viewer/settings.h"
+#include "viewer/sheet.h"
 
 namespace relevo::viewer {
 namespace {
@@ -142,6 +143,7 @@ void OpenDialog::draw(glm::vec2 size_px) {
         if (ImGui::Button("Open", {-1, 0}) || is_done) enter();
         if (ImGui::BeginChild("files", {0, 0}, /*border=*/true)) list();
         ImGui::EndChild();
+        if (closes_sheet()) close();
     }
     ImGui::End();
 }

@@ -32,6 +32,7 @@ OverlayController::OverlayController(State& state, Messages& messages, Discard& 
     : state_(state), messages_(messages), discard_(discard), work_(&Window::wake) {}
 
 void OverlayController::clear() {
+    shows_frame_ = is_hidden_ = false;
     work_.forget();
     requested_.reset();
     laid_.reset();
@@ -87,7 +88,21 @@ bool OverlayController::request(const Opened& opened) {
     return true;
 }
 
+void OverlayController::show_frame(SceneThread& thread) {
+    shows_frame_ = true;
+    is_hidden_ = state_.document.overlay.kind == OverlayKind::None;
+    lay(thread);
+}
+
+void OverlayController::lay(SceneThread& thread) {
+    const LaidOverlay now = laid();
+    if (!lays_overlay_ || now == laid_) return;
+    laid_ = now;
+    thread.want_overlay(now);
+}
+
 bool OverlayController::update(const Opened& opened, SceneThread& thread) {
+    shows_frame_ = is_hidden_ = false;
     bool has_changed = request(opened);
     const std::shared_ptr<const OverlayShown> answer = work_.answer();
     // Keeps the last overlay until there is an answer to another request.
@@ -97,10 +112,7 @@ bool OverlayController::update(const Opened& opened, SceneThread& thread) {
         has_changed = true;
     }
     // The scene's own overlay stays until there is an answer.
-    if (const LaidOverlay now = laid(); lays_overlay_ && now != laid_) {
-        laid_ = now;
-        thread.want_overlay(now);
-    }
+    lay(thread);
     state_.overlay_progress.reset();
     if (requested_ && !work_.is_done()) state_.overlay_progress = work_.progress();
     state_.saved_overlay.clear();
@@ -115,12 +127,13 @@ LaidOverlay OverlayController::laid() const {
 }
 
 bool OverlayController::is_complete() const {
+    if (shows_frame_) return true;
     if (waits_for_posts() || is_wanted() != requested_.has_value()) return false;
     return !requested_ || (work_.is_done() && state_.overlay == work_.answer());
 }
 
 bool OverlayController::is_displayed() const {
-    return state_.overlay && state_.overlay->error.empty();
+    return !is_hidden_ && state_.overlay && state_.overlay->error.empty();
 }
 
 const OverlayController::ExportedOverlay* OverlayController::exported() const {
@@ -152,7 +165,7 @@ void OverlayController::cancel_export() {
 }
 
 bool OverlayController::poll_export() {
-    if (exports_when_complete_ && is_complete()) {
+    if (exports_when_complete_ && !shows_frame_ && is_complete()) {
         exports_when_complete_ = false;
         if (is_displayed()) start_export();
     }

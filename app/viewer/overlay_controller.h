@@ -25,6 +25,9 @@ class OverlayController {
     /// thread.
     /// @returns whether anything changed that panels show
     bool update(const Opened& opened, SceneThread& thread);
+    /// While a film's frame is shown: with the overlay if a file has it, else without any. What
+    /// is requested stays.
+    void show_frame(SceneThread& thread);
     /// What lies on the ground now.
     LaidOverlay laid() const;
     /// Whether State::overlay is what the document asks for, from all posts.
@@ -50,6 +53,8 @@ class OverlayController {
         std::string shown_name;  ///< for panels
     };
 
+    /// Gives the scene's thread what lies on the ground, if that has changed.
+    void lay(SceneThread& thread);
     bool waits_for_posts() const;
     /// Whether the document asks for an overlay that can be computed now.
     bool is_wanted() const;
@@ -70,6 +75,8 @@ class OverlayController {
     std::optional<LaidOverlay> laid_;  // that the scene's thread was given
     std::unique_ptr<OverlaySave> export_;
     bool exports_when_complete_ = false;
+    bool is_hidden_ = false;  // in a film's frame
+    bool shows_frame_ = false;
     std::vector<ExportedOverlay> exported_;
 };
 

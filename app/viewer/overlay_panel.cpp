@@ -160,7 +160,7 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
         case session::SunFigure::Irradiation:
             return fmt::format("irradiation {:.2f} kWh/m2", value);
         default:
-            return fmt::format("sun hours {:.2f}", value);
+            return fmt::format("sun hours {:.2f} h", value);
     }
 }
 

@@ -248,9 +248,14 @@ bool OverlayWork::is_final() const {
 
 void OverlayWork::measure(const OverlayWanted& now) {
     if (!levels_ || levels_->dem() != now.dem.get()) levels_ = std::make_unique<Levels>(now.dem);
+    constexpr double kLong_s = 2 * 86400;
+    const bool is_long =
+        session::is_of_period(now.raster.figure) && now.raster.end - now.raster.begin > kLong_s;
     for (const Levels::Level& level : levels_->all()) {
         const bool is_last = &level == &levels_->all().back();
-        const auto is_cancelled = [&] { return is_last ? is_given_up() : is_of_no_use(now); };
+        const auto is_cancelled = [&] {
+            return is_last || is_long ? is_given_up() : is_of_no_use(now);
+        };
         double share = 0;
         OverlayShown shown;
         shown.of = now;

@@ -243,7 +243,6 @@ struct Window::Impl {
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
         style.FrameRounding = 3 * scale;
-        style.Colors[ImGuiCol_WindowBg].w = light ? 0.93f : 0.86f;
     }
 
     void close() {
@@ -387,17 +386,16 @@ void Window::draw(const std::function<void()>& panels) {
 
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
-    // Esc closes the sheet of a text field.
-    if (ImGui::GetIO().WantTextInput)
-        std::erase_if(keys, [](const KeyPress& press) { return press.key != GLFW_KEY_ESCAPE; });
-    if (!panels_have_keys()) return keys;
-    // Esc first closes what is open in the panels.
+    if (ImGui::GetIO().WantTextInput) keys.clear();
+    // Esc first ends what is active in the panels.
     const bool is_inside =
         ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    if (is_inside)
+        std::erase_if(keys, [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; });
+    if (!panels_have_keys()) return keys;
     std::erase_if(keys, [&](const KeyPress& press) {
         const bool is_function = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
-        const bool leaves = press.key == GLFW_KEY_ESCAPE && !is_inside;
-        if (leaves) take_keys_back();
+        if (press.key == GLFW_KEY_ESCAPE) take_keys_back();
         return !press.control && !is_function;
     });
     return keys;
@@ -405,7 +403,7 @@ std::vector<KeyPress> Window::take_keys() {
 
 void Window::give_keys_to(const char* panel) {
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-    ImGui::SetWindowFocus(panel);
+    if (panel) ImGui::SetWindowFocus(panel);
 }
 
 void Window::take_keys_back() {

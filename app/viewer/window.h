@@ -75,7 +75,8 @@ class Window {
 
     /// Without those that the panels take.
     std::vector<KeyPress> take_keys();
-    /// Has arrows, Enter, Space and Esc move through the panels. @param panel  the first one
+    /// Has arrows, Enter, Space and Esc move through the panels.
+    /// @param panel  that has the focus; null: what has it now
     void give_keys_to(const char* panel);
     void take_keys_back();
     bool panels_have_keys() const;

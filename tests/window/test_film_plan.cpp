@@ -277,7 +277,7 @@ TEST_F(Film, PreviewLeavesTheDocumentAsItWas) {
     state.document.scene = scene_;
     state.document.utc = wanted_.wish.utc;
     state.document.zone = wanted_.wish.zone;
-    state.document.overlay = {OverlayKind::Day, 0.5};
+    state.document.overlay = {.kind = OverlayKind::Hours, .opacity = 0.5};
     const std::string before = scene::scene_line(state.document.scene);
     FilmPreview preview(state);
     preview.begin();
@@ -293,7 +293,7 @@ TEST_F(Film, PreviewLeavesTheDocumentAsItWas) {
     EXPECT_EQ(scene::scene_line(state.document.scene), before);
     EXPECT_EQ(state.document.utc, wanted_.wish.utc);
     EXPECT_EQ(state.document.pose.heading_deg, 0);
-    EXPECT_EQ(state.document.overlay, (OverlayChoice{OverlayKind::Day, 0.5}));
+    EXPECT_EQ(state.document.overlay, (OverlayChoice{.kind = OverlayKind::Hours, .opacity = 0.5}));
     EXPECT_TRUE(state.new_values.empty()) << "of the frame";
     EXPECT_TRUE(state.new_effects.has_value()) << "of the scene, for its thread";
     EXPECT_FALSE(state.step);

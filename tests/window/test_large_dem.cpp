@@ -153,14 +153,14 @@ TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
     start({dem.string(), "--only", "--time", "2026-12-21T20:30:00Z"});
     ASSERT_TRUE(wait([&] { return program_->title().find("large") != std::string::npos; }))
         << program_->output();
-    // "Direct sun at the moment", and its raster, before all posts are there.
+    // "Direct sun at this time", and its raster, before all posts are there.
     ASSERT_TRUE(wait([&] {
-        return count_near(display_.screen(), {326, 358, 18, 18}, {49, 83, 123}, 8) > 100;
+        return count_near(display_.screen(), {326, 358, 18, 18}, {39, 73, 113}, 8) > 100;
     }));
-    const glm::ivec4 arrow{326, 358, 18, 18}, choices{20, 382, 300, 100}, choice{20, 466, 200, 16};
+    const glm::ivec4 arrow{326, 358, 18, 18}, choices{20, 382, 300, 140}, choice{20, 486, 200, 16};
     ASSERT_TRUE(changes_in(arrow, [&] { act({"mousemove", "336", "367"}); }));
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
-    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "474"}); }));
+    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "494"}); }));
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
     act({"mousemove", "900", "500", "key", "ctrl+e"});
     const auto saved = folder_ / "relevo-1.tif";

@@ -195,7 +195,7 @@ TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
     open({dem.string(), "--only", "aname", "--plugin-path", plugins_.string()});
     EXPECT_THAT(program_->title(), testing::HasSubstr("山岳.tif"));
     const image::Image8 before = display_.screen();
-    constexpr glm::ivec4 kPanel{60, 531, 280, 25};  // of the first effect
+    constexpr glm::ivec4 kPanel{60, 557, 280, 25};  // of the first effect
     const auto differing = [&] {
         const image::Image8 now = display_.screen();
         int count = 0;
@@ -276,9 +276,9 @@ TEST_F(Viewer, WalksAtTheClickedPointElseInTheMiddleOfThePicture) {
 
 TEST_F(Viewer, TheSheetExportsWhatItsCommandCaptures) {
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
-    constexpr glm::ivec4 kSheet{850, 130, 400, 320};
+    constexpr glm::ivec4 kSheet{850, 130, 400, 370};
     ASSERT_TRUE(changes_in(kSheet, [&] { act({"key", "ctrl+p"}); }));
-    act({"mousemove", "910", "440"});
+    act({"mousemove", "910", "492"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     act({"click", "1"});
     const auto file = folder_ / "jacksboro_20260621T1400.png";
