@@ -176,6 +176,7 @@ void main() {
     load_varyings(pixel);
 #ifdef OVERLAY_RASTER
     overlay_here = overlay_colour(s.post, across);
+    overlay_beneath = vec4(0.0);
 #endif
     hook_albedo(s);
     hook_normal(s);
@@ -223,6 +224,9 @@ void main() {
     hook_atmosphere(s, view, radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
+#ifdef OVERLAY_RASTER
+    over += overlay_beneath * (1.0 - over.a);
+#endif
 #ifdef INSTANCES
     over *= is_instance ? 0.0 : 1.0;  // instances hide what lies on the ground
 #endif

@@ -17,15 +17,14 @@ namespace {
 
 constexpr double kOnSide = 1e-6;  // of a post: one that lies on a side is in
 
-/// Along the sides of the unit square, from corner to corner.
+/// Along the sides of the unit square, once round.
 std::vector<glm::dvec2> outline() {
     constexpr int kSteps = 32;
+    constexpr glm::dvec2 kCorners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     std::vector<glm::dvec2> points;
-    for (int i = 0; i < kSteps; ++i) {
-        const double t = double(i) / kSteps;
-        for (const glm::dvec2& point : {glm::dvec2(t, 0), {1, t}, {1 - t, 1}, {0, 1 - t}})
-            points.push_back(point);
-    }
+    for (int side = 0; side < 4; ++side)
+        for (int i = 0; i < kSteps; ++i)
+            points.push_back(glm::mix(kCorners[side], kCorners[side + 1], double(i) / kSteps));
     return points;
 }
 
@@ -55,6 +54,51 @@ struct Range {
         clip.crs || crs.is_geographic() ? "" : "; for degrees pass --clip-crs EPSG:4326"));
 }
 
+/// Columns and rows of a rectangle's sides, without a break where longitudes begin again.
+Range range_of(const Grid& grid, const Clip& clip) {
+    Range range;
+    glm::dvec2 last(0.5 * (grid.columns() - 1), 0.5 * (grid.rows() - 1));
+    for (const glm::dvec2& at : outline()) {
+        const double x = clip.west + at.x * (clip.east - clip.west),
+                     y = clip.south + at.y * (clip.north - clip.south);
+        const glm::dvec2 post =
+            clip.crs ? grid.post(clip.crs->to_geodetic(x, y), last) : grid.affine().inverse({x, y});
+        if (std::isfinite(post.x) && std::isfinite(post.y)) last = post;
+        range.add(post);
+    }
+    return range;
+}
+
+/// Whether one of the grid's columns is between two places, and not on one.
+bool has_column(const Grid& grid, double from, double to) {
+    return std::max(std::floor(from + kOnSide) + 1, 0.0) <=
+           std::min(std::ceil(to - kOnSide) - 1, grid.columns() - 1.0);
+}
+
+/// Moves a range to the turn of longitude on which the grid is. @throws Error (BadInput) if a part
+/// of it is at one end of the grid's rows and the rest at the other
+void turn_to_grid(Range& range, const Grid& grid, const Clip& clip, std::string_view who) {
+    const double turn = grid.turn_columns();
+    if (turn == 0) return;
+    if (range.most.x - range.least.x > turn - 1) {
+        range.least.x = 0;
+        range.most.x = grid.columns() - 1;
+        return;
+    }
+    const double middle = 0.5 * (range.least.x + range.most.x);
+    const double moved = turn * std::round((0.5 * (grid.columns() - 1) - middle) / turn);
+    range.least.x += moved;
+    range.most.x += moved;
+    const bool is_inside = range.least.x > -1 && range.most.x < grid.columns();
+    for (const double other : {-turn, turn})
+        if (!is_inside && has_column(grid, range.least.x + other, range.most.x + other))
+            bad_input(fmt::format(
+                "{}: {}: crosses the edge of the DEM, whose rows go from {:.10g} to {:.10g} in {}; "
+                "take the parts on both sides one by one",
+                who, clip.text, grid.affine()(-0.5, 0).x, grid.affine()(grid.columns() - 0.5, 0).x,
+                grid.crs().name()));
+}
+
 }  // namespace
 
 Clip parse_clip(std::string_view text, std::string_view who) {
@@ -76,14 +120,9 @@ Clip parse_clip(std::string_view text, std::string_view who) {
 }
 
 Window window_of(const Grid& grid, const Clip& clip, std::string_view who) {
-    Range range;
-    for (const glm::dvec2& at : outline()) {
-        const double x = clip.west + at.x * (clip.east - clip.west),
-                     y = clip.south + at.y * (clip.north - clip.south);
-        range.add(clip.crs ? grid.post(clip.crs->to_geodetic(x, y))
-                           : grid.affine().inverse({x, y}));
-    }
+    Range range = range_of(grid, clip);
     if (!(range.least.x <= range.most.x)) refuse(grid, clip, who);
+    turn_to_grid(range, grid, clip, who);
     const auto first = [](double least) {
         return static_cast<int>(std::ceil(std::max(least, 0.0) - kOnSide));
     };

@@ -20,7 +20,9 @@ Clip parse_clip(std::string_view text, std::string_view who);
 
 /// The smallest window of a grid that has all posts in a rectangle; posts are in the middle of
 /// their cells. On a turned grid, or by another CRS, there are others in it too.
-/// @throws Error (BadInput) where there is not one
+/// Longitudes are those of any turn.
+/// @throws Error (BadInput) where there is not one, or where the rectangle is at both ends of the
+///         grid's rows, which are one meridian
 Window window_of(const Grid& grid, const Clip& clip, std::string_view who);
 
 }  // namespace relevo::dem

@@ -71,7 +71,6 @@ glm::dvec2 Grid::post(const geo::Geodetic& place) const {
     return affine_.inverse(point);
 }
 
-/// Columns from a longitude to the same one again; 0 where no row of the grid has both.
 double Grid::turn_columns() const {
     if (!crs_.is_geographic() || affine_.x_column == 0 || affine_.y_column != 0) return 0;
     return 2 * kPi / crs_.unit_si() / std::abs(affine_.x_column);

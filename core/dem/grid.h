@@ -66,6 +66,10 @@ class Grid {
     /// The same, on the turn of longitude that is nearest to a post.
     glm::dvec2 post(const geo::Geodetic& place, const glm::dvec2& near) const;
 
+    /// Columns from a longitude to the same one again, with fractions; 0 where no row of a grid
+    /// with such a CRS has both.
+    double turn_columns() const;
+
     /// How many columns a turn of longitude has, where the grid goes round the Earth, so that its
     /// first column follows on its last one.
     std::optional<int> columns_per_turn() const;
@@ -99,8 +103,6 @@ class Grid {
     Grid part(const Window& window, int columns, int rows) const;
 
   private:
-    double turn_columns() const;
-
     int columns_;
     int rows_;
     Affine affine_;

@@ -47,7 +47,7 @@ class Selector {
         check_exclusive_hooks();
         Selection selection;
         selection.effects = ordered();
-        selection.over_overlay = over_overlay();
+        selection.over_overlay = over_overlay(selection.effects);
         std::set<std::string> words;
         for (const Effect* effect : selection.effects)
             words.insert(effect->manifest.provides.begin(), effect->manifest.provides.end());
@@ -319,12 +319,28 @@ class Selector {
         return result;
     }
 
-    /// Effects that the order places over the scene's overlay; nullopt if it does not name that.
-    std::optional<std::vector<std::string>> over_overlay() const {
+    /// Effects over the scene's overlay, which lies directly under the first that the order names
+    /// after it, or else over the last that it names before it. nullopt if it names none of both.
+    std::optional<std::vector<std::string>> over_overlay(
+        const std::vector<const Effect*>& effects) const {
         const std::vector<std::string>& order = command_line_.order;
         const auto overlay = std::ranges::find(order, kOverlay);
         if (overlay == order.end()) return std::nullopt;
-        return std::vector<std::string>(overlay + 1, order.end());
+        const auto is_over = [&](const Effect* one) {
+            return std::find(overlay, order.end(), one->id()) != order.end();
+        };
+        const auto is_under = [&](const Effect* one) {
+            return std::find(order.begin(), overlay, one->id()) != overlay;
+        };
+        auto first = std::ranges::find_if(effects, is_over);
+        if (first == effects.end()) {
+            first = std::find_if(effects.rbegin(), effects.rend(), is_under).base();
+            if (first == effects.begin()) return std::nullopt;
+        }
+        std::vector<std::string> ids;
+        for (; first != effects.end(); ++first)
+            ids.push_back((*first)->id());
+        return ids;
     }
 
     std::vector<const Effect*> ordered() const {

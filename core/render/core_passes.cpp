@@ -172,7 +172,9 @@ class Declaration {
                  .body = [](PassContext& frame) {
                      // All that the picture shows, also where the frame is a part of it: levels of
                      // detail, shadows and instances are then those of one large frame.
-                     frame.tiles = frame.terrain.select_for_frame(frame.inputs, frame.picture_px());
+                     // Pages of maps alone are those of the part.
+                     frame.tiles = frame.terrain.select_for_frame(
+                         frame.inputs, frame.picture_px(), {frame.width_px, frame.height_px});
                  }});
         add(Pass{.name = "light",
                  .kind = PassKind::Host,

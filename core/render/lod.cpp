@@ -83,6 +83,11 @@ LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height
     return view;
 }
 
+bool LodView::has_posts(const glm::dvec2& first, const glm::dvec2& last) const {
+    return !posts ||
+           (first.x <= posts->z && first.y <= posts->w && last.x >= posts->x && last.y >= posts->y);
+}
+
 LodView LodView::around_camera(const scene::Camera& camera, int width_px, int height_px,
                                double pixel_error, double exaggeration) {
     constexpr double kPictures = 6;  // of a usual angle, in a panorama

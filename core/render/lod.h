@@ -66,6 +66,9 @@ struct LodView {
     double exaggeration = 1;
     /// Ground beyond the Earth's limb is visible too, as in a map.
     bool sees_beyond_limb = false;
+    /// Columns and rows of the DEM from x, y to z, w: what pages are made of. nullopt: of all that
+    /// the planes leave.
+    std::optional<glm::dvec4> posts{};
     /// Pictures of usual size that the picture is as large as, at least 1: it may have as many
     /// times the vertices of one.
     double frames = 1;
@@ -73,6 +76,9 @@ struct LodView {
     /// @param pixel_error  tolerance in pixels at the frame's centre
     static LodView of_camera(const scene::Camera& camera, int width_px, int height_px,
                              double pixel_error, double exaggeration);
+
+    /// False if a rectangle of posts is outside of `posts`.
+    bool has_posts(const glm::dvec2& first, const glm::dvec2& last) const;
 
     /// All directions from a camera's eye, as accurate as of_camera().
     static LodView around_camera(const scene::Camera& camera, int width_px, int height_px,
@@ -142,6 +148,8 @@ class TileTree {
     void visit(const LodView& view, const TileKey& key, int last_level, const Wanted& wanted,
                const Take& take) {
         if (pyramid_->bounds(key.level, key.at).empty()) return;
+        const double posts = dem::Pyramid::kTileQuads << key.level;
+        if (!view.has_posts(posts * glm::dvec2(key.at), posts * glm::dvec2(key.at + 1))) return;
         const Box b = box(key, view.exaggeration);
         if (hidden(b, view)) return;
         take(key);

@@ -66,6 +66,7 @@ void OverlayPages::visit(TileTree& tree, const LodView& view, double angle, cons
     const glm::dvec2 low(key.at * (kNormalNodes << key.level));
     const glm::dvec2 first = texels_.first_post + low / texels_.per_post;
     const glm::dvec2 last = first + double(kNormalNodes << key.level) / texels_.per_post;
+    if (!view.has_posts(first, last)) return;
     const std::optional<Box> box = tree.box(first, last, view.exaggeration);
     if (!box || tree.hidden(*box, view)) return;
     pages.push_back(key);

@@ -15,6 +15,7 @@
 #include "base/units.h"
 #include "render/pages.h"
 #include "render/tile_grid.h"
+#include "scene/map_view.h"
 
 namespace relevo::render {
 namespace {
@@ -42,6 +43,21 @@ int tiles_of_all_levels(const dem::Pyramid& pyramid) {
 int pages_across(int posts, int level) {
     const int posts_a_page = kNormalNodes << level;
     return std::max(1, (posts - 1 + posts_a_page - 1) / posts_a_page);
+}
+
+/// Columns and rows that a part of a map shows, from x, y to z, w, with a margin.
+glm::dvec4 posts_of(const scene::MapView& map, const PicturePart& part,
+                    const glm::ivec2& frame_px) {
+    constexpr double kMargin_px = 64;  // for effects that read the ground around a pixel
+    constexpr double kMargin_posts = 8;
+    const glm::dvec2 frame(frame_px);
+    const glm::dvec2 upper_left(part.corner_px.x, part.picture_px.y - part.corner_px.y - frame.y);
+    const glm::dvec2 a = map.post(upper_left - kMargin_px),
+                     b = map.post(upper_left + frame + kMargin_px),
+                     c = map.post(upper_left + glm::dvec2(frame.x + kMargin_px, -kMargin_px)),
+                     d = map.post(upper_left + glm::dvec2(-kMargin_px, frame.y + kMargin_px));
+    return {glm::min(glm::min(a, b), glm::min(c, d)) - kMargin_posts,
+            glm::max(glm::max(a, b), glm::max(c, d)) + kMargin_posts};
 }
 
 /// The next tolerance to try.
@@ -276,15 +292,18 @@ LodView Terrain::view_of(const FrameInputs& inputs, const glm::ivec2& picture_px
                 inputs.exaggeration);
 }
 
-TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px) {
+TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px,
+                                        const glm::ivec2& frame_px) {
     const LodView view = view_of(inputs, picture_px);
     complete_ = true;
     TileSelection selection =
         inputs.loading == Loading::Background ? select_in_background(view) : select(view);
     update_surface_layers();
     // Levels of pages depend on the distance alone.
-    const LodView pixels =
+    LodView pixels =
         LodView::of_camera(inputs.camera, picture_px.x, picture_px.y, 1, inputs.exaggeration);
+    if (inputs.camera.map && inputs.part)
+        pixels.posts = posts_of(*inputs.camera.map, *inputs.part, frame_px);
     prepare_surface(pixels, inputs.loading, inputs.deterministic);
     for (GroundRasters* const rasters : {&overlay_, &rasters_})
         complete_ =

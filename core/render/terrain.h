@@ -90,7 +90,9 @@ class Terrain {
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
     /// Selects the tiles of a frame with the option's pixel error, and makes its pages.
     /// @param picture_px  size of the picture that the frame belongs to [px]
-    TileSelection select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px);
+    /// @param frame_px    size of the frame [px]
+    TileSelection select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px,
+                                   const glm::ivec2& frame_px);
     /// True if some of a selection's triangles may be in the view that it was made for. An
     /// orthographic view has ground in sight if it has tiles.
     bool sees_ground(const TileSelection& selection, const LodView& view);

@@ -92,6 +92,12 @@ struct LinesPixel {
     vec2 horizon;  // how the depth's inverse changes to these, as shares of it
 };
 
+#ifdef ORTHOGRAPHIC
+/// Of a map: rays are parallel. @param metres  from columns and rows to metres east and north
+LinesPixel lines_pixel(in mat2 metres) {
+    return LinesPixel(metres * pixel_step_on_map(), vec2(0.0));
+}
+#else
 LinesPixel lines_pixel(in Surface s) {
     vec3 ray = pixel_ray_at(gl_FragCoord.xy);
     float depth = s.distance_m / length(ray);
@@ -103,6 +109,12 @@ LinesPixel lines_pixel(in Surface s) {
     mat2 step_m = mat2(lines_level(depth * (frame.pixel_ray_dx.xyz - ray * depth * right), s.up, height_m),
                        lines_level(depth * (frame.pixel_ray_dy.xyz - ray * depth * up), s.up, height_m));
     return LinesPixel(step_m, depth * vec2(right, up));
+}
+#endif
+
+/// Both steps together [m/px].
+float lines_longest(in mat2 step_m) {
+    return sqrt(dot(step_m[0], step_m[0]) + dot(step_m[1], step_m[1]));
 }
 
 /// Inverse of a step, large where the ground is seen from its edge.
@@ -160,9 +172,12 @@ vec2 lines_drawn(in vec2 a, in vec2 b, in vec2 horizon) {
 
 /// The lines of a node around a place.
 LineHit lines_in_node(in sampler2D lines, in int node, in LinesPlace place, in LinesPixel pixel) {
-    mat2 to_pixels = lines_to_pixels(pixel.step_m);
     vec4 metric = lines_texel(lines, node + 2);
     mat2 metres = mat2(metric.xy, metric.zw);
+#ifdef ORTHOGRAPHIC
+    pixel = lines_pixel(metres);
+#endif
+    mat2 to_pixels = lines_to_pixels(pixel.step_m);
     vec2 here = lines_from(place, lines_texel(lines, node + 1));
     int count = int(lines_texel(lines, node).x), first = node + 4, nearest = 0;
     float pixels = lines_none * lines_none, on_ground = pixels;
@@ -210,17 +225,25 @@ int lines_level_of(in float longest_m, in vec2 horizon, in float reach_px, in fl
 bool lines_may_be_near(in sampler2D lines, in Surface s, in LinesPlace place, in float reach_px, in float reach_m) {
     vec4 head = lines_texel(lines, 0);
     if (head.x < head.y) return false;
+#ifdef ORTHOGRAPHIC
+    vec2 horizon = vec2(0.0);
+    float longest_m = lines_longest(lines_pixel(mat2(head.z)).step_m);
+#else
     float ray = length(pixel_ray_at(gl_FragCoord.xy));
     vec2 horizon = (s.distance_m / ray) * lines_depth_limit(s, ray / s.distance_m);
     float longest_m = (s.distance_m / ray) * (1.5 * length(frame.pixel_ray_dx.xyz) + ray * length(horizon));
+#endif
     return lines_node(lines, place, lines_level_of(longest_m, horizon, reach_px, reach_m, head.z)) != 0;
 }
 
-/// The same as lines_near() for a place and its pixel.
-LineHit lines_search(in sampler2D lines, in LinesPlace place, in LinesPixel pixel, in float reach_px,
-                     in float reach_m) {
-    float longest_m = sqrt(dot(pixel.step_m[0], pixel.step_m[0]) + dot(pixel.step_m[1], pixel.step_m[1]));
-    int level = lines_level_of(longest_m, pixel.horizon, reach_px, reach_m, lines_texel(lines, 0).z);
+/// The same as lines_near() for a point and its place.
+LineHit lines_search(in sampler2D lines, in Surface s, in LinesPlace place, in float reach_px, in float reach_m) {
+#ifdef ORTHOGRAPHIC
+    LinesPixel pixel = lines_pixel(mat2(lines_texel(lines, 0).z));  // by the width of a post
+#else
+    LinesPixel pixel = lines_pixel(s);
+#endif
+    int level = lines_level_of(lines_longest(pixel.step_m), pixel.horizon, reach_px, reach_m, lines_texel(lines, 0).z);
     int node = lines_node(lines, place, level);
     if (node == 0 || lines_texel(lines, node).x < 1.0)
         return LineHit(lines_none, 0.0, lines_no_value, -1, lines_none, 1.0, 1.0);
@@ -235,6 +258,6 @@ LineHit lines_near(in sampler2D lines, in Surface s, in float reach_px, in float
     // A loop, because software devices skip loops that no pixel of a group enters, and no branches.
     int times = lines_may_be_near(lines, s, place, reach_px, reach_m) ? 1 : 0;
     for (int i = 0; i < times; ++i)
-        hit = lines_search(lines, place, lines_pixel(s), reach_px, reach_m);
+        hit = lines_search(lines, s, place, reach_px, reach_m);
     return hit;
 }

@@ -13,7 +13,8 @@ vec4 overlay_colour(in vec2 post, in float posts_a_pixel) {
 }
 
 #ifdef OVERLAY_RASTER
-vec4 overlay_here;  // its colour at this pixel
+vec4 overlay_here;     // its colour at this pixel
+vec4 overlay_beneath;  // what effects above a flat overlay draw over: it, and the effects below it
 
 /// Lit: its colours take the place of the ground's reflectance.
 void core_on_material(inout Surface s) {
@@ -28,8 +29,11 @@ void core_on_material(inout Surface s) {
     s.normal = normalize(mix(s.normal, s.geometric_normal, laid.a));
 }
 
-/// Flat: in its own colours.
+/// Flat: in its own colours. Effects above it begin with nothing, so that one that changes what others drew, as a
+/// cover of voids does, leaves the overlay as it is.
 void core_on_display(in Surface s, inout vec4 overlay) {
-    if (frame.overlay_shape.w == 0.0) overlay = overlay_here + overlay * (1.0 - overlay_here.a);
+    if (frame.overlay_shape.w > 0.0) return;
+    overlay_beneath = overlay_here + overlay * (1.0 - overlay_here.a);
+    overlay = vec4(0.0);
 }
 #endif

@@ -7,6 +7,12 @@ vec3 pixel_ray_at(in vec2 at_px) {
     return frame.pixel_ray.xyz + at_px.x * frame.pixel_ray_dx.xyz + at_px.y * frame.pixel_ray_dy.xyz;
 }
 
+/// On a map: columns and rows of the DEM to the next pixel right, [0], and up, [1]. They are the same everywhere.
+mat2 pixel_step_on_map() {
+    return inverse(mat2(frame.map_x.x, frame.map_y.x, frame.map_x.y, frame.map_y.y)) *
+           mat2(2.0 * frame.viewport.z, 0.0, 0.0, 2.0 * frame.viewport.w);
+}
+
 /// Of this pixel, from the lower left corner of the whole picture, of which a frame may be a tile.
 vec2 picture_px() {
     return gl_FragCoord.xy + vec2(frame.part_left, frame.part_below);

@@ -2,6 +2,7 @@
 //! reads     water pages, in the layers of the normal pages: render/water_field.h
 
 //@ include lib/pages.glsl
+//@ include lib/pixel.glsl
 
 uniform sampler2DArray water_pages;  // r: side of the shore, one half on it; gb: sea, floor known; a: filled 0.5, covered 1
 
@@ -54,7 +55,12 @@ vec2 water_step(in Surface s, in vec3 ray_step) {
 
 /// At a visible point.
 vec4 water_of(in Surface s) {
+#ifdef ORTHOGRAPHIC
+    mat2 step_posts = pixel_step_on_map();
+    return water_between(s.post, 0.5 * (length(step_posts[0]) + length(step_posts[1])), step_posts[0], step_posts[1]);
+#else
     float pixel_m = 0.5 * (length(s.ground_dx_m) + length(s.ground_dy_m));
     return water_between(s.post, pixel_m * frame.normal_texels_per_m, water_step(s, frame.pixel_ray_dx.xyz),
                          water_step(s, frame.pixel_ray_dy.xyz));
+#endif
 }

@@ -385,6 +385,28 @@ TEST(Selection, AnOrderReplacesThatOfTheManifests) {
     EXPECT_THAT(*off.over_overlay, IsEmpty());
 }
 
+TEST(Selection, TheOverlayLiesBesideAnEffectOfTheOrder) {
+    const Plugins plugins;
+    plugins.add("contours", "");
+    plugins.add("photo", "");
+    plugins.add("shade", "");
+    plugins.add("track", "");
+    const Registry registry = plugins.load();
+    const auto over = [&](Words order, Words disable = {}) {
+        return select(registry, {}, {.disable = std::move(disable), .order = std::move(order)})
+            .over_overlay;
+    };
+    // Named last, it is not over effects that the order does not name.
+    EXPECT_EQ(over({"photo", "overlay"}), (Words{"shade", "track"}));
+    EXPECT_EQ(over({"contours", "photo", "overlay"}), (Words{"shade", "track"}));
+    EXPECT_EQ(over({"overlay", "photo"}), (Words{"photo", "shade", "track"}));
+    EXPECT_EQ(over({"photo", "overlay", "track"}), (Words{"track"}));
+    // Effects that are off do not matter.
+    EXPECT_EQ(over({"photo", "overlay", "track"}, {"track"}), (Words{"shade"}));
+    EXPECT_EQ(over({"photo", "overlay"}, {"photo"}), std::nullopt);
+    EXPECT_EQ(over({"overlay"}), std::nullopt);
+}
+
 TEST(SelectionError, AnOrderHasKnownEffectsOnce) {
     const Plugins plugins;
     plugins.add("track", "");

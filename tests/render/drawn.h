@@ -13,6 +13,7 @@
 #include "render/ground.h"
 #include "render/renderer.h"
 #include "scene/camera.h"
+#include "scene/map_view.h"
 #include "shader/snippet.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
@@ -34,10 +35,11 @@ class Drawn {
 
     /// @param effects   in calling order, behind those of `shipped`
     /// @param lines     textures of kind `lines`
+    /// @param options   but for size and antialiasing; orthographic: frames are those of map()
     Drawn(dem::Heightfield field, std::vector<TestEffect> effects, int width_px, int height_px,
           double pixel_error = 0, const std::vector<effect::Effect>& shipped = {},
           const std::vector<std::pair<std::string, std::string>>& settings = {},
-          const std::vector<render::LineSource>& lines = {})
+          const std::vector<render::LineSource>& lines = {}, render::RendererOptions options = {})
         : dem_(std::move(field)),
           shipped_(shipped),
           ground_(render::make_ground(dem_)),
@@ -77,9 +79,10 @@ class Drawn {
         for (const auto& [address, value] : settings)
             values_.set(address, value);
         inputs.stitch.values = &values_;
-        renderer_.emplace(context_, inputs,
-                          render::RendererOptions{
-                              .width_px = width_px, .height_px = height_px, .antialias = false});
+        options.width_px = width_px;
+        options.height_px = height_px;
+        options.antialias = false;
+        renderer_.emplace(context_, inputs, options);
         terrain_.emplace(
             dem_, ground_.frame,
             render::TerrainOptions{.pixel_error = pixel_error,
@@ -105,6 +108,12 @@ class Drawn {
         frame_.camera = scene::heading_camera(ground_.frame.to_local(place),
                                               ground_.frame.axes(place.lat_rad, place.lon_rad),
                                               heading_deg, pitch_deg, radians(kFov_deg));
+    }
+
+    /// Sees all cells from above, in parallel.
+    void map(const glm::ivec2& map_px) {
+        frame_.camera =
+            scene::map_camera(dem_.grid, ground_.frame, scene::map_area(dem_.grid, 0, map_px));
     }
 
     image::ImageF radiance() {

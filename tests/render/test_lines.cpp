@@ -156,6 +156,40 @@ TEST(Lines, HaveTheirDistanceInPixelsFromTwoMetresTo50Kilometres) {
     }
 }
 
+// Pixels of a map of a continent are half as many metres wide at 60 degrees as on the equator.
+TEST(Lines, HaveTheirDistanceInPixelsOnMapsOfContinents) {
+    const dem::Heightfield field =
+        test::field_of(261, 281, {-40, 0.3125, 0, 75, 0, -0.3125}, "EPSG:4326",
+                       [](int column, int row) { return 800 + 2.0 * column + 0.5 * row; });
+    std::vector<glm::dvec2> posts;
+    for (int i = 0; i <= 120; ++i)
+        posts.emplace_back(10 + 2.0 * i, 140 + 130 * std::cos(i * 0.2));
+    Drawn drawn(field, {test::kBrightSky, probe("min(hit.pixels, 100.0), 0.0")}, 260, 280, 0, {},
+                {}, {{"probe.way", "probe.file", written(field, posts), ""}},
+                {.orthographic = true});
+    drawn.map({260, 280});
+    const image::ImageF image = drawn.radiance();
+    std::vector<glm::dvec2> line;
+    for (const glm::dvec2& post : posts)
+        line.push_back(drawn.frame().camera.map->pixel(post));
+    int count = 0;
+    double worst_px = 0, sum_px = 0;
+    for (int y = 4; y < image.height - 4; ++y)
+        for (int x = 4; x < image.width - 4; ++x) {
+            const double found = Drawn::values(image, x, y).x;
+            const double truth = distance_px(line, {x + 0.5, y + 0.5});
+            if (truth > 3 && found > 3) continue;
+            ++count;
+            sum_px += std::abs(found - truth);
+            worst_px = std::max(worst_px, std::abs(found - truth));
+        }
+    fmt::print("[ accuracy ] a map: {} pixels, mean {:.3f}, worst {:.3f} px\n", count,
+               sum_px / count, worst_px);
+    EXPECT_GT(count, 1000);
+    EXPECT_LT(sum_px / count, 0.03);
+    EXPECT_LT(worst_px, 0.5);
+}
+
 TEST(Lines, HaveTheirAttributeAndTheDistanceOnTheGround) {
     const dem::Heightfield field = slope();
     const std::vector<glm::dvec2> posts = bends();
