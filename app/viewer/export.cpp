@@ -69,6 +69,11 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
     scene::Scene scene = document.whole(land);
     scene.width_px = size_px.x;
     scene.height_px = size_px.y;
+    // As the window shows it, whatever projection a file asked for.
+    scene.ortho = false;
+    scene.resolution = 0;
+    scene.view.panorama = scene::Panorama::None;
+    scene.view.stereo = scene::Stereo::None;
     scene.dems = absolute_names(std::move(scene.dems));
     return scene;
 }
@@ -130,6 +135,7 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 std::string save_picture(const Picture& picture, scene::Scene scene, const Opened& opened,
                          const Coloured& coloured) {
     scene.seconds = picture.seconds;
+    scene.stamps.margin = false;
     const std::vector<std::uint8_t> rgba = picture.read_rgba();
     if (const int pixels = render::count_non_finite(rgba); pixels > 0)
         failed(

@@ -68,23 +68,27 @@ constexpr std::array<Kind, 6> kKinds = {
      {"anaglyph", {1920, 1080}, false, scene::Panorama::None, scene::Stereo::Anaglyph}}};
 
 /// Index of the kind of a scene.
-int kind_of(const scene::Scene& scene) {
+std::size_t kind_of(const scene::Scene& scene) {
     const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) {
         return kind.is_ortho == scene.ortho && kind.panorama == scene.view.panorama &&
                kind.stereo == scene.view.stereo;
     });
-    return found == kKinds.end() ? 0 : static_cast<int>(found - kKinds.begin());
+    return found == kKinds.end() ? 0 : static_cast<std::size_t>(found - kKinds.begin());
 }
 
 }  // namespace
 
+void ExportSheet::take_scene(const scene::Scene& scene) {
+    stamps_.reset();
+    what_ = kind_of(scene);
+}
+
 /// A kind sets a size that suits it.
-void ExportSheet::kind_field(const scene::Scene& scene) {
-    if (!what_) what_ = kind_of(scene);
-    if (!ImGui::BeginCombo("What", kKinds[static_cast<std::size_t>(*what_)].name)) return;
+void ExportSheet::kind_field() {
+    if (!ImGui::BeginCombo("What", kKinds[what_].name)) return;
     for (std::size_t i = 0; i < kKinds.size(); ++i) {
-        if (!ImGui::Selectable(kKinds[i].name, static_cast<int>(i) == *what_)) continue;
-        what_ = static_cast<int>(i);
+        if (!ImGui::Selectable(kKinds[i].name, i == what_)) continue;
+        what_ = i;
         size_px_ = kKinds[i].size_px;
     }
     ImGui::Separator();
@@ -102,7 +106,7 @@ void ExportSheet::size_fields(glm::vec2 window_px) {
     }
     if (ImGui::InputInt2("Pixels", &size_px_.x))
         size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
-    ImGui::BeginDisabled(kKinds[static_cast<std::size_t>(what_.value_or(0))].is_ortho);
+    ImGui::BeginDisabled(kKinds[what_].is_ortho);
     ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
     ImGui::EndDisabled();
 }
@@ -135,7 +139,7 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
         if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
     }
-    ImGui::BeginDisabled(!kKinds[static_cast<std::size_t>(what_.value_or(0))].is_picture());
+    ImGui::BeginDisabled(!kKinds[what_].is_picture());
     ImGui::Checkbox("Around the picture, so that nothing lies on it", &stamps_->margin);
     ImGui::EndDisabled();
     if (stamps_->title)
@@ -152,7 +156,7 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.samples = samples_;
     order.scene.transparent = is_transparent_ && format.has_alpha;
     order.scene.stamps = stamps_.value_or(scene.stamps);
-    const Kind& kind = kKinds[static_cast<std::size_t>(what_.value_or(kind_of(scene)))];
+    const Kind& kind = kKinds[what_];
     order.scene.ortho = kind.is_ortho;
     order.scene.view.panorama = kind.panorama;
     order.scene.view.stereo = kind.stereo;
@@ -198,7 +202,7 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
     if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::PushItemWidth(-4 * line);
-        kind_field(scene);
+        kind_field();
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);

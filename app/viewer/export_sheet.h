@@ -16,11 +16,8 @@ class ExportSheet {
   public:
     void open() { is_open_ = true; }
     void close() { is_open_ = false; }
-    /// Takes the stamps of another scene.
-    void forget_scene() {
-        stamps_.reset();
-        what_.reset();
-    }
+    /// Takes the stamps and the kind of picture of another scene.
+    void take_scene(const scene::Scene& scene);
     bool is_open() const { return is_open_; }
     /// What the sheet does to the view: centres the picture on what the panels leave free.
     bool is_centred() const { return is_centred_; }
@@ -39,7 +36,7 @@ class ExportSheet {
     std::optional<Command> take_command() { return std::exchange(command_, std::nullopt); }
 
   private:
-    void kind_field(const scene::Scene& scene);
+    void kind_field();
     void size_fields(glm::vec2 window_px);
     void format_fields();
     void stamp_fields(const scene::Scene& scene);
@@ -51,7 +48,7 @@ class ExportSheet {
     glm::ivec2 size_px_{1920, 1080};
     int format_ = 0, samples_ = 4, quality_ = image::kQuality;
     std::optional<scene::Stamps> stamps_;  // nullopt: the scene's
-    std::optional<int> what_;              // index of a kind of picture; nullopt: the scene's
+    std::size_t what_ = 0;                 // index of a kind of picture
     std::string name_ = "{dem}_{time:%Y%m%dT%H%M}";
     std::optional<PictureOrder> order_;
     std::optional<Command> command_;

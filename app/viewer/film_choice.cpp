@@ -114,6 +114,7 @@ scene::Scene film_scene(const FilmWish& wish) {
     scene.height_px = wish.file.size_px.y;
     scene.samples = wish.file.samples;
     scene.transparent = false;
+    scene.stamps.margin = false;  // its size could differ from frame to frame
     scene.stamps.date = scene.stamps.date || wish.file.has_date;
     if (const std::string& zone = wish.zone.name(); !zone.starts_with("LMT"))
         scene.time.zone = zone;  // so that the job says it

@@ -55,7 +55,7 @@ Wanted MainWindow::first_wanted() const {
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
     wanted_exaggeration_ = state_.document.scene.exaggeration;
-    export_sheet_.forget_scene();
+    export_sheet_.take_scene(state_.document.scene);
     point_->clear();
     overlay_->clear();
     film_->forget();

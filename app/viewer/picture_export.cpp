@@ -58,6 +58,8 @@ void PictureExport::run() {
 
 std::string PictureExport::write() {
     scene::Scene scene = order_.scene;
+    // Linear light has no stamps.
+    if (image::holds_linear_light(order_.path)) scene.stamps.margin = false;
     scene::fit_map(scene, dem_->source->grid());
     const std::filesystem::path path = order_.path;
     FilesInUse files;
