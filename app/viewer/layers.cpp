@@ -85,7 +85,9 @@ Layer overlay_layer(const Document& document) {
 void add_overlay(Layer overlay, const effect::Selection& selection, std::vector<Layer>& layers) {
     const auto is_over = [&](const Layer& layer) {
         if (layer.group != overlay.group) return layer.group > overlay.group;
-        if (!selection.over_overlay) return overlay.group == Layer::Group::Flat;
+        const bool is_flat = overlay.group == Layer::Group::Flat;
+        if (!is_flat && selection.lit_overlay_is_over_all) return false;
+        if (!selection.over_overlay) return is_flat;
         return contains(*selection.over_overlay, layer.id);
     };
     layers.insert(std::ranges::find_if(layers, is_over), std::move(overlay));

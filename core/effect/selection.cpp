@@ -48,6 +48,8 @@ class Selector {
         Selection selection;
         selection.effects = ordered();
         selection.over_overlay = over_overlay(selection.effects);
+        selection.lit_overlay_is_over_all = std::ranges::none_of(
+            selection.effects, [&](const Effect* one) { return is_over_overlay(one->id()); });
         std::set<std::string> words;
         for (const Effect* effect : selection.effects)
             words.insert(effect->manifest.provides.begin(), effect->manifest.provides.end());
@@ -319,6 +321,12 @@ class Selector {
         return result;
     }
 
+    /// Whether the order names an effect after the scene's overlay.
+    bool is_over_overlay(const std::string& id) const {
+        const std::vector<std::string>& order = command_line_.order;
+        return std::find(std::ranges::find(order, kOverlay), order.end(), id) != order.end();
+    }
+
     /// Effects over the scene's overlay, which lies directly under the first that the order names
     /// after it, or else over the last that it names before it. nullopt if it names none of both.
     std::optional<std::vector<std::string>> over_overlay(
@@ -326,9 +334,7 @@ class Selector {
         const std::vector<std::string>& order = command_line_.order;
         const auto overlay = std::ranges::find(order, kOverlay);
         if (overlay == order.end()) return std::nullopt;
-        const auto is_over = [&](const Effect* one) {
-            return std::find(overlay, order.end(), one->id()) != order.end();
-        };
+        const auto is_over = [&](const Effect* one) { return is_over_overlay(one->id()); };
         const auto is_under = [&](const Effect* one) {
             return std::find(order.begin(), overlay, one->id()) != overlay;
         };

@@ -22,6 +22,7 @@ struct Selection {
     std::vector<std::string> refused;
     /// As shader::StitchInput::over_overlay.
     std::optional<std::vector<std::string>> over_overlay{};
+    bool lit_overlay_is_over_all = true;
 
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput

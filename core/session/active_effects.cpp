@@ -111,6 +111,7 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.instances = loaded.selection.instances();
     inputs.stitch.capabilities = loaded.selection.capabilities;
     inputs.stitch.over_overlay = loaded.selection.over_overlay;
+    inputs.stitch.lit_overlay_is_over_all = loaded.selection.lit_overlay_is_over_all;
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);

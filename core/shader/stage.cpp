@@ -304,8 +304,10 @@ std::vector<std::string> Stage::called_functions(const Hook& hook) const {
 
 std::ptrdiff_t Stage::place_of_overlay(const Hook& hook,
                                        const std::vector<std::string>& ids) const {
-    if (!input_.over_overlay)
-        return hook.name == "display" ? 0 : static_cast<std::ptrdiff_t>(ids.size());
+    const bool is_lit = hook.name != "display";
+    if (is_lit && (!input_.over_overlay || input_.lit_overlay_is_over_all))
+        return static_cast<std::ptrdiff_t>(ids.size());
+    if (!input_.over_overlay) return 0;
     const auto first = std::ranges::find_if(
         ids, [&](const std::string& id) { return contains(*input_.over_overlay, id); });
     return first - ids.begin();

@@ -54,7 +54,8 @@ struct StitchInput {
     /// Ids of plugins that draw over the scene's overlay. nullopt: all that have the hook display
     /// do, and a lit overlay is over the materials of all.
     std::optional<std::vector<std::string>> over_overlay{};
-    int max_texture_units = 16;  ///< GL_MAX_TEXTURE_IMAGE_UNITS
+    bool lit_overlay_is_over_all = true;  ///< whatever `over_overlay` says
+    int max_texture_units = 16;           ///< GL_MAX_TEXTURE_IMAGE_UNITS
     /// Textures equal to another one, with the name of that one on the device.
     std::map<std::string, std::string> same_textures{};
 };

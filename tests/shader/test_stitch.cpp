@@ -137,6 +137,7 @@ void main() {
                  {"track", "void track_on_display(in Surface s, inout vec4 o) {}"}});
     const auto calls = [&](std::optional<std::vector<std::string>> over) {
         StitchInput input = written.input();
+        input.lit_overlay_is_over_all = !over || over->empty();
         input.over_overlay = std::move(over);
         const std::string text =
             stitch(core_with({{"terrain.frag.glsl", main}}), terrain_program(), input)

@@ -7,14 +7,17 @@ namespace relevo {
 namespace {
 
 constexpr glm::ivec3 kLine{255, 80, 60};
+/// Before and after a click, which else is a drag.
+constexpr auto kStill = std::chrono::milliseconds(400);
 
 class MeasuredLine : public Viewer {
   protected:
     int red(glm::ivec4 area) { return count_near(display_.screen(), area, kLine); }
     void click(int x, int y, const char* button = "1") {
         act({"mousemove", std::to_string(x), std::to_string(y)});
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        std::this_thread::sleep_for(kStill);
         act({"click", button});
+        std::this_thread::sleep_for(kStill);
     }
     void begin() {
         open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
@@ -34,6 +37,7 @@ TEST_F(MeasuredLine, HasCornersUntilARightClickAndAProfileAsCsv) {
     constexpr glm::ivec4 kTop{890, 235, 45, 30};
     ASSERT_TRUE(wait([&] { return red(kTop) > 30; }));
     act({"click", "3"});
+    std::this_thread::sleep_for(kStill);
     act({"mousemove", "1000", "360"});
     ASSERT_TRUE(settles());
     EXPECT_GT(red(kTop), 30);
