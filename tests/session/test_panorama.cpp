@@ -157,6 +157,21 @@ struct Changed {
     }
 };
 
+// Of a large DEM the ground below the eye has the levels of a panorama, not of one direction.
+TEST(Panorama, TheEyeStandsOnItsGround) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    scene::Scene scene = scene_of(scene::Panorama::Equirectangular, 180, 2, 360);
+    scene.dems = {(data / "dem/tyrol_aw3d30_n47e011_1s_cog.tif").string()};
+    scene.view.eye = {.place = geo::geodetic_deg(47.3122, 11.3833, 4), .above_ground = true};
+    scene.transparent = true;
+    const Drawn panorama = drawn(scene);
+    const auto& image = std::get<image::Image8>(panorama.picture.pixels);
+    for (int column = 0; column < image.width; column += 20) {
+        EXPECT_EQ(image.at(column, 0, 3), 0) << "ground overhead";
+        EXPECT_EQ(image.at(column, image.height - 1, 3), 255) << "no ground below";
+    }
+}
+
 TEST(Panorama, NamesStandOverTheirPlaces) {
     const std::filesystem::path file = test::scratch_dir() / "places.csv";
     std::ofstream(file) << "name,lat,lon,height\nCloud,36.40,-84.10,1500\n";
