@@ -10,8 +10,6 @@
 #include "base/text.h"
 #include "cli/job_run.h"
 #include "film/film.h"
-#include "scene/panorama.h"
-#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/film_batch.h"
 
@@ -37,7 +35,7 @@ class FilmRun {
         for (const scene::Shot& shot : work_.shots)
             work_.inputs.add_to(work_.files, shot.scene);
         work_.files.check_planned({output_}, "run");
-        const std::string refusal = what_is_in_the_way();
+        const std::string refusal = taken_name(output_, arguments_.overwrite);
         if (arguments_.dry_run) return tell(refusal);
         if (!refusal.empty()) bad_input(refusal);
         make_folder();
@@ -65,10 +63,6 @@ class FilmRun {
 
     void check_frames() const {
         const scene::Scene& first = work_.shots.front().scene;
-        for (const scene::Shot& shot : work_.shots) {
-            scene::check_panorama(shot.scene);
-            scene::check_stereo(shot.scene);
-        }
         for (const scene::Shot& shot : work_.shots)
             if (shot.scene.width_px != first.width_px || shot.scene.height_px != first.height_px)
                 bad_input(fmt::format(
@@ -91,12 +85,6 @@ class FilmRun {
         film::check(output_, first.width_px, first.height_px, settings_);
     }
 
-    std::string what_is_in_the_way() const {
-        std::error_code missing;
-        if (arguments_.overwrite || !fs::exists(fs::symlink_status(output_, missing))) return {};
-        return fmt::format("run: {}: exists; pass --overwrite to replace it", name_);
-    }
-
     /// "300 frames, 10 s".
     std::string length() const {
         const double frames = static_cast<double>(work_.shots.size());
@@ -106,13 +94,7 @@ class FilmRun {
 
     void tell(const std::string& refusal) const {
         fmt::print("{}\n", output_.string());
-        std::string time;
-        try {
-            time = "some " + duration_text(session::time_batch(
-                                 work_.shots, {.device = arguments_.device}, work_.times));
-        } catch (const Error& error) {
-            time = fmt::format("an unknown time ({})", error.what());
-        }
+        const std::string time = work_.estimated_time(arguments_.device);
         work_.notices.release();
         log::info(fmt::format("a film of {} would take {}", length(), time));
         if (!refusal.empty()) log::warning("would be refused: " + refusal);

@@ -6,8 +6,12 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "scene/panorama.h"
+#include "scene/stereo.h"
+#include "session/batch.h"
 #include "session/trust.h"
 
 namespace relevo::cli {
@@ -82,11 +86,29 @@ void JobRun::read(const JobArguments& arguments) {
         });
     for (scene::Shot& shot : drawn_up.shots) {
         trusted.keep_folders(shot.scene.effects);
+        scene::check_panorama(shot.scene);
+        scene::check_stereo(shot.scene);
         fit(shot);
     }
     trusted.tell();
     warn_of_skipped(drawn_up.left_out);
     shots = std::move(drawn_up.shots);
+}
+
+std::string JobRun::estimated_time(const std::string& device) {
+    try {
+        return "some " + duration_text(session::time_batch(shots, {.device = device}, times));
+    } catch (const Error& error) {
+        return fmt::format("an unknown time ({})", error.what());
+    }
+}
+
+std::string taken_name(const std::filesystem::path& output, bool overwrite) {
+    std::error_code missing;
+    if (overwrite || !std::filesystem::exists(std::filesystem::symlink_status(output, missing)))
+        return {};
+    return fmt::format("run: {}: exists; pass --overwrite to replace it",
+                       printable(output.string()));
 }
 
 }  // namespace relevo::cli

@@ -45,6 +45,8 @@ struct JobRun {
     /// Reads the job and draws up its pictures.
     /// @throws Error as scene::read_job() and scene::shots_of()
     void read(const JobArguments& arguments);
+    /// "some 5 min", or why it is not known: for --dry-run.
+    std::string estimated_time(const std::string& device);
 
   private:
     /// Hashes the files of a scene, so that changes after they were read are noticed.
@@ -53,6 +55,9 @@ struct JobRun {
     /// Gives a map its size, as its file allows.
     void fit(scene::Shot& shot);
 };
+
+/// Why a job's one file cannot be made: one of its name exists. Empty if it can.
+std::string taken_name(const std::filesystem::path& output, bool overwrite);
 
 /// Checks, draws and encodes the film of a job.
 void run_film(const JobArguments& arguments, JobRun& work);

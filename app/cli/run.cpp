@@ -19,8 +19,6 @@
 #include "cli/job_run.h"
 #include "cli/shard.h"
 #include "scene/job.h"
-#include "scene/panorama.h"
-#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/made.h"
 #include "session/picture_file.h"
@@ -114,8 +112,6 @@ class Run {
 
   private:
     void check_format(const scene::Shot& shot) const {
-        scene::check_panorama(shot.scene);
-        scene::check_stereo(shot.scene);
         image::check_encoding(shot.output, arguments_.format.encoding(),
                               {.width_px = shot.scene.width_px,
                                .height_px = shot.scene.height_px,

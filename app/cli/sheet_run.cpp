@@ -9,8 +9,6 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/job_run.h"
-#include "scene/panorama.h"
-#include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/contact_sheet.h"
 
@@ -31,10 +29,6 @@ class SheetRun {
     void run() {
         refuse_options();
         const scene::Scene& first = work_.shots.front().scene;
-        for (const scene::Shot& shot : work_.shots) {
-            scene::check_panorama(shot.scene);
-            scene::check_stereo(shot.scene);
-        }
         const glm::ivec2 size =
             session::SheetLayout::of(work_.shots.size(), {first.width_px, first.height_px},
                                      arguments_.columns)
@@ -45,7 +39,7 @@ class SheetRun {
         for (const scene::Shot& shot : work_.shots)
             work_.inputs.add_to(work_.files, shot.scene);
         work_.files.check_planned({output_}, "run");
-        const std::string refusal = what_is_in_the_way();
+        const std::string refusal = taken_name(output_, arguments_.overwrite);
         if (arguments_.dry_run) return tell(size, refusal);
         if (!refusal.empty()) bad_input(refusal);
         draw();
@@ -70,25 +64,13 @@ class SheetRun {
                 fmt::format("--contact-sheet: {}: expected png, jpg, webp, avif or tif", name_));
     }
 
-    std::string what_is_in_the_way() const {
-        std::error_code missing;
-        if (arguments_.overwrite || !fs::exists(fs::symlink_status(output_, missing))) return {};
-        return fmt::format("run: {}: exists; pass --overwrite to replace it", name_);
-    }
-
     std::string size_text(const glm::ivec2& size) const {
         return fmt::format("{} pictures on {} x {} px", work_.shots.size(), size.x, size.y);
     }
 
     void tell(const glm::ivec2& size, const std::string& refusal) const {
         fmt::print("{}\n", output_.string());
-        std::string time;
-        try {
-            time = "some " + duration_text(session::time_batch(
-                                 work_.shots, {.device = arguments_.device}, work_.times));
-        } catch (const Error& error) {
-            time = fmt::format("an unknown time ({})", error.what());
-        }
+        const std::string time = work_.estimated_time(arguments_.device);
         work_.notices.release();
         log::info(fmt::format("a contact sheet of {} would take {}", size_text(size), time));
         if (!refusal.empty()) log::warning("would be refused: " + refusal);

@@ -189,6 +189,12 @@ scene::Effects with_value(scene::Effects effects, const std::string& address,
     return effects;
 }
 
+bool has_values(const scene::Effects& effects, const std::string& of) {
+    return std::ranges::any_of(effects.settings, [&](const effect::Setting& setting) {
+        return is_of(setting.address, of);
+    });
+}
+
 scene::Effects without_values(scene::Effects effects, const std::string& of) {
     std::erase_if(effects.settings,
                   [&](const effect::Setting& setting) { return is_of(setting.address, of); });

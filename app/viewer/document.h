@@ -90,6 +90,8 @@ scene::Effects switched(scene::Effects effects, const std::string& id, bool on);
 /// A copy with a parameter set to `value`.
 scene::Effects with_value(scene::Effects effects, const std::string& address,
                           const std::string& value);
+/// Whether a parameter, or one of an effect, has a value of its own. @param of  as below
+bool has_values(const scene::Effects& effects, const std::string& of);
 /// A copy with default values.
 /// @param of  an effect's id, or the address of one parameter
 scene::Effects without_values(scene::Effects effects, const std::string& of);

@@ -115,12 +115,6 @@ void row_label(const std::string& label) {
     ImGui::SetNextItemWidth(-2.2f * ImGui::GetFontSize());
 }
 
-/// Whether a parameter, or one of an effect, has a value of the user's.
-bool is_changed(const State& state, const std::string& of) {
-    const scene::Effects& effects = state.document.scene.effects;
-    return without_values(effects, of).settings.size() < effects.settings.size();
-}
-
 /// A button that resets a row. @param is_default  there is nothing to reset
 bool reset_button(bool is_default) {
     ImGui::SameLine();
@@ -141,7 +135,7 @@ void param_row(State& state, const Param& param, bool on) {
     if (widget(param, value) && shader::is_valid(param, value))
         state.set_value(param, shader::format_value(param, value), on);
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
-    if (reset_button(!is_changed(state, param.address)))
+    if (reset_button(!has_values(state.document.scene.effects, param.address)))
         state.set_effects(without_values(state.document.scene.effects, param.address));
     ImGui::PopID();
 }
@@ -159,7 +153,7 @@ void text_row(State& state, const shader::TextParam& text) {
         if (text.is_file && !value.empty()) value = std::filesystem::absolute(value).string();
         state.set_effects(with_value(state.document.scene.effects, text.address, value));
     }
-    if (reset_button(!is_changed(state, text.address)))
+    if (reset_button(!has_values(state.document.scene.effects, text.address)))
         state.set_effects(without_values(state.document.scene.effects, text.address));
     ImGui::PopID();
 }
@@ -200,7 +194,7 @@ void effect_row(State& state, const effect::Effect& effect) {
             text_row(state, text);
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);
-        ImGui::BeginDisabled(!is_changed(state, effect.id()));
+        ImGui::BeginDisabled(!has_values(state.document.scene.effects, effect.id()));
         if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))
             state.set_effects(without_values(state.document.scene.effects, effect.id()));
         ImGui::EndDisabled();

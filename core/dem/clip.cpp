@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/placement.h"
 
 namespace relevo::dem {
 namespace {
@@ -135,6 +136,21 @@ Window window_of(const Grid& grid, const Clip& clip, std::string_view who) {
               rows = last(range.most.y, grid.rows()) - row + 1;
     if (columns < 1 || rows < 1) refuse(grid, clip, who);
     return {column, row, columns, rows};
+}
+
+Window crop_of(const Grid& grid, const std::string& text) {
+    const Bounds edges = parse_bounds(text, "--crop");
+    const Clip clip{edges.west_deg,
+                    edges.south_deg,
+                    edges.east_deg,
+                    edges.north_deg,
+                    geo::Crs::parse("EPSG:4326", "--crop"),
+                    text};
+    const Window window = window_of(grid, clip, "--crop");
+    if (window.columns < 2 || window.rows < 2)
+        bad_input(fmt::format("--crop: {}: {} x {} posts, expected 2 x 2 at least", text,
+                              window.columns, window.rows));
+    return window;
 }
 
 }  // namespace relevo::dem

@@ -25,4 +25,8 @@ Clip parse_clip(std::string_view text, std::string_view who);
 ///         grid's rows, which are one meridian
 Window window_of(const Grid& grid, const Clip& clip, std::string_view who);
 
+/// The window of `--crop W,S,E,N` in degrees. @throws Error (Usage, BadInput) also for fewer than
+/// 2 x 2 posts
+Window crop_of(const Grid& grid, const std::string& text);
+
 }  // namespace relevo::dem

@@ -17,6 +17,7 @@
 #include "dem/cell_parts.h"
 #include "dem/clip.h"
 #include "dem/folder.h"
+#include "dem/on_earth.h"
 #include "dem/piece.h"
 
 namespace relevo::dem {
@@ -38,28 +39,6 @@ Window overlap(const Window& a, const Window& b) {
 
 bool is_empty(const Window& window) {
     return window.columns <= 0 || window.rows <= 0;
-}
-
-/// Makes holes of posts that are not on the Earth.
-void cut_to_earth(const Grid& grid, Array2d<float>& height_m) {
-    constexpr int kAtOnce = 1 << 14;  // of a row
-    parallel_for(0, grid.rows(), std::max(1, kAtOnce / grid.columns()), [&](int first, int last) {
-        std::vector<glm::dvec2> posts;
-        std::vector<geo::Geodetic> places;
-        for (int row = first; row < last; ++row)
-            for (int begin = 0; begin < grid.columns();) {
-                const int count = std::min(kAtOnce, grid.columns() - begin);
-                posts.resize(static_cast<std::size_t>(count));
-                places.resize(posts.size());
-                for (int i = 0; i < count; ++i)
-                    posts[static_cast<std::size_t>(i)] = {double(begin) + i, row};
-                grid.place(posts, places);
-                for (int i = 0; i < count; ++i)
-                    if (!std::isfinite(places[static_cast<std::size_t>(i)].lat_rad))
-                        height_m.at(begin + i, row) = kHole;
-                begin += count;
-            }
-    });
 }
 
 /// The coarsest level that still has a cell for every `columns_each` by `rows_each` posts.
@@ -92,6 +71,7 @@ struct Source::Impl {
     mutable std::mutex mutex;
     mutable std::vector<Idle> idle;
 
+    void crop(const Window& window);
     template <typename Body>
     void borrow(const Piece& piece, const Body& body) const;
     Array2d<float> read_stored(const Window& window) const;
@@ -101,6 +81,15 @@ struct Source::Impl {
                    Progress* progress) const;
     Blank blank(const Window& window) const;
 };
+
+/// Leaves the posts of a window. Pieces keep theirs, of which some are then outside.
+void Source::Impl::crop(const Window& window) {
+    grid = grid->part(window, window.columns, window.rows);
+    for (Piece& piece : pieces) {
+        piece.place.column -= window.column;
+        piece.place.row -= window.row;
+    }
+}
 
 template <typename Body>
 void Source::Impl::borrow(const Piece& piece, const Body& body) const {
@@ -321,53 +310,6 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
     return result;
 }
 
-namespace {
-
-/// Whether some posts have no place, which is said; where none has one, it is an error.
-void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
-    constexpr const char* kRemedy =
-        "pass the right one with --crs EPSG:n, or bring it to degrees with gdalwarp -t_srs "
-        "EPSG:4326";
-    const double share = grid.share_on_earth();
-    leaves_earth = share < 1;
-    if (share == 0)
-        refuse(about.path, fmt::format("none of its posts is on the Earth in {}; {}",
-                                       grid.crs().name(), kRemedy));
-    const glm::dvec2 spacing_m = grid.post_spacing_m();
-    if (!std::isfinite(spacing_m.x + spacing_m.y))
-        refuse(about.path,
-               fmt::format("cells so large that the centre has no neighbour on the Earth in {}; {}",
-                           grid.crs().name(), kRemedy));
-    if (!(spacing_m.x > 0 && spacing_m.y > 0))
-        refuse(about.path, "cells so small that neighbouring posts are at the same place");
-    if (!leaves_earth) return;
-    about.holes_by.emplace_back("earth");
-    guess(about, fmt::format("some of its posts are not on the Earth in {} and are voids",
-                             grid.crs().name()));
-}
-
-/// Leaves the posts of a rectangle. Pieces keep their posts, of which some are then outside.
-void crop(std::vector<Piece>& pieces, std::optional<Grid>& grid, const std::string& text) {
-    const Bounds edges = parse_bounds(text, "--crop");
-    const Clip clip{edges.west_deg,
-                    edges.south_deg,
-                    edges.east_deg,
-                    edges.north_deg,
-                    geo::Crs::parse("EPSG:4326", "--crop"),
-                    text};
-    const Window window = window_of(*grid, clip, "--crop");
-    if (window.columns < 2 || window.rows < 2)
-        bad_input(fmt::format("--crop: {}: {} x {} posts, expected 2 x 2 at least", text,
-                              window.columns, window.rows));
-    grid = grid->part(window, window.columns, window.rows);
-    for (Piece& piece : pieces) {
-        piece.place.column -= window.column;
-        piece.place.row -= window.row;
-    }
-}
-
-}  // namespace
-
 Source::Source(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Source::Source(Source&&) noexcept = default;
 Source& Source::operator=(Source&&) noexcept = default;
@@ -403,7 +345,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
         if (i < kMaxIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
-    if (!options.crop.empty()) crop(impl->pieces, impl->grid, options.crop);
+    if (!options.crop.empty()) impl->crop(crop_of(*impl->grid, options.crop));
     settle_earth(*impl->grid, impl->about, impl->leaves_earth);
     for (std::size_t i = 0; i < opened.size(); ++i)
         if (!impl->pieces[i].resampling)

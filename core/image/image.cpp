@@ -93,7 +93,7 @@ const Format& known_format(const std::filesystem::path& path, const Encoding& en
                           printable(encoding.format.empty() ? path.string() : encoding.format)));
 }
 
-/// @param has  whether a format has what is wanted
+/// @param has  true for a format that has `what`
 /// @throws Error (BadInput) if `format` has not, naming the formats that have
 void check_has(const std::filesystem::path& path, const Format& format, const std::string& what,
                const std::function<bool(const Format&)>& has) {
