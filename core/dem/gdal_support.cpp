@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <mutex>
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/log.h"
 #include "base/text.h"
+#include "dem/gdal.h"
 #include "dem/guard.h"
 #include "dem/regular_files.h"
 
