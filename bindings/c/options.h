@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "json/object_reader.h"
+#include "scene/scene.h"
+
+namespace relevo::c {
+
+/// A JSON text of the caller's, an object whose members are read one by one.
+class Options {
+  public:
+    /// @param text  null: no members
+    /// @param who   what errors begin with
+    /// @throws Error (BadInput) for what is no JSON object
+    Options(const char* text, const std::string& who);
+    Options(const Options&) = delete;
+    Options& operator=(const Options&) = delete;
+
+    json::ObjectReader& reader() { return reader_; }
+
+  private:
+    json::Value value_;
+    json::ObjectReader reader_;
+};
+
+/// Changes a scene by a JSON text, as a shot of a job does. "format" may be there.
+/// @param text    null: no change
+/// @param folder  from which relative paths count
+/// @throws Error (BadInput)
+void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder);
+
+/// The same by a text that has the members of `dem` alone.
+void change_dem(scene::Scene& scene, const char* text);
+
+}  // namespace relevo::c
