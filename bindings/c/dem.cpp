@@ -39,9 +39,10 @@ geo::Geodetic place_of(const relevo_place* given) {
     const relevo_place place = read_struct(given, "place");
     if (!(std::abs(place.lat_deg) <= 90) || !(std::abs(place.lon_deg) <= 360) ||
         !std::isfinite(place.height_m))
-        bad_input(fmt::format("place: {:.10g}, {:.10g}: expected a latitude from -90 to 90, a "
-                              "longitude from -360 to 360 and a height",
-                              place.lat_deg, place.lon_deg));
+        bad_input(
+            fmt::format("place: {:.10g}, {:.10g}: expected a latitude from -90 to 90, a "
+                        "longitude from -360 to 360 and a height",
+                        place.lat_deg, place.lon_deg));
     return geo::geodetic_deg(place.lat_deg, place.lon_deg, place.height_m);
 }
 
@@ -80,12 +81,10 @@ relevo_result relevo_dem_open(const char* const* files, size_t count, const char
         c::need(dem, "dem") = nullptr;
         if (count == 0) throw c::BadCall{"count: expected one file or more"};
         c::need(files, "files");
-        scene::Scene named;
-        c::change_dem(named, options);
-        named.dems.clear();
+        std::vector<std::string> names;
         for (size_t i = 0; i < count; ++i)
-            named.dems.emplace_back(&c::need(files[i], "files"));
-        *dem = c::dems().add(std::make_shared<c::Dem>(std::move(named)));
+            names.emplace_back(&c::need(files[i], "files"));
+        *dem = c::dems().add(std::make_shared<c::Dem>(c::read_dem(names, options)));
     });
 }
 
@@ -145,8 +144,7 @@ relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size_t count) {
     });
 }
 
-relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
-                                double* height_m) {
+relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg, double* height_m) {
     return c::guarded("relevo_dem_height", [&] {
         c::need(height_m, "height_m") = std::nan("");
         relevo_place place{};

@@ -27,13 +27,22 @@ void change_scene(scene::Scene& scene, const char* text, const std::filesystem::
     if (text) take(scene, json::parse("scene", kText, text), folder);
 }
 
-void change_dem(scene::Scene& scene, const char* text) {
-    if (!text) return;
+scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
+    json::Value list;
+    list.kind = json::Value::Kind::Array;
+    for (const std::string& file : files) {
+        json::Value& item = list.items.emplace_back();
+        item.kind = json::Value::Kind::String;
+        item.text = file;
+    }
+    json::Value dem = json::parse("dem", kText, text ? text : "{}");
+    if (dem.kind == json::Value::Kind::Object) dem.members.emplace_back("files", std::move(list));
     json::Value whole;
     whole.kind = json::Value::Kind::Object;
-    whole.line = 1;
-    whole.members.emplace_back("dem", json::parse("dem", kText, text));
+    whole.members.emplace_back("dem", std::move(dem));
+    scene::Scene scene;
     take(scene, whole, {});
+    return scene;
 }
 
 }  // namespace relevo::c

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "json/object_reader.h"
 #include "scene/scene.h"
@@ -31,7 +32,9 @@ class Options {
 /// @throws Error (BadInput)
 void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder);
 
-/// The same by a text that has the members of `dem` alone.
-void change_dem(scene::Scene& scene, const char* text);
+/// A scene of a DEM.
+/// @param text  members of `dem` without `files`; null: none
+/// @throws Error (BadInput)
+scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
 
 }  // namespace relevo::c

@@ -78,8 +78,8 @@ class RasterCall {
         const double all_posts = static_cast<double>(columns_ * rows_);
         std::vector<dem::Window> parts{all()};
         if (!posts().in_memory())
-            parts = session::raster_parts(
-                all(), dem_->named().dem.max_posts / session::kPostsAPart);
+            parts =
+                session::raster_parts(all(), dem_->named().dem.max_posts / session::kPostsAPart);
         for (const dem::Window& part : parts) {
             progress_.begin_part(static_cast<double>(part.columns) * part.rows / all_posts);
             make(part);
@@ -90,8 +90,8 @@ class RasterCall {
         for (int row = 0; row < part.rows; ++row) {
             const auto from = values.row(row);
             const std::size_t to_row = band * rows_ + static_cast<std::size_t>(part.row + row);
-            std::ranges::copy(from, values_ + to_row * columns_ +
-                                        static_cast<std::size_t>(part.column));
+            std::ranges::copy(from,
+                              values_ + to_row * columns_ + static_cast<std::size_t>(part.column));
         }
     }
 
@@ -166,8 +166,8 @@ void take_days(json::ObjectReader& reader, HoursWanted& wanted) {
     const std::string date = reader.string("date", "");
     wanted.from = reader.string("from", "");
     wanted.to = reader.string("to", "");
-    const int year = static_cast<int>(
-        reader.number("year", 0, sun::kFirstYear, sun::kLastYear, true));
+    const int year =
+        static_cast<int>(reader.number("year", 0, sun::kFirstYear, sun::kLastYear, true));
     const int given = !date.empty() + (!wanted.from.empty() || !wanted.to.empty()) + (year != 0);
     if (given != 1 || wanted.from.empty() != wanted.to.empty())
         reader.fail(reader.line(), "", "expected one of date, from and to, or year");
@@ -237,9 +237,9 @@ void sun_hours(RasterCall& call, HoursWanted& wanted) {
                                      .soft = false,
                                      .part = {},
                                      .done = {}};
-    call.warn_of(light::terrain_beyond(posts, call.all(),
-                                       light::suns_of(posts.grid(), begin, end), sight),
-                 light::kHides);
+    call.warn_of(
+        light::terrain_beyond(posts, call.all(), light::suns_of(posts.grid(), begin, end), sight),
+        light::kHides);
     const light::SunHoursPlan plan(posts, begin, end, wanted.options);
     std::int64_t holes = 0;
     std::string definition;
@@ -259,8 +259,8 @@ void sky_view(RasterCall& call, const char* text) {
     Options options(text, "relevo_sky_view");
     json::ObjectReader& reader = options.reader();
     light::SkyViewOptions wanted;
-    wanted.directions = static_cast<int>(
-        reader.number("directions", session::kSkyDirections, 4, 3600, true));
+    wanted.directions =
+        static_cast<int>(reader.number("directions", session::kSkyDirections, 4, 3600, true));
     wanted.level = reader.boolean("level", false);
     Air air;
     air.take_terrestrial(reader);

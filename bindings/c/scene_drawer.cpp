@@ -94,8 +94,8 @@ DrawnData SceneDrawer::data() {
     if (scene.stamps.margin || scene.view.stereo != scene::Stereo::None ||
         scene.view.panorama != scene::Panorama::None)
         bad_input(
-            "depth, positions and normals: not of stereo pairs, panoramas and pictures with a "
-            "margin");
+            "depth, positions and normals: not of stereo pairs, panoramas and pictures with "
+            "--margin");
     session::Session& session = data_.of(shot_);
     session.show(scene, shot_.utc);
     return {session.make_picture().layers, session.ground().frame.origin()};

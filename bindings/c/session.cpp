@@ -24,8 +24,8 @@ class SceneOnThread {
     SceneOnThread(scene::Scene scene, std::shared_ptr<Dem> dem, const std::string& device,
                   const std::filesystem::path& folder) {
         thread_.run([&] {
-            drawer_ = std::make_unique<SceneDrawer>(std::move(scene), std::move(dem), device,
-                                                    folder);
+            drawer_ =
+                std::make_unique<SceneDrawer>(std::move(scene), std::move(dem), device, folder);
         });
     }
     ~SceneOnThread() {
@@ -136,9 +136,10 @@ relevo_result relevo_resize(relevo_session* session, int32_t columns, int32_t ro
     return c::guarded("relevo_resize", [&] {
         const auto of = c::sessions().get(session, "session");
         if (columns < 1 || rows < 1 || columns > scene::kMaxSide_px || rows > scene::kMaxSide_px)
-            bad_input(fmt::format("relevo_resize: expected 1 to {} columns and rows but got {} and "
-                                  "{}",
-                                  scene::kMaxSide_px, columns, rows));
+            bad_input(
+                fmt::format("relevo_resize: expected 1 to {} columns and rows but got {} and "
+                            "{}",
+                            scene::kMaxSide_px, columns, rows));
         of->run([&](c::SceneDrawer& drawer) { drawer.resize(columns, rows); });
     });
 }

@@ -35,8 +35,8 @@ double seconds_of(sun::Instant instant) {
 sun::Refraction refraction_of(const char* model, const geo::Geodetic& place) {
     const std::string name = model ? model : "standard";
     if (!contains(std::vector<std::string>{"standard", "saemundsson", "none"}, name))
-        bad_input(fmt::format("refraction: expected standard, saemundsson or none but got {}",
-                              name));
+        bad_input(
+            fmt::format("refraction: expected standard, saemundsson or none but got {}", name));
     return session::refraction_at(name, place);
 }
 
@@ -51,8 +51,8 @@ light::HorizonOptions horizon_options(const char* text, size_t directions) {
     json::ObjectReader& reader = options.reader();
     light::HorizonOptions result;
     result.eye_height_m = reader.number("eye_height", 0, 0, 10'000, false);
-    result.refraction = reader.number("terrestrial_refraction", session::kTerrestrialRefraction,
-                                      -1, 0.9, false);
+    result.refraction =
+        reader.number("terrestrial_refraction", session::kTerrestrialRefraction, -1, 0.9, false);
     constexpr size_t kFew = 30;  // a direction by itself takes a thirtieth of all of them
     result.few_directions = directions < kFew;
     reader.finish();
@@ -86,9 +86,8 @@ relevo_result relevo_sun_events(const relevo_place* place, const char* date, con
         c::need(count, "count") = 0;
         if (capacity > 0) c::need(events, "events");
         const geo::Geodetic at = c::place_of(place);
-        const sun::Day day =
-            sun::day_events(sun::parse_date(&c::need(date, "date")),
-                            session::zone_of(zone ? zone : "", at).zone, at);
+        const sun::Day day = sun::day_events(sun::parse_date(&c::need(date, "date")),
+                                             session::zone_of(zone ? zone : "", at).zone, at);
         *count = day.events.size();
         for (size_t i = 0; i < std::min(capacity, day.events.size()); ++i)
             events[i] = c::event_of(day.events[i]);

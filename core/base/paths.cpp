@@ -25,8 +25,9 @@ const std::filesystem::path& prefix() {
     static const std::filesystem::path found = [] {
         std::error_code ignored;
         const std::filesystem::path above = own_file().parent_path().parent_path();
-        const bool deeper = !std::filesystem::exists(above / "share" / "relevo", ignored) &&
-                            std::filesystem::exists(above.parent_path() / "share" / "relevo", ignored);
+        const bool deeper =
+            !std::filesystem::exists(above / "share" / "relevo", ignored) &&
+            std::filesystem::exists(above.parent_path() / "share" / "relevo", ignored);
         return deeper ? above.parent_path() : above;
     }();
     return found;

@@ -53,7 +53,8 @@ void hold_blocks(std::int64_t bytes) {
 }
 
 void spare_blocks() {
-    if (!shared && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() <= kBlockBytes)
+    if (!shared && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) &&
+        GDALGetCacheMax64() <= kBlockBytes)
         GDALSetCacheMax64(kBlockBytes / 2);
 }
 

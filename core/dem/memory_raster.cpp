@@ -46,8 +46,8 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     band->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
     band->SetUnitType("m");
     // GDAL's interface has no const here; it reads.
-    if (band->RasterIO(GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m),
-                       columns, rows, GDT_Float32, 0, 0, nullptr) != CE_None)
+    if (band->RasterIO(GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns, rows,
+                       GDT_Float32, 0, 0, nullptr) != CE_None)
         refuse(messages, name_);
 }
 

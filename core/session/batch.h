@@ -16,8 +16,8 @@
 /// Draws many pictures, one after the other.
 namespace relevo::session {
 
-/// Completes a shot's scene as it is recorded in its picture: time in UTC, absolute paths, installed
-/// effects only.
+/// Completes a shot's scene as it is recorded in its picture: time in UTC, absolute paths,
+/// installed effects only.
 /// @throws Error (BadInput) for unknown effects and parameters
 void settle(scene::Shot& shot, SceneTimes& times, SceneInputs& inputs);
 

@@ -1,12 +1,12 @@
 // Prints the mean hours of direct sun over a DEM on a day: sun_hours DEM DATE
-#include <relevo/relevo.h>
-
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <relevo/relevo.h>
 
 namespace {
 
@@ -37,8 +37,8 @@ int main(int argc, char** argv) try {
     std::vector<float> hours(static_cast<std::size_t>(grid.columns) *
                              static_cast<std::size_t>(grid.rows));
     const std::string options = std::string("{\"date\": \"") + argv[2] + "\"}";
-    check(relevo_sun_hours(dem.get(), options.c_str(), hours.data(), hours.size(), nullptr,
-                           nullptr));
+    check(
+        relevo_sun_hours(dem.get(), options.c_str(), hours.data(), hours.size(), nullptr, nullptr));
     double sum = 0, posts = 0;
     for (const float value : hours)
         if (!std::isnan(value)) {

@@ -1,4 +1,5 @@
-/* Relevo as a library, in C (C99 and later, C++): DEMs, figures of sunlight over them, and pictures.
+/* Relevo as a library, in C (C99 and later, C++): DEMs, figures of sunlight over them, and
+ * pictures.
  *
  *   relevo_session* session;
  *   if (relevo_open("{\"dem\": {\"files\": [\"alps.tif\"]}}", NULL, &session) != RELEVO_RESULT_OK)
@@ -51,11 +52,11 @@ extern "C" {
 
 typedef int32_t relevo_result;
 #define RELEVO_RESULT_OK 0
-#define RELEVO_RESULT_FAILED 1        /* the system or a driver refuses; a callback threw */
-#define RELEVO_RESULT_BAD_CALL 2      /* the call itself: null, a closed handle, a wrong size */
-#define RELEVO_RESULT_BAD_INPUT 3     /* a file, an option or a value */
-#define RELEVO_RESULT_NO_DEVICE 4     /* no GL device that can draw */
-#define RELEVO_RESULT_CANCELLED 5     /* by relevo_progress */
+#define RELEVO_RESULT_FAILED 1    /* the system or a driver refuses; a callback threw */
+#define RELEVO_RESULT_BAD_CALL 2  /* the call itself: null, a closed handle, a wrong size */
+#define RELEVO_RESULT_BAD_INPUT 3 /* a file, an option or a value */
+#define RELEVO_RESULT_NO_DEVICE 4 /* no GL device that can draw */
+#define RELEVO_RESULT_CANCELLED 5 /* by relevo_progress */
 #define RELEVO_RESULT_OUT_OF_MEMORY 6
 
 /* Version of the library that is loaded: "0.1.0". */
@@ -110,9 +111,9 @@ RELEVO_API void relevo_dem_close(relevo_dem* dem);
 typedef struct relevo_grid {
     size_t size;
     int32_t columns, rows;
-    double transform[6];                     /* as in relevo_raster */
+    double transform[6]; /* as in relevo_raster */
     double centre_lat_deg, centre_lon_deg;
-    double column_spacing_m, row_spacing_m;  /* ground between posts at the centre */
+    double column_spacing_m, row_spacing_m; /* ground between posts at the centre */
 } relevo_grid;
 RELEVO_API relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid);
 
@@ -152,7 +153,7 @@ typedef struct relevo_event {
 } relevo_event;
 /* Events of a local day in order of time, by the rule of the Naval Observatory.
  * @param date      "2026-06-21"
- * @param zone      "Europe/Zurich", "UTC+2"; null: that of the place
+ * @param zone      "Europe/Zurich", "+02:00"; null: that of the place
  * @param capacity  of `events`; as many as fit are filled
  * @param count     receives how many there are */
 RELEVO_API relevo_result relevo_sun_events(const relevo_place* place, const char* date,
@@ -222,8 +223,8 @@ RELEVO_API relevo_result relevo_open(const char* scene, const relevo_open_option
 RELEVO_API void relevo_close(relevo_session* session);
 
 /* Changes a scene by a part of one, such as {"time": {"at": "2026-12-21T15:00Z"}}, as `shots` of a
- * job do (docs/jobs.md): a camera replaces the one before, effects are added, other members take the
- * place of the scene's. After an error the scene is as it was.
+ * job do (docs/jobs.md): a camera replaces the one before, effects are added, other members take
+ * the place of the scene's. After an error the scene is as it was.
  * @param change  JSON. Another `dem` is an error: open another session */
 RELEVO_API relevo_result relevo_set(relevo_session* session, const char* change);
 
@@ -238,7 +239,8 @@ RELEVO_API relevo_result relevo_scene(relevo_session* session, const char** scen
 RELEVO_API relevo_result relevo_picture_size(relevo_session* session, int32_t* columns,
                                              int32_t* rows);
 
-/* What relevo_draw_picture() fills: rows from the top. Null: not wanted. Counts are numbers of elements. */
+/* What relevo_draw_picture() fills: rows from the top. Null: not wanted. Counts are numbers of
+ * elements. */
 typedef struct relevo_picture {
     size_t size;
     uint8_t* rgba; /* 4 a pixel: sRGB, and alpha, which is 255 unless the scene is transparent */
