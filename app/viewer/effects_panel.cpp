@@ -131,8 +131,9 @@ void param_row(State& state, const Param& param, bool on) {
     ParamValue value = state.effects->values.value(param.address);
     row_label(param.label.empty() ? param.address : param.label);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
-                          param.is_static ? tr("\nEach value compiles another shader.") : "");
+        ImGui::SetTooltip("%s\n%s%s%s", param.address.c_str(), param.description.c_str(),
+                          param.is_static ? "\n" : "",
+                          param.is_static ? tr("Each value compiles another shader.") : "");
     if (widget(param, value) && shader::is_valid(param, value))
         state.set_value(param, shader::format_value(param, value), on);
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();

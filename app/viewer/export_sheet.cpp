@@ -207,7 +207,8 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
     ImGui::SetNextWindowPos({window_px.x - line, 5.5f * line}, ImGuiCond_Appearing, {1, 0});
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
     if (ImGui::Begin(tr_label("Export a picture"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
-        ImGui::PushItemWidth(-4 * line);
+        ImGui::PushItemWidth(-widest({tr("What"), tr("Size"), tr("Pixels"), tr("Format"),
+                                      tr("Quality"), tr("Samples"), tr("Title"), tr("Name")}));
         kind_field();
         size_fields(window_px);
         format_fields();

@@ -175,7 +175,8 @@ void ImportSheet::draw(glm::vec2 size_px) {
         const float fields_px = 0.55f * ImGui::GetContentRegionAvail().x;
         const float height_px = ImGui::GetContentRegionAvail().y - 1.5f * line;
         if (ImGui::BeginChild("fields", {fields_px, height_px})) {
-            ImGui::PushItemWidth(-5 * line);
+            ImGui::PushItemWidth(-widest({tr("CRS"), tr("Edges"), tr("Crop"), tr("Unit"),
+                                          tr("Nodata"), tr("Band"), tr("Encoding")}));
             crs_field();
             other_fields();
             ImGui::PopItemWidth();

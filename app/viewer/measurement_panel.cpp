@@ -216,10 +216,10 @@ void lengths(const Profile& profile, bool is_straight) {
     text += profile.has_voids
                 ? tr_format("{} over the ground without voids", length_text(profile.surface_m))
                 : tr_format("{} over the ground", length_text(profile.surface_m));
-    text += tr_format("\nfrom {} to {}", height_text(first_m), height_text(last_m));
+    text += "\n" + tr_format("from {} to {}", height_text(first_m), height_text(last_m));
     if (!std::isnan(last_m - first_m)) text += fmt::format(" ({:+.1f} m)", last_m - first_m);
-    text += tr_format("\n{:.0f} m up, {:.0f} m down\nlowest {:.0f} m, highest {:.0f} m",
-                      profile.up_m, profile.down_m, profile.lowest_m, profile.highest_m);
+    text += "\n" + tr_format("{:.0f} m up, {:.0f} m down\nlowest {:.0f} m, highest {:.0f} m",
+                             profile.up_m, profile.down_m, profile.lowest_m, profile.highest_m);
     wrapped(text);
 }
 
@@ -258,11 +258,11 @@ void measurement_panel(State& state) {
     lengths(profile, is_straight);
     if (measurement.area_m2)
         wrapped(tr_format("area {}, closed by a straight line", area_text(*measurement.area_m2)));
-    if (measurement.crosses_itself) ImGui::Text("%s", tr("no area: the outline crosses itself"));
+    if (measurement.crosses_itself) wrapped(tr("no area: the outline crosses itself"));
     if (is_straight) line_of_sight_of(measurement);
     if (ImGui::SmallButton(tr_label("Save as CSV"))) state.commands.push_back(Command::SaveProfile);
     if (!measurement.follows_cursor) return;
-    ImGui::TextDisabled("%s", tr("Click sets a corner, Backspace removes the last, M ends"));
+    wrapped(tr("Click sets a corner, Backspace removes the last, M ends"));
 }
 
 }  // namespace relevo::viewer

@@ -80,7 +80,7 @@ void recent_files(State& state) {
 
 void file_menu(State& state) {
     if (!ImGui::BeginMenu(tr_label("File"))) return;
-    item(state, tr_label("Open..."), "Ctrl+O", Command::Open);
+    item(state, tr_label("Open..."), tr("Ctrl+O"), Command::Open);
     recent_files(state);
     item(state, tr_label("How this DEM is read..."), nullptr, Command::HowToRead);
     item(state, tr_label("Next DEM in the folder"), tr("Ctrl+Page down"), Command::NextFile);
@@ -88,15 +88,15 @@ void file_menu(State& state) {
     item(state, tr_label("Reload effects"), "F5", Command::ReadAgain);
     ImGui::Separator();
     item(state, tr_label("Save picture"), "F12", Command::TakePicture);
-    item(state, tr_label("Export a picture..."), "Ctrl+P", Command::ExportPicture);
-    item(state, tr_label("Copy command"), "Ctrl+C", Command::CopyCommand);
-    item(state, tr_label("Save scene"), "Ctrl+S", Command::SaveScene);
-    item(state, tr_label("Export overlay as GeoTIFF"), "Ctrl+E", Command::SaveOverlay, false,
+    item(state, tr_label("Export a picture..."), tr("Ctrl+P"), Command::ExportPicture);
+    item(state, tr_label("Copy command"), tr("Ctrl+C"), Command::CopyCommand);
+    item(state, tr_label("Save scene"), tr("Ctrl+S"), Command::SaveScene);
+    item(state, tr_label("Export overlay as GeoTIFF"), tr("Ctrl+E"), Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
-    item(state, tr_label("Save the day as a job"), "Ctrl+J", Command::SaveJob);
+    item(state, tr_label("Save the day as a job"), tr("Ctrl+J"), Command::SaveJob);
     item(state, tr_label("Film..."), "F", Command::Film);
     ImGui::Separator();
-    item(state, tr_label("Quit"), "Ctrl+Q", Command::Quit);
+    item(state, tr_label("Quit"), tr("Ctrl+Q"), Command::Quit);
     ImGui::EndMenu();
 }
 
@@ -134,10 +134,10 @@ void view_menu(State& state) {
     item(state, tr_label("North up"), "N", Command::NorthUp);
     item(state, tr_label("Top view"), "T", Command::FromAbove);
     item(state, tr_label("Walk at eye height"), "G", Command::Walk);
-    item(state, tr_label("Go to a place..."), "Ctrl+F", Command::Find);
+    item(state, tr_label("Go to a place..."), tr("Ctrl+F"), Command::Find);
     ImGui::Separator();
-    item(state, tr_label("Undo"), "Ctrl+Z", Command::Undo, false, state.can_undo);
-    item(state, tr_label("Redo"), "Ctrl+Y", Command::Redo, false, state.can_redo);
+    item(state, tr_label("Undo"), tr("Ctrl+Z"), Command::Undo, false, state.can_undo);
+    item(state, tr_label("Redo"), tr("Ctrl+Y"), Command::Redo, false, state.can_redo);
     ImGui::Separator();
     item(state, tr_label("Save view"), "B", Command::SaveView);
     saved_views(state);
@@ -147,7 +147,7 @@ void view_menu(State& state) {
 void show_menu(State& state) {
     if (!ImGui::BeginMenu(tr_label("Show"))) return;
     Settings& settings = state.settings;
-    item(state, tr_label("Panels"), "Tab", Command::Panels, settings.panels);
+    item(state, tr_label("Panels"), tr("Tab"), Command::Panels, settings.panels);
     item(state, tr_label("Keyboard in the panels"), "F6", Command::PanelKeys);
     item(state, tr_label("Horizon and year of the point"), "P", Command::Charts, settings.charts);
     item(state, tr_label("Sun hours of the day"), "O", Command::Overlay,

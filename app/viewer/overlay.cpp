@@ -84,8 +84,8 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     list.AddCircleFilled(middle, kNorthRadius_px, kShade);
     list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
     list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
-    const ImVec2 letter = tip(north, 26);
-    list.AddText({letter.x - 5, letter.y - 8}, kInk, compass_text(0));
+    const ImVec2 letter = tip(north, 26), letter_px = ImGui::CalcTextSize(compass_text(0));
+    list.AddText({letter.x - letter_px.x / 2, letter.y - letter_px.y / 2}, kInk, compass_text(0));
     if (!middle_m) return;
     // A scale bar across the view, at the depth of the ground in the centre.
     const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);

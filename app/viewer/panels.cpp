@@ -30,7 +30,9 @@ void export_panel(State& state) {
 /// Keeps a constant height for the panel's text, so that panels below do not move.
 void roomy_point_panel(State& state) {
     const float top = ImGui::GetCursorPosY();
+    ImGui::PushTextWrapPos();
     point_panel(state);
+    ImGui::PopTextWrapPos();
     const float used = ImGui::GetCursorPosY() - top;
     state.point_room_px = state.chosen ? std::max(state.point_room_px, used) : 0;
     ImGui::SetCursorPosY(top + std::max(state.point_room_px, used));

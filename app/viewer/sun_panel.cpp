@@ -52,7 +52,8 @@ void set_date(State& state, sun::Date date) {
 
 void calendar(State& state, sun::Date date) {
     // As wide for any date, so that what stands beside it stays where it is.
-    const float width = ImGui::CalcTextSize("30 September 2000").x + ImGui::GetFontSize();
+    // Translators: the widest date.
+    const float width = ImGui::CalcTextSize(tr("30 September 2000")).x + ImGui::GetFontSize();
     if (ImGui::Button(fmt::format("{} {} {}###date", date.day,
                                   tr(kMonths[static_cast<std::size_t>(date.month - 1)]), date.year)
                           .c_str(),
@@ -171,8 +172,8 @@ void sun_panel(State& state) {
 
     int day = day_of_year(now.date);
     const int days = sun::days_between({now.date.year, 1, 1}, {now.date.year + 1, 1, 1});
-    if (ImGui::SliderInt("##day", &day, 0, days - 1,
-                         kMonths[static_cast<std::size_t>(now.date.month - 1)]))
+    const char* const month = tr(kMonths[static_cast<std::size_t>(now.date.month - 1)]);
+    if (ImGui::SliderInt("##day", &day, 0, days - 1, slider_format(month, "").c_str()))
         set_date(state, date_of(now.date.year, std::clamp(day, 0, days - 1)));
     state.sun_moves = state.sun_moves || ImGui::IsItemActive();
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();

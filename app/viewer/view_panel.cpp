@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "scene/options.h"
+#include "viewer/sheet.h"
 #include "viewer/state.h"
 #include "viewer/translation.h"
 
@@ -91,7 +92,8 @@ void zone(State& state) {
 }  // namespace
 
 void view_panel(State& state, double aspect) {
-    ImGui::PushItemWidth(-ImGui::CalcTextSize("Exposure  ").x);
+    ImGui::PushItemWidth(
+        -widest({tr("Lens"), tr("Sensor"), tr("Exposure"), tr("Heights"), tr("Zone")}));
     lens(state, aspect);
     exposure(state);
     exaggeration(state);
