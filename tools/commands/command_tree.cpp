@@ -31,7 +31,8 @@ const std::vector<Row>& rows() {
     static const std::vector<Row> all = {
         {Kind::File,
          {"DEM", "-o", "--scene", "--save-scene", "--from", "--timings", "--overlay", "--points",
-          "--times", "--along", "--save-job", "--contact-sheet", "JOB", "A", "B", "GOLDEN"}},
+          "--times", "--along", "--save-job", "--contact-sheet", "JOB", "A", "B", "GOLDEN",
+          "OUTPUT"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},
