@@ -53,6 +53,8 @@ Installed installed();
 /// The manual of a command: "relevo-sun-hours.1" in the language of man.
 /// @param date  "2026-11-26"
 std::string manual(const Command& command, const std::string& version, const std::string& date);
+/// The same as a page of Markdown.
+std::string reference_page(const Command& command);
 /// "relevo-sun-hours".
 std::string manual_name(const Command& command);
 

@@ -23,7 +23,8 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 void write_manuals(const Command& command, const std::filesystem::path& folder,
                    const std::string& date) {
-    write(folder / (manual_name(command) + ".1"), manual(command, RELEVO_VERSION, date));
+    write(folder / "man1" / (manual_name(command) + ".1"), manual(command, RELEVO_VERSION, date));
+    write(folder / "reference" / (manual_name(command) + ".md"), reference_page(command));
     for (const Command& inner : command.commands)
         write_manuals(inner, folder, date);
 }
@@ -37,7 +38,7 @@ int main(int argc, char** argv) try {
     const std::filesystem::path folder = argv[1];
     const Command all = all_commands();
     const Installed values = installed();
-    write_manuals(all, folder / "man1", argv[2]);
+    write_manuals(all, folder, argv[2]);
     write(folder / "bash/relevo", bash_completion(all, values));
     write(folder / "zsh/_relevo", zsh_completion(all, values));
     write(folder / "fish/relevo.fish", fish_completion(all, values));
