@@ -2,8 +2,9 @@
 project = "Relevo"
 author = copyright = "The Relevo authors"
 extensions = ["myst_parser"]
-myst_enable_extensions = ["dollarmath"]
+myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
+smartquotes = False  # "--clip" is an option
 html_theme = "sphinx_rtd_theme"
 html_title = "Relevo"
 html_static_path = []

@@ -11,26 +11,25 @@
 namespace relevo::commands {
 namespace {
 
-/// A text of a table's cell.
+/// A text without Markdown.
 std::string escaped(std::string_view text) {
     std::string result;
     for (const char c : text) {
-        if (c == '|' || c == '*' || c == '_' || c == '<' || c == '[' || c == '`') result += '\\';
+        if (c == '*' || c == '_' || c == '<' || c == '[' || c == '`') result += '\\';
         result += c;
     }
     return result;
 }
 
-void add_table(const std::vector<const Option*>& options, std::string& text) {
-    text += "| | |\n|---|---|\n";
+/// A list of definitions, an extension of Markdown that the site has.
+void add_options(const std::vector<const Option*>& options, std::string& text) {
     for (const Option* option : options) {
         const std::string names = fmt::format("{}", fmt::join(option->names, "`, `"));
         const std::string value =
             option->value.empty() ? "" : (names.empty() ? "" : " ") + option->value;
-        text += fmt::format("| `{}{}`{} | {}{} |\n", names, value, option->many ? " ..." : "",
+        text += fmt::format("`{}{}`{}\n: {}{}.\n\n", names, value, option->many ? " ..." : "",
                             escaped(option->text), option->needed ? " (required)" : "");
     }
-    text += "\n";
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ std::string reference_page(const Command& command) {
         arguments.push_back(&positional);
     if (!arguments.empty()) {
         text += "## Arguments\n\n";
-        add_table(arguments, text);
+        add_options(arguments, text);
     }
     std::vector<std::string> groups;
     for (const Option& option : command.options)
@@ -56,7 +55,7 @@ std::string reference_page(const Command& command) {
         std::vector<const Option*> members;
         for (const Option& option : command.options)
             if (option.group == group) members.push_back(&option);
-        add_table(members, text);
+        add_options(members, text);
     }
     return text;
 }
