@@ -284,6 +284,7 @@ void add_verbs(CLI::App& app) {
     add_info(line);
     add_sun(line);
     add_plugins(line);
+    add_thumbnail(line);
     add_doctor(line);
     check_values(app);
 }

@@ -15,5 +15,6 @@ void add_doctor(Verb app);
 void add_info(Verb app);
 void add_sun(Verb app);
 void add_plugins(Verb app);
+void add_thumbnail(Verb app);
 
 }  // namespace relevo::cli

@@ -58,6 +58,7 @@ RELEVO_GDAL(VSIFreeFilesystemPluginCallbacksStruct);
 RELEVO_GDAL(VSIInstallPluginHandler);
 RELEVO_GDAL(VSIReadDirRecursive);
 RELEVO_GDAL(VSIStatL);
+RELEVO_GDAL(VSIUnlink);
 
 RELEVO_GDAL(GDALAllRegister);
 RELEVO_GDAL(GDALClose);
@@ -153,8 +154,10 @@ RELEVO_GDAL(OSRDestroySpatialReference);
 RELEVO_GDAL(OSRExportToWkt);
 RELEVO_GDAL(OSRExportToWktEx);
 RELEVO_GDAL(OSRGetDataAxisToSRSAxisMapping);
+RELEVO_GDAL(OSRGetLinearUnits);
 RELEVO_GDAL(OSRGetName);
 RELEVO_GDAL(OSRGetPROJVersion);
+RELEVO_GDAL(OSRIsGeographic);
 RELEVO_GDAL(OSRIsLocal);
 RELEVO_GDAL(OSRNewSpatialReference);
 RELEVO_GDAL(OSRSetAxisMappingStrategy);

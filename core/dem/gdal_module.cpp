@@ -113,7 +113,7 @@ void disarm(bool (*is_local_file_system)(std::string_view name)) {
 void allow_remote() {
     const std::lock_guard lock(mutex());
     Disarmed& all = disarmed();
-    if (std::exchange(all.remote_allowed, true)) return;
+    if (all.drivers.empty() || std::exchange(all.remote_allowed, true)) return;
     for (const auto& [found, open] : all.drivers)
         if (found != driver("MEM")) found->pfnOpen = open;
     for (const auto& [name, handler] : all.systems)
