@@ -77,6 +77,9 @@ TEST_F(Figures, HoursAndIrradiationAreThoseOfTheProgram) {
     EXPECT_EQ(json["holes"], 0);
     EXPECT_TRUE(std::string(json["definition"]).find("irradiation") != std::string::npos);
     EXPECT_TRUE(json.contains("beyond"));
+    ASSERT_EQ(json["bands"].size(), 3U);
+    EXPECT_EQ(json["bands"][2]["name"], "global irradiation");
+    EXPECT_EQ(json["bands"][2]["unit"], "kWh/m2");
 }
 
 TEST_F(Figures, AYearTakesDirectionsAsInTheProgram) {
@@ -119,6 +122,36 @@ TEST_F(Figures, ADemFromMemoryGivesTheSame) {
         R"({"time": {"at": "2026-06-21T14:00Z"}, "picture": {"size": [96, 64]}})";
     EXPECT_EQ(draw(open_session(dem_.get(), scene).get()).rgba,
               draw(open_session(copy.get(), scene).get()).rgba);
+}
+
+TEST(Heights, AreReadAsTheOptionsSay) {
+    std::vector<float> heights(12, 1000.0F);
+    heights[5] = -5;
+    auto raster = sized<relevo_raster>();
+    raster.heights_m = heights.data();
+    raster.count = 12;
+    raster.columns = 4;
+    raster.rows = 3;
+    raster.crs = "EPSG:32632";
+    const double transform[6] = {600000, 30, 0, 5200000, 0, -30};
+    std::copy_n(transform, 6, raster.transform);
+    raster.options = R"({"unit": "ft", "nodata": -5})";
+    relevo_dem* made = nullptr;
+    expect_ok(relevo_dem_from_heights(&raster, &made));
+    const DemHandle dem(made);
+    std::vector<float> read(12);
+    expect_ok(relevo_dem_read(dem.get(), read.data(), 12));
+    EXPECT_FLOAT_EQ(read[0], 304.8F);
+    EXPECT_TRUE(std::isnan(read[5]));
+    const char* wkt = nullptr;
+    expect_ok(relevo_dem_wkt(dem.get(), &wkt));
+    EXPECT_EQ(std::string(wkt).rfind("PROJCRS[\"WGS 84 / UTM zone 32N\"", 0), 0U) << wkt;
+    raster.options = R"({"crs": "EPSG:4326"})";
+    expect_error(relevo_dem_from_heights(&raster, &made), RELEVO_RESULT_BAD_CALL,
+                 "relevo_dem_from_heights: heights.options: crs: expected none");
+    raster.size = offsetof(relevo_raster, options);  // of an earlier version
+    expect_ok(relevo_dem_from_heights(&raster, &made));
+    relevo_dem_close(made);
 }
 
 TEST_F(Figures, ThePositionIsThatOfTheProgram) {
