@@ -21,6 +21,18 @@ std::atomic<pid_t>& user() {
     return process;
 }
 
+/// Whether Python ends.
+std::atomic<bool>& ending() {
+    static std::atomic<bool> yes{false};
+    return yes;
+}
+
+/// Calls under way. The GIL guards it.
+int& calls_under_way() {
+    static int count = 0;
+    return count;
+}
+
 struct Messages {
     std::mutex mutex;
     std::vector<std::pair<int, std::string>> kept;
@@ -71,7 +83,7 @@ class Work {
     static std::int32_t done(void* work, double share) {
         auto* const self = static_cast<Work*>(work);
         self->share_ = share;
-        return self->cancelled_ ? 1 : 0;
+        return self->cancelled_ || ending() ? 1 : 0;
     }
 
     void run() {
@@ -131,16 +143,22 @@ bool is_fork() {
     return process != 0 && process != getpid();
 }
 
-void use_library() {
+Calling::Calling() {
+    if (ending()) throw LibraryError{RELEVO_RESULT_BAD_CALL, "relevo: Python ends"};
     if (is_fork())
         throw LibraryError{RELEVO_RESULT_BAD_CALL,
                            "relevo: this process was forked after relevo was used, and its threads "
                            "are not here; start processes by multiprocessing's \"spawn\""};
     user() = getpid();
+    ++calls_under_way();
+}
+
+Calling::~Calling() {
+    --calls_under_way();
 }
 
 std::string call_long(const py::object& progress, LongCall call_library) {
-    use_library();
+    const Calling calling;
     if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0)
         throw LibraryError{RELEVO_RESULT_BAD_CALL, "progress: expected a function or None"};
     auto work = std::make_unique<Work>(std::move(call_library));
@@ -155,7 +173,13 @@ std::string call_long(const py::object& progress, LongCall call_library) {
     return work->result();
 }
 
-void finish_work() {
+void finish_calls() {
+    if (is_fork()) return;
+    ending() = true;
+    while (calls_under_way() > 0) {
+        const py::gil_scoped_release released;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     abandoned().clear();
 }
 
@@ -164,6 +188,7 @@ void keep_messages() {
 }
 
 std::vector<std::pair<int, std::string>> take_messages() {
+    if (is_fork()) return {};  // another thread may have held the lock
     const std::lock_guard lock(messages().mutex);
     return std::exchange(messages().kept, {});
 }

@@ -25,14 +25,22 @@ struct LibraryError {
 /// @throws LibraryError with the library's sentence
 void check(relevo_result result);
 
-/// @throws LibraryError in a process that was forked after the library was used: its threads are
-///     not there
-void use_library();
+/// A call under way. Requires the GIL at its beginning and end.
+class Calling {
+  public:
+    /// @throws LibraryError when Python ends, and in a process that was forked after the library
+    /// was
+    ///     used: its threads are not there
+    Calling();
+    ~Calling();
+    Calling(const Calling&) = delete;
+    Calling& operator=(const Calling&) = delete;
+};
 
 /// Does a call without the GIL. @throws LibraryError
 template <typename Call>
 void call(const Call& call_library) {
-    use_library();
+    const Calling calling;
     const py::gil_scoped_release released;
     check(call_library());
 }
@@ -48,8 +56,9 @@ using LongCall = std::function<relevo_result(const relevo_progress*, std::string
 /// @throws LibraryError, and what a signal's handler or `progress` raises: at once, also if the
 ///     work takes a while to notice
 std::string call_long(const py::object& progress, LongCall call_library);
-/// Waits for work that was cancelled. Before Python ends.
-void finish_work();
+/// Cancels all work and waits for its end: before Python ends, because threads that are then in a
+/// call would end the process.
+void finish_calls();
 
 /// Keeps what the library says until Python takes it.
 void keep_messages();

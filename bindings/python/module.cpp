@@ -282,7 +282,7 @@ PYBIND11_MODULE(_relevo, module) {
     using namespace relevo::python;
     py::register_local_exception_translator(to_python);
     keep_messages();
-    py::module_::import("atexit").attr("register")(py::cpp_function(finish_work));
+    py::module_::import("atexit").attr("register")(py::cpp_function(finish_calls));
     add_dem(module);
     add_session(module);
     module.def("version", &relevo_version);

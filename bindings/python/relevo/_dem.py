@@ -33,6 +33,7 @@ class Dem:
         (columns, rows), geotransform, self._centre, self._spacing_m = handle.grid()
         self._shape = rows, columns
         self._transform = Transform.from_gdal(*geotransform)
+        self._crs, self._wkt = handle.crs(), handle.wkt()
 
     @property
     def name(self) -> str:
@@ -52,12 +53,12 @@ class Dem:
     @property
     def crs(self) -> str:
         """The code of the CRS, such as "EPSG:32632", or WKT 2 where it has none."""
-        return self._handle.crs()
+        return self._crs
 
     @property
     def wkt(self) -> str:
         """The CRS as WKT 2."""
-        return self._handle.wkt()
+        return self._wkt
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -193,7 +194,7 @@ class Dem:
         units: tuple[str, ...],
         about: dict[str, Any],
     ) -> Raster:
-        return Raster(values, self._transform, self.crs, self.wkt, bands, names, units, about)
+        return Raster(values, self._transform, self._crs, self._wkt, bands, names, units, about)
 
 
 Path = Union[str, "os.PathLike[str]"]
@@ -260,7 +261,9 @@ def _paths(source: Any) -> Optional[list[str]]:
     """Names of files; None for other things."""
     if isinstance(source, (str, os.PathLike)):
         return [os.fspath(source)]
-    if isinstance(source, (list, tuple)) and source and all(isinstance(one, (str, os.PathLike)) for one in source):
+    if isinstance(source, (list, tuple)) and not source:
+        raise BadInput("source: expected one file or more")
+    if isinstance(source, (list, tuple)) and all(isinstance(one, (str, os.PathLike)) for one in source):
         return [os.fspath(one) for one in source]
     return None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 import sys
 import warnings
 from collections.abc import Iterator
@@ -46,9 +47,12 @@ class Warning(UserWarning):
 _CLASSES: dict[int, type[Error]] = {2: BadCall, 3: BadInput, 4: NoDevice, 5: Cancelled, 6: OutOfMemory}
 
 
+_MEMORY = re.compile(r"/vsimem/relevo/\d+/heights\.tif")  # the name that heights of memory have for GDAL
+
+
 def error_of(code: int, text: str) -> Error:
     """The exception for a code of the C interface. The module calls it."""
-    return _CLASSES.get(code, Error)(text)
+    return _CLASSES.get(code, Error)(_MEMORY.sub("heights", text))
 
 
 def _level_of_caller() -> int:
@@ -73,6 +77,7 @@ def messages() -> Iterator[None]:
         yield
     finally:
         for level, text in _relevo.take_messages():
+            text = _MEMORY.sub("heights", text)
             if level > _INFO:
                 warn(text)
             else:

@@ -124,15 +124,27 @@ def _number(value: Any) -> Optional[float]:
 
 
 def _transform_of(array: Any) -> Transform:
-    """From coordinates of centres; of a rotated raster from GeoTransform, where GDAL's drivers and rioxarray put it."""
-    y, x = (_step_of(array, dim) for dim in array.dims)
-    if x is not None and y is not None:
-        (first_x, step_x), (first_y, step_y) = x, y
-        return Transform(step_x, 0, first_x - 0.5 * step_x, 0, step_y, first_y - 0.5 * step_y)
+    """From coordinates of centres, and from GeoTransform, where GDAL's drivers and rioxarray put it: that one is exact,
+    but stays as it was where a part of the array is taken."""
     text = _reference_of(array).get("GeoTransform")
-    if text is None:
-        raise BadInput("transform: the DataArray has no regular coordinates; give transform=")
-    return Transform.from_gdal(*(float(number) for number in str(text).split()))
+    written = Transform.from_gdal(*(float(number) for number in str(text).split())) if text else None
+    y, x = (_step_of(array, dim) for dim in array.dims)
+    if x is None or y is None:
+        if written is None:
+            raise BadInput("transform: the DataArray has no regular coordinates; give transform=")
+        return written
+    (first_x, step_x), (first_y, step_y) = x, y
+    found = Transform(step_x, 0, first_x - 0.5 * step_x, 0, step_y, first_y - 0.5 * step_y)
+    return written if written is not None and _agree(written, found, array.shape) else found
+
+
+def _agree(written: Transform, found: Transform, shape: tuple[int, int]) -> bool:
+    """Whether corners differ by less than a thousandth of a cell."""
+    for corner in ((0, 0), (shape[1], shape[0])):
+        (x, y), (other_x, other_y) = written.apply(*corner), found.apply(*corner)
+        if abs(x - other_x) > 1e-3 * abs(found.a) or abs(y - other_y) > 1e-3 * abs(found.e):
+            return False
+    return True
 
 
 def _step_of(array: Any, dim: Any) -> Optional[tuple[float, float]]:
