@@ -174,6 +174,27 @@ TEST_F(Figures, ThePositionIsThatOfTheProgram) {
     }
 }
 
+TEST(Position, DependsOnTheCallAlone) {
+    // What one call has computed of the air is no other place's or model's.
+    const double time_s = 1781982000;  // 2026-06-20T19:00Z, the sun near the horizon
+    const auto apparent = [&](double lat_deg, double height_m, const char* model) {
+        auto place = sized<relevo_place>();
+        place.lat_deg = lat_deg;
+        place.lon_deg = 7.44;
+        place.height_m = height_m;
+        double elevation_deg = 0, apparent_deg = 0;
+        expect_ok(
+            relevo_sun_position(&place, &time_s, 1, model, nullptr, &elevation_deg, &apparent_deg));
+        return apparent_deg - elevation_deg;
+    };
+    const double first = apparent(46.95, 0, nullptr);
+    EXPECT_LT(apparent(46.95, 3000, nullptr), 0.8 * first);
+    EXPECT_NE(apparent(46.95, 0, "saemundsson"), first);
+    EXPECT_EQ(apparent(46.95, 0, "none"), 0);
+    EXPECT_NE(apparent(40, 0, "standard"), first);
+    EXPECT_EQ(apparent(46.95, 0, "standard"), first);
+}
+
 TEST_F(Figures, EventsAreThoseOfTheProgram) {
     auto place = sized<relevo_place>();
     place.lat_deg = 46.95;

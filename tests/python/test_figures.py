@@ -43,7 +43,7 @@ def test_bands_of_hours(dem, written):
     expected = written(
         "sun", "hours", dem.name, "--from", "2026-12-20", "--to", "2026-12-21", "--tz", "-05:00", "--bands",
         "hours,first,global", "--linke", 2, "--step", "2min",
-    )  # fmt: skip
+    )
     numpy.testing.assert_array_equal(values, expected)
     assert values.units == ("h", "min", "kWh/m2")
     numpy.testing.assert_array_equal(values["global"], expected[2])
@@ -76,7 +76,7 @@ def test_soft_shadow_of_an_event(dem, written):
     soft = dem.sun.shadow("sunset-30min", date="2026-12-21", soft=True, refraction="none", terrestrial_refraction=0.2)
     expected = written(
         "sun", "shadow", dem.name, "--time", "sunset-30min", "--date", "2026-12-21", "--soft", "--no-refraction", "-k", 0.2
-    )  # fmt: skip
+    )
     numpy.testing.assert_array_equal(soft, expected[0])
     assert 0 < numpy.count_nonzero((soft.values > 0) & (soft.values < 1))
     assert soft.name == "visible fraction of the solar disc"

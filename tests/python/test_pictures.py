@@ -38,7 +38,7 @@ def test_view_that_changes(dem, captured):
         expected = captured(
             "--time", "2026-06-21T12:30Z", "--size", "128x96", "--view", "az=300,el=20", "--exaggerate", 2,
             "--disable", "haze", "--transparent", "--samples", 4,
-        )  # fmt: skip
+        )
         numpy.testing.assert_array_equal(view.draw(), expected)
         assert view.scene["time"]["at"] == "2026-06-21T12:30:00Z"
         assert view.scene["exaggeration"] == 2

@@ -247,7 +247,7 @@ def open(
         text = options_text(
             "open", crs=None if crs is None else _inputs.crs_text(crs), band=band, unit=unit, nodata=nodata, **for_files,
             **common,
-        )  # fmt: skip
+        )
         with messages():
             return Dem(_relevo.open_dem(paths, text), paths[0] if len(paths) == 1 else f"{paths[0]} ...")
     _refuse(for_files, "of files alone")
