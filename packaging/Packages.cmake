@@ -66,7 +66,7 @@ relevo_package(relevo-data
 relevo_package(python3-relevo
     SUMMARY "terrain and sun: Python package"
     TEXT "DEMs, figures of sunlight over them, and pictures as NumPy arrays."
-    DEPENDS "librelevo0 ${exact}, python3, python3-numpy" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
+    DEPENDS "librelevo0 ${exact}, ${RELEVO_PYTHON_DEPENDS}" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
 set(CPACK_DEBIAN_RELEVO-DATA_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
 
@@ -74,6 +74,10 @@ set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO0_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers
     ${CMAKE_CURRENT_BINARY_DIR}/shlibs)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/shlibs "librelevo 0 librelevo0 (>= ${PROJECT_VERSION})\n")
+
+# Python's files are compiled when they are installed, so that nothing is left when they are removed.
+set(CPACK_DEBIAN_PYTHON3-RELEVO_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/python3-relevo/postinst
+    ${CMAKE_CURRENT_SOURCE_DIR}/debian/python3-relevo/prerm)
 
 # Copyright and changelog of every package.
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/changelog

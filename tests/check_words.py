@@ -14,8 +14,8 @@ import re
 import sys
 
 PAGES = ("README.md", "CHANGELOG.md", "docs/cli.md", "docs/dem-formats.md", "docs/gallery.md", "docs/jobs.md",
-         "docs/library.md", "docs/plugin-guide.md", "docs/scene.md", "docs/terms.md", "docs/translating.md",
-         "docs/viewer.md")
+         "docs/library.md", "docs/plugin-guide.md", "docs/python.md", "docs/scene.md", "docs/terms.md",
+         "docs/translating.md", "docs/viewer.md")
 MOST_COLUMNS = 120
 
 # The left column of the table, and what finds it. None: only a reader can tell.

@@ -33,7 +33,7 @@ def write_index(path, title, names):
 def put_together(build, source):
     shutil.rmtree(source, ignore_errors=True)
     source.mkdir(parents=True)
-    for name in ("README.md", "CHANGELOG.md", "docs", "data/README.md", "examples/library", *LINKED):
+    for name in ("README.md", "CHANGELOG.md", "docs", "data/README.md", "examples/library", "examples/notebook", *LINKED):
         copy(name, source)
     plugins = sorted(path.parent.name for path in ROOT.glob("plugins/*/README.md"))
     for plugin in plugins:

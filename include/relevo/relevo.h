@@ -95,13 +95,15 @@ RELEVO_API relevo_result relevo_dem_open(const char* const* files, size_t count,
 /* Heights in memory as a DEM. They are copied. */
 typedef struct relevo_raster {
     size_t size;
-    const float* heights_m; /* row by row; NaN for voids */
+    const float* heights_m; /* row by row; NaN for voids; metres, unless `options` say the unit */
     size_t count;           /* columns * rows */
     int32_t columns, rows;  /* at least 2 each */
     /* From corners of cells to coordinates of the CRS, as GDAL's geotransform:
      * x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5] row. */
     double transform[6];
     const char* crs; /* "EPSG:32632", WKT or a PROJ string */
+    /* As those of relevo_dem_open(), without crs; null: none */
+    const char* options;
 } relevo_raster;
 RELEVO_API relevo_result relevo_dem_from_heights(const relevo_raster* heights, relevo_dem** dem);
 
@@ -119,6 +121,9 @@ RELEVO_API relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid);
 
 /* The CRS: its code ("EPSG:32632") where it has one, else WKT 2. */
 RELEVO_API relevo_result relevo_dem_crs(relevo_dem* dem, const char** crs);
+
+/* The CRS as WKT 2, on one line. */
+RELEVO_API relevo_result relevo_dem_wkt(relevo_dem* dem, const char** wkt);
 
 /* All heights [m]. @param count  columns * rows */
 RELEVO_API relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size_t count);
@@ -176,8 +181,9 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
  * other. Values are those that the program writes, to the bit.
  *
  * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard").
- * `about`, which may be null, receives JSON with "definition" and "holes", and where ground beyond
- * the DEM could change values "beyond". `progress` may be null. */
+ * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
+ * "unit"}], "1" for plain numbers), and where ground beyond the DEM could change values
+ * "beyond". `progress` may be null. */
 
 /* Light and shade at a time: 1 lit, 0 in the shadow of the ground.
  * @param options  "time" ("2026-06-21T18:30+02:00", "sunset-30min at 47.2,11.4"), "date", "zone" as

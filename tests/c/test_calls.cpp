@@ -28,6 +28,7 @@ TEST(BadCalls, NullIsAnError) {
         relevo_dem_from_heights(nullptr, nullptr),
         relevo_dem_grid(nullptr, nullptr),
         relevo_dem_crs(nullptr, nullptr),
+        relevo_dem_wkt(nullptr, nullptr),
         relevo_dem_read(nullptr, nullptr, 0),
         relevo_dem_height(nullptr, 0, 0, nullptr),
         relevo_sun_position(nullptr, nullptr, 1, nullptr, nullptr, nullptr, nullptr),
