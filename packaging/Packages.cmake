@@ -46,13 +46,14 @@ relevo_package(relevo
     TEXT "Opens any elevation raster, shows it as the sun lights it at a place, date and"
          "time, and computes shadows, hours of direct sun, horizons and sky views."
          "The window, the command line, manual pages and completions."
-    DEPENDS "librelevo0 ${exact}, relevo-data ${exact}, fonts-liberation, tzdata"
+    DEPENDS "librelevo0 ${exact}, relevo-data ${exact}"
     RECOMMENDS "libgl1-mesa-dri")
 relevo_package(librelevo0
     SUMMARY "terrain and sun: library"
     TEXT "DEMs, figures of sunlight over them, and pictures for other programs, with the"
          "modules that the library and the program load."
-    DEPENDS "relevo-data ${exact}, fonts-liberation, tzdata" SECTION libs)
+    DEPENDS "relevo-data ${exact}, fonts-liberation, tzdata, libegl1, libopengl0 | libgl1"
+    RECOMMENDS "libgl1-mesa-dri" SECTION libs)
 relevo_package(librelevo-dev
     SUMMARY "terrain and sun: headers of the library and of plugins"
     TEXT "For programs that use the library, and for native effect plugins: headers,"

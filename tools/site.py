@@ -13,7 +13,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Files that pages link to, besides pages.
-LINKED = ("include/relevo/relevo.h", "core/dem/dry_land.cpp", "LICENSE")
+LINKED = ("include/relevo/relevo.h", "core/dem/dry_land.cpp", "LICENSE", "locale/relevo.pot")
 
 
 def copy(name, source):

@@ -54,8 +54,8 @@ const sun::Refraction& refraction_of(const char* model, const geo::Geodetic& pla
 
 relevo_event event_of(const sun::Event& event) {
     // The names are literals, which end with 0.
-    return {sun::name_of(event.kind).data(), seconds_of(event.utc), degrees(event.azimuth_rad),
-            degrees(event.elevation_rad)};
+    return {sizeof(relevo_event), sun::name_of(event.kind).data(), seconds_of(event.utc),
+            degrees(event.azimuth_rad), degrees(event.elevation_rad)};
 }
 
 light::HorizonOptions horizon_options(const char* text, size_t directions) {
@@ -96,13 +96,15 @@ relevo_result relevo_sun_events(const relevo_place* place, const char* date, con
                                 relevo_event* events, size_t capacity, size_t* count) {
     return c::guarded("relevo_sun_events", [&] {
         c::need(count, "count") = 0;
-        if (capacity > 0) c::need(events, "events");
+        // The caller's events are as large as the first one says.
+        const size_t size = capacity > 0 ? c::read_struct(events, "events").size : 0;
         const geo::Geodetic at = c::place_of(place);
         const sun::Day day = sun::day_events(sun::parse_date(&c::need(date, "date")),
                                              session::zone_of(zone ? zone : "", at).zone, at);
         *count = day.events.size();
         for (size_t i = 0; i < std::min(capacity, day.events.size()); ++i)
-            events[i] = c::event_of(day.events[i]);
+            c::write_struct(c::event_of(day.events[i]), size,
+                            reinterpret_cast<char*>(events) + i * size);
     });
 }
 

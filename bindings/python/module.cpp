@@ -176,6 +176,7 @@ std::vector<std::tuple<std::string, double, double, double>> sun_events(
     double lat_deg, double lon_deg, double height_m, const std::string& date, const Text& zone) {
     const relevo_place place = place_of(lat_deg, lon_deg, height_m);
     std::array<relevo_event, 64> events{};
+    events.front().size = sizeof(relevo_event);
     std::size_t count = 0;
     call([&] {
         return relevo_sun_events(&place, date.c_str(), text_of(zone), events.data(), events.size(),

@@ -23,12 +23,12 @@
  *     positive east. Times are seconds since 1970-01-01T00:00Z without leap seconds, 1900 to 2100.
  *     Rasters have the DEM's rows in their order; voids are NaN.
  *
- * Messages name options as the program's command line does: `--crs` is the option `crs`. GDAL is
- * left as the process has it, also its access to the net; the program takes from it what files from
- * others could misuse.
+ * Messages are those of the program, also where they name its options: `--crs` is the option `crs`.
+ * GDAL is left as the process has it, also its access to the net; the program takes from it what
+ * files from others could misuse.
  *
- * An effect's GLSL that never ends on the device ends the process after RELEVO_PATIENCE_S seconds
- * (20), because nothing else can stop it.
+ * Code of effects can end the process: GLSL that never ends on the device, after RELEVO_PATIENCE_S
+ * seconds (20), and a native module that crashes, hangs or exits.
  */
 #ifndef RELEVO_RELEVO_H
 #define RELEVO_RELEVO_H
@@ -152,6 +152,7 @@ RELEVO_API relevo_result relevo_sun_position(const relevo_place* place, const do
 
 /* Something that the sun does over a level horizon. */
 typedef struct relevo_event {
+    size_t size;      /* in an array that of the first one counts for all */
     const char* kind; /* "sunrise", "transit", "civil_dusk" ...; lasts as long as the library */
     double time_s;
     double azimuth_deg, elevation_deg; /* of the centre, without refraction */
@@ -159,6 +160,7 @@ typedef struct relevo_event {
 /* Events of a local day in order of time, by the rule of the Naval Observatory.
  * @param date      "2026-06-21"
  * @param zone      "Europe/Zurich", "+02:00"; null: that of the place
+ * @param events    `size` of the first one is to be set
  * @param capacity  of `events`; as many as fit are filled
  * @param count     receives how many there are */
 RELEVO_API relevo_result relevo_sun_events(const relevo_place* place, const char* date,

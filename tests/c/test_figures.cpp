@@ -199,7 +199,8 @@ TEST_F(Figures, EventsAreThoseOfTheProgram) {
     auto place = sized<relevo_place>();
     place.lat_deg = 46.95;
     place.lon_deg = 7.44;
-    relevo_event events[20];
+    relevo_event events[20] = {};
+    events[0].size = sizeof(relevo_event);
     std::size_t count = 0;
     expect_ok(relevo_sun_events(&place, "2026-06-21", "Europe/Zurich", events, 20, &count));
     const Result run = relevo({"sun", "day", "--at", "46.95,7.44,0", "--date", "2026-06-21", "--tz",
