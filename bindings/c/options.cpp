@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scene/scene_reader.h"
+#include "session/scene_times.h"
 
 namespace relevo::c {
 namespace {
@@ -43,6 +44,11 @@ scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
     scene::Scene scene;
     take(scene, whole, {});
     return scene;
+}
+
+bool same_dem(scene::Scene a, scene::Scene b) {
+    b.holes = a.holes;
+    return session::dem_key(a) == session::dem_key(b);
 }
 
 }  // namespace relevo::c

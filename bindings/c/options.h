@@ -37,4 +37,7 @@ void change_scene(scene::Scene& scene, const char* text, const std::filesystem::
 /// @throws Error (BadInput)
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
 
+/// Whether two scenes show one DEM, read in the same way. How its voids are drawn may differ.
+bool same_dem(scene::Scene a, scene::Scene b);
+
 }  // namespace relevo::c

@@ -59,7 +59,7 @@ void SceneDrawer::take(scene::Scene scene) {
 void SceneDrawer::change(const char* text) {
     scene::Scene changed = given_;
     change_scene(changed, text, folder_);
-    if (changed.dems != given_.dems)
+    if (!same_dem(changed, given_))
         bad_input("scene: dem: a session keeps its DEM; open another session");
     take(std::move(changed));
 }

@@ -58,8 +58,8 @@ std::shared_ptr<SceneOnThread> open(const char* text, const relevo_open_options*
         scene = dem->named();
     }
     change_scene(scene, text, folder);
-    if (dem && scene.dems != dem->named().dems)
-        bad_input("scene: dem: expected none, as options.dem is given");
+    if (dem && !same_dem(scene, dem->named()))
+        bad_input("scene: dem: expected the DEM of options.dem, read as it is");
     return std::make_shared<SceneOnThread>(std::move(scene), std::move(dem),
                                            options.device ? options.device : "auto", folder);
 }

@@ -21,7 +21,7 @@
  *     session wait for each other; sessions are independent of each other.
  *   - Angles are degrees, azimuths clockwise from true north. Places are WGS 84, longitudes
  *     positive east. Times are seconds since 1970-01-01T00:00Z without leap seconds, 1900 to 2100.
- *     Rasters have the DEM's rows in their order; holes are NaN.
+ *     Rasters have the DEM's rows in their order; voids are NaN.
  *
  * Messages name options as the program's command line does: `--crs` is the option `crs`. GDAL is
  * left as the process has it, also its access to the net; the program takes from it what files from
@@ -95,7 +95,7 @@ RELEVO_API relevo_result relevo_dem_open(const char* const* files, size_t count,
 /* Heights in memory as a DEM. They are copied. */
 typedef struct relevo_raster {
     size_t size;
-    const float* heights_m; /* row by row; NaN for holes */
+    const float* heights_m; /* row by row; NaN for voids */
     size_t count;           /* columns * rows */
     int32_t columns, rows;  /* at least 2 each */
     /* From corners of cells to coordinates of the CRS, as GDAL's geotransform:
@@ -123,7 +123,7 @@ RELEVO_API relevo_result relevo_dem_crs(relevo_dem* dem, const char** crs);
 /* All heights [m]. @param count  columns * rows */
 RELEVO_API relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size_t count);
 
-/* The height at a place, bilinear between posts; NaN in a hole and outside of the DEM. */
+/* The height at a place, bilinear between posts; NaN in a void and outside of the DEM. */
 RELEVO_API relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
                                            double* height_m);
 

@@ -103,6 +103,10 @@ TEST_F(Sessions, AnErrorLeavesTheSceneAsItWas) {
         EXPECT_NE(std::string(relevo_error()), "") << change;
         EXPECT_EQ(scene_of(session_.get()), scene) << change;
     }
+    const std::string in_feet =
+        fmt::format(R"({{"dem": {{"files": ["{}"], "unit": "ft"}}}})", bundled_dem());
+    expect_error(relevo_set(session_.get(), in_feet.c_str()), RELEVO_RESULT_BAD_INPUT,
+                 "scene: dem: a session keeps its DEM; open another session");
     EXPECT_EQ(relevo_resize(session_.get(), 0, 4), RELEVO_RESULT_BAD_INPUT);
     EXPECT_EQ(draw(session_.get()).rgba, before);
 }

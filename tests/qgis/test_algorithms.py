@@ -248,9 +248,21 @@ class Inputs(Case):
         self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.OffsetFromUTC, 7200), "", "").at,
                          "2026-06-21T16:30:00Z")  # fmt: skip
         self.assertEqual((when_of(time, "noon", "").at, when_of(time, "noon", "").date), ("noon", "2026-06-21"))
+        self.assertEqual(when_of("2026-03-08 02:30", "", "").at, "2026-03-08T02:30")
+        self.assertEqual(when_of("2026-06-21T12:00+02:00", "noon", "").date, "2026-06-21")
         self.assertIsNone(when_of(None, "", ""))
         with self.assertRaisesRegex(RelevoError, "expected also a time"):
             when_of(None, "noon", "")
+
+
+class Documentation(Case):
+    def test_the_line_of_python(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        lines = [line.strip() for line in (ROOT / "docs" / "qgis.md").read_text().splitlines()]
+        (line,) = [line for line in lines if line.startswith("processing.run(")]
+        result = eval(line, {"processing": processing})  # noqa: S307, our own documentation
+        self.assertTrue(os.path.exists(result["OUTPUT"]))
 
 
 class Points(Case):

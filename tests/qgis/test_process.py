@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
-from support import DEM, relevo, scratch_environment, skip
+from support import DEM, ROOT, relevo, scratch_environment, skip
 
 # /usr/bin/qgis_process of Debian 12 passes an option that the program behind it does not have.
 QGIS_PROCESS = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
@@ -32,7 +32,8 @@ class Process(unittest.TestCase):
 
     @classmethod
     def qgis(cls, *words):
-        return subprocess.run([QGIS_PROCESS, *words], env=cls.environment, capture_output=True, text=True, timeout=120)
+        return subprocess.run([QGIS_PROCESS, *words], env=cls.environment, cwd=cls.folder, capture_output=True, text=True,
+                              timeout=120)  # fmt: skip
 
     def test_lists_the_algorithms(self):
         listed = self.qgis("list").stdout
@@ -49,6 +50,14 @@ class Process(unittest.TestCase):
         self.assertIn("sun hours [h]", output.with_suffix(".qmd").read_text())
         self.assertIn("time zone America/New_York of the place", run.stdout)
         self.assertIn("mountains outside this DEM", run.stdout)
+
+    def test_the_commands_of_the_documentation(self):
+        lines = [line.split() for line in (ROOT / "docs" / "qgis.md").read_text().splitlines()]
+        commands = [words[1:] for words in lines if words[:2] in (["qgis_process", "run"], ["qgis_process", "help"])]
+        self.assertGreaterEqual(len(commands), 3)
+        for words in commands:
+            run = self.qgis(*words)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
     def test_bad_input_gets_the_sentence_of_the_program(self):
         output = self.folder / "bad.tif"

@@ -148,7 +148,9 @@ class RelevoAlgorithm(QgsProcessingAlgorithm):
         self.add_text(self.ZONE, "Time zone (Europe/Zurich, +01:00, solar; empty: that of the place)")
 
     def when(self, parameters, context) -> Optional[When]:
-        time = self.parameterAsDateTime(parameters, self.TIME, context)
+        time = parameters.get(self.TIME)
+        if not isinstance(time, str):
+            time = self.parameterAsDateTime(parameters, self.TIME, context)
         return when_of(time, self.text(parameters, self.EVENT, context), self.text(parameters, self.ZONE, context))
 
     def zone(self, parameters, context, watch: Watch) -> Optional[str]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import Optional
+from typing import Optional, Union
 
 from qgis.core import QgsCoordinateReferenceSystem, QgsProviderRegistry, QgsRasterLayer
 from qgis.PyQt.QtCore import QDateTime, Qt
 
 from .backend import Dem, RelevoError, When
+
+_FORMAT = "yyyy-MM-ddTHH:mm:ss"
 
 
 def file_of(layer: QgsRasterLayer) -> str:
@@ -43,16 +45,26 @@ def dem_of(layer: QgsRasterLayer, band: Optional[int], unit: Optional[str]) -> D
     return Dem(file_of(layer), crs, band, unit)
 
 
-def when_of(time: Optional[QDateTime], event: str, zone: str) -> Optional[When]:
-    """@param event  of the sun instead of the time of day: "sunset-30min"; may be empty
-    @param zone   may be empty
-    @returns None if there is neither a time nor an event"""
-    if time is None or not time.isValid():
+def when_of(time: Union[QDateTime, str, None], event: str, zone: str) -> Optional[When]:
+    """A time as Relevo takes it.
+
+    time: a text is used as it is: Qt would move times that the clocks of this computer skip
+    event: of the sun instead of the time of day, "sunset-30min"; may be empty
+    zone: may be empty
+
+    Returns None if there is neither a time nor an event.
+    """
+    text = time.strip().replace(" ", "T", 1) if isinstance(time, str) else _text_of(time)
+    if not text:
         if event:
             raise RelevoError(f"event {event}: expected also a time, which names its day")
         return None
-    if event:
-        return When(event, time.date().toString(Qt.ISODate), zone or None)
+    return When(event, text[:10], zone or None) if event else When(text, None, zone or None)
+
+
+def _text_of(time: Optional[QDateTime]) -> str:
+    if time is None or not time.isValid():
+        return ""
     if time.timeSpec() in (Qt.UTC, Qt.OffsetFromUTC):
-        return When(time.toUTC().toString("yyyy-MM-ddTHH:mm:ss") + "Z", None, zone or None)
-    return When(time.toString("yyyy-MM-ddTHH:mm:ss"), None, zone or None)
+        return time.toUTC().toString(_FORMAT) + "Z"
+    return time.toString(_FORMAT)

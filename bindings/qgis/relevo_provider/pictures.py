@@ -105,7 +105,7 @@ class Capture(PictureAlgorithm):
         self.add_scene()
         self.addParameter(
             QgsProcessingParameterEnum(
-                self.SIDE, "Camera is in the", self._SIDES, defaultValue=self._SIDES[0], usesStaticStrings=True
+                self.SIDE, "Side of the camera", self._SIDES, defaultValue=self._SIDES[0], usesStaticStrings=True
             )
         )
         self.addParameter(
