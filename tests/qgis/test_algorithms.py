@@ -6,6 +6,7 @@ import shutil
 import sys
 import tempfile
 import unittest
+import zipfile
 
 from support import DEM, PLUGINS, PROGRAM, ROOT, relevo, scratch_environment, skip
 
@@ -18,6 +19,7 @@ try:
         QgsApplication,
         QgsCoordinateReferenceSystem,
         QgsFeature,
+        QgsField,
         QgsGeometry,
         QgsProcessingContext,
         QgsProcessingException,
@@ -27,7 +29,7 @@ try:
         QgsRasterLayer,
         QgsVectorLayer,
     )
-    from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
+    from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime, QVariant
 except ImportError as error:
     skip(f"QGIS is not installed (packages qgis, python3-qgis): {error}")
 
@@ -36,10 +38,11 @@ application = QgsApplication([], False)
 application.initQgis()
 import processing  # noqa: E402
 from processing.core.Processing import Processing  # noqa: E402
+from processing.core.ProcessingConfig import ProcessingConfig  # noqa: E402
 
 Processing.initialize()
 from relevo_provider import library, program  # noqa: E402
-from relevo_provider.algorithm import RelevoAlgorithm, find_backend  # noqa: E402
+from relevo_provider.algorithm import PROGRAM_SETTING, RelevoAlgorithm, find_backend  # noqa: E402
 from relevo_provider.backend import RelevoError  # noqa: E402
 from relevo_provider.inputs import dem_of, when_of  # noqa: E402
 from relevo_provider.pictures import PictureAlgorithm  # noqa: E402
@@ -80,6 +83,7 @@ class Case(unittest.TestCase):
         shutil.copy(DEM, self.dem)
         self.feedback = Feedback()
         self.layers = []
+        self.addCleanup(self.layers.clear)
 
     def path(self, name):
         return str(self.folder / name)
@@ -135,6 +139,17 @@ class Provider(unittest.TestCase):
         )
         self.assertFalse(can)
         self.assertIn("Relevo is not installed", why)
+
+
+    def test_the_setting_goes_before_the_path(self):
+        with tempfile.TemporaryDirectory() as folder:
+            other = os.path.join(folder, "other")
+            os.symlink(PROGRAM, other)
+            ProcessingConfig.setSettingValue(PROGRAM_SETTING, other)
+            self.addCleanup(ProcessingConfig.setSettingValue, PROGRAM_SETTING, "")
+            self.assertIn(f"({other})", find_backend().description())
+        with self.assertRaisesRegex(RelevoError, "other: no program; correct it in the settings of Processing"):
+            find_backend()
 
 
 class Rasters(Case):
@@ -234,9 +249,31 @@ class Inputs(Case):
             with self.assertRaisesRegex(QgsProcessingException, expected):
                 self.run_algorithm("skyview", INPUT=layer, OUTPUT=self.path("a.tif"))
 
+    def test_parts_of_files(self):
+        with zipfile.ZipFile(self.path("dem.zip"), "w") as archive:
+            archive.write(self.dem, "a/dem.tif")
+            archive.write(self.dem, "a/other.tif")
+        gdal.Translate(self.path("dem.gpkg"), self.dem, format="GPKG", creationOptions=["RASTER_TABLE=heights"])
+        for source in (f"/vsizip/{self.path('dem.zip')}/a/dem.tif", f"GPKG:{self.path('dem.gpkg')}:heights"):
+            self.assertEqual(dem_of(self.loaded(source)).file, source)
+            self.run_algorithm("skyview", INPUT=self.layers[-1], DIRECTIONS=4, OUTPUT=self.path("sky.tif"))
+
+    def test_open_options_are_refused(self):
+        with self.assertRaisesRegex(RelevoError, "layer loaded: has open options"):
+            dem_of(self.loaded(self.dem + "|option:NUM_THREADS=2"))
+
+    def test_more_options(self):
+        parameters = {"TIME": "2026-12-21T09:00:00", "OPTIONS": "--highest 1080 --co 'COMPRESS=LZW'"}
+        self.run_algorithm("shadow", OUTPUT=self.path("a.tif"), **parameters)
+        self.assertEqual(gdal.Open(self.path("a.tif")).GetMetadata("IMAGE_STRUCTURE")["COMPRESSION"], "LZW")
+        with self.assertRaisesRegex(QgsProcessingException, "options: --name 'a: No closing quotation"):
+            self.run_algorithm("skyview", OUTPUT=self.path("a.tif"), OPTIONS="--name 'a")
+        with self.assertRaisesRegex(QgsProcessingException, "^--nonsense: no such option"):
+            self.run_algorithm("skyview", OUTPUT=self.path("a.tif"), OPTIONS="--nonsense")
+
     def test_the_crs_and_the_band_of_the_layer(self):
         layer = QgsRasterLayer(self.dem, "dem")
-        self.assertEqual((dem_of(layer, None, None).crs, dem_of(layer, None, None).file), (None, self.dem))
+        self.assertEqual((dem_of(layer).crs, dem_of(layer).file), (None, self.dem))
         layer.setCrs(QgsCoordinateReferenceSystem("EPSG:4258"))
         self.assertEqual((dem_of(layer, 1, "ft").crs, dem_of(layer, 1, "ft").unit), ("EPSG:4258", "ft"))
 
@@ -306,6 +343,18 @@ class Points(Case):
         for name, expected in zip(("h_0", "h_90", "h_180", "h_270"), self.expected()):
             self.assertAlmostEqual(inside[name], expected, delta=1e-4)
         self.assertIn("outside of the DEM", outside["error"])
+
+    def test_fields_of_the_same_name_and_features_without_a_point(self):
+        self.points.dataProvider().addAttributes([QgsField("error", QVariant.String)])
+        self.points.updateFields()
+        empty = QgsFeature(self.points.fields())
+        empty.setAttributes([3, "mine"])
+        self.points.dataProvider().addFeature(empty)
+        output = self.run_algorithm("horizon", POINTS=self.points, STEP=90, LAYOUT="fields", OUTPUT="memory:")["OUTPUT"]
+        self.assertEqual([field.name() for field in output.fields()], ["id", "error", "h_0", "h_90", "h_180", "h_270", "error_2"])
+        _, outside = output.getFeatures()
+        self.assertIn("outside of the DEM", outside["error_2"])
+        self.assertIn("1 features have no point: they are skipped", self.feedback.warnings)
 
     def test_points_without_a_crs_are_refused(self):
         self.points.setCrs(QgsCoordinateReferenceSystem())
@@ -387,9 +436,9 @@ class Library(Case):
     def test_horizons_and_errors(self):
         backend = find_backend()
         layer = QgsRasterLayer(self.dem, "")
-        inside, outside = backend.horizons(dem_of(layer, None, None), [(36.3, -84.2), (10, 10)], 2, 90, library.Watch())
+        inside, outside = backend.horizons(dem_of(layer), [(36.3, -84.2), (10, 10)], 2, 90, library.Watch())
         theirs, _ = program.Program(PROGRAM).horizons(
-            dem_of(layer, None, None), [(36.3, -84.2), (10, 10)], 2, 90, library.Watch()
+            dem_of(layer), [(36.3, -84.2), (10, 10)], 2, 90, library.Watch()
         )
         for mine, other in zip(inside, theirs):
             self.assertAlmostEqual(mine.horizon_deg, other.horizon_deg, delta=1e-4)

@@ -181,6 +181,10 @@ class Copies(unittest.TestCase):
             pairs = re.findall(r"\{0x(\w{6})(?:, ([0-9.]+))?\}?", found.group(1))
             self.assertEqual([(rgb, float(opacity or 1)) for rgb, opacity in pairs], stops, name)
 
+    def test_the_icon_is_that_of_the_program(self):
+        icon = ROOT / "packaging" / "desktop" / "org.relevo.Relevo.svg"
+        self.assertEqual((PLUGINS / "relevo_provider" / "icon.svg").read_text(), icon.read_text())
+
     def test_the_version_is_that_of_the_project(self):
         text = (PLUGINS / "relevo_provider" / "metadata.txt").read_text()
         self.assertIn(f"\nversion={os.environ['RELEVO_VERSION']}\n", text)

@@ -64,7 +64,7 @@ class FeedbackWatch(Watch):
 class RelevoAlgorithm(QgsProcessingAlgorithm):
     """An algorithm over a DEM. Subclasses have `word`, `title`, `group_title`, `help`, and compute()."""
 
-    DEM, BAND, UNIT = "INPUT", "BAND", "UNIT"
+    DEM, BAND, UNIT, OPTIONS = "INPUT", "BAND", "UNIT", "OPTIONS"
     TIME, EVENT, ZONE = "TIME", "EVENT", "ZONE"
     OUTPUT = "OUTPUT"
 
@@ -127,13 +127,17 @@ class RelevoAlgorithm(QgsProcessingAlgorithm):
             )
         )
 
+        self.add_text(self.OPTIONS, "More options of the program (--nodata 0 --highest 3000)", advanced=True)
+
     def dem(self, parameters, context) -> Dem:
         layer = self.parameterAsRasterLayer(parameters, self.DEM, context)
         if layer is None or not layer.isValid():
             raise QgsProcessingException(self.invalidRasterError(parameters, self.DEM))
         unit = self.parameterAsEnumString(parameters, self.UNIT, context)
         band = None if parameters.get(self.BAND) is None else self.parameterAsInt(parameters, self.BAND, context)
-        return dem_of(layer, band, None if unit == _UNITS[0] else unit)
+        return dem_of(
+            layer, band, None if unit == _UNITS[0] else unit, self.text(parameters, self.OPTIONS, context)
+        )
 
     def add_time(self, optional: bool) -> None:
         self.addParameter(

@@ -23,6 +23,7 @@ class Dem:
     crs: Optional[str] = None  # "EPSG:32632" or WKT, instead of the file's
     band: Optional[int] = None  # from 1; None: Relevo chooses
     unit: Optional[str] = None  # of the heights, instead of the file's
+    options: Sequence[str] = ()  # more words of the program's command line
 
 
 @dataclass(frozen=True)

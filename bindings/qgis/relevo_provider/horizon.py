@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import List, Union
 
 from qgis.core import (
@@ -20,12 +21,13 @@ from qgis.core import (
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterNumber,
+    QgsProcessingUtils,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QVariant
 
 from .algorithm import RelevoAlgorithm
-from .backend import Direction, RelevoError
+from .backend import Direction, RelevoError, Watch
 
 Answer = Union[List[Direction], str]
 
@@ -71,18 +73,17 @@ class HorizonAtPoints(RelevoAlgorithm):
             raise QgsProcessingException(self.invalidSourceError(parameters, self.POINTS))
         step_deg = self.parameterAsDouble(parameters, self.STEP, context)
         in_rows = self.parameterAsEnumString(parameters, self.LAYOUT, context) == "rows"
-        points = [(feature, point) for feature in source.getFeatures() for point in feature.geometry().vertices()]
+        points = _points_of(source, watch)
         places = _places_of(points, source.sourceCrs(), context.transformContext())
         eye_m = self.parameterAsDouble(parameters, self.EYE, context)
         answers: List[Answer] = []
         if places:
             answers = backend.horizons(self.dem(parameters, context), places, eye_m, step_deg, watch)
-        azimuths = next(([one.azimuth_deg for one in answer] for answer in answers if not isinstance(answer, str)), [])
-        fields = _fields(source.fields(), [] if in_rows else azimuths)
+        azimuths = _azimuths_of(answers, step_deg)
+        names = ["azimuth_deg", "horizon_deg", "distance_m"] if in_rows else [f"h_{azimuth:.10g}" for azimuth in azimuths]
+        fields = _fields(source.fields(), names)
         wkb_type = QgsWkbTypes.singleType(source.wkbType())
-        sink, name = self.parameterAsSink(
-            parameters, self.OUTPUT, context, fields, wkb_type, source.sourceCrs()
-        )
+        sink, name = self.parameterAsSink(parameters, self.OUTPUT, context, fields, wkb_type, source.sourceCrs())
         if sink is None:
             raise QgsProcessingException(self.invalidSinkError(parameters, self.OUTPUT))
         for (feature, point), answer in zip(points, answers):
@@ -93,6 +94,18 @@ class HorizonAtPoints(RelevoAlgorithm):
                 result.setAttributes(feature.attributes() + row)
                 sink.addFeature(result, QgsFeatureSink.FastInsert)
         return {self.OUTPUT: name}
+
+
+def _points_of(source, watch: Watch):
+    """(feature, point) of each point; a feature may have several."""
+    points, without = [], 0
+    for feature in source.getFeatures():
+        vertices = list(feature.geometry().vertices())
+        without += not vertices
+        points += [(feature, point) for point in vertices]
+    if without:
+        watch.warning(f"{without} features have no point: they are skipped")
+    return points
 
 
 def _places_of(points, crs, transforms):
@@ -107,14 +120,21 @@ def _places_of(points, crs, transforms):
     return [(place.y(), place.x()) for place in places]
 
 
-def _fields(given: QgsFields, azimuths: List[float]) -> QgsFields:
-    """@param azimuths  a field for each; empty: the fields of a row for each direction"""
-    fields = QgsFields(given)
-    names = [f"h_{azimuth:.10g}" for azimuth in azimuths] or ["azimuth_deg", "horizon_deg", "distance_m"]
+def _azimuths_of(answers: List[Answer], step_deg: float) -> List[float]:
+    """Those of the horizons; where no point has one, those that were asked for."""
+    for answer in answers:
+        if not isinstance(answer, str):
+            return [one.azimuth_deg for one in answer]
+    return [k * step_deg for k in range(math.ceil(round(360 / step_deg, 6)))]
+
+
+def _fields(given: QgsFields, names: List[str]) -> QgsFields:
+    """The given fields and those of the horizon. QGIS renames those that are there already: error_2."""
+    fields = QgsFields()
     for name in names:
         fields.append(QgsField(name, QVariant.Double))
     fields.append(QgsField("error", QVariant.String))
-    return fields
+    return QgsProcessingUtils.combineFields(given, fields)
 
 
 def _long_rows(answer: Answer) -> List[list]:
@@ -125,5 +145,5 @@ def _long_rows(answer: Answer) -> List[list]:
 
 def _wide_row(answer: Answer, count: int) -> list:
     if isinstance(answer, str):
-        return [None] * (count or 3) + [answer]
+        return [None] * count + [answer]
     return [one.horizon_deg for one in answer] + [None]

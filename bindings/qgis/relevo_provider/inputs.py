@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import shlex
 from typing import Optional, Union
 
-from qgis.core import QgsCoordinateReferenceSystem, QgsProviderRegistry, QgsRasterLayer
+from qgis.core import QgsCoordinateReferenceSystem, QgsRasterLayer
 from qgis.PyQt.QtCore import QDateTime, Qt
 
 from .backend import Dem, RelevoError, When
@@ -20,13 +21,10 @@ def file_of(layer: QgsRasterLayer) -> str:
             f"layer {layer.name()}: comes from the provider {layer.providerType()}, expected a raster file; "
             "export the layer as a GeoTIFF"
         )
-    source = layer.dataProvider().dataSourceUri()
-    parts = QgsProviderRegistry.instance().decodeUri("gdal", source)
-    if parts.get("openOptions"):
+    # The whole of it names what GDAL opens: a file, one in an archive, a part of a file such as GPKG:dem.gpkg:heights.
+    name = layer.dataProvider().dataSourceUri()
+    if "|" in name:
         raise RelevoError(f"layer {layer.name()}: has open options, which Relevo does not take; export it as a GeoTIFF")
-    path = parts.get("path") or source
-    # A part of a file, such as NETCDF:"file.nc":height, is named by the whole of it.
-    name = source if parts.get("layerName") else path
     if "/vsimem/" in name:
         raise RelevoError(f"layer {layer.name()}: is in the memory of QGIS, expected a file; export it as a GeoTIFF")
     return os.path.abspath(name) if os.path.exists(name) else name
@@ -36,13 +34,17 @@ def crs_text(crs: QgsCoordinateReferenceSystem) -> str:
     return crs.authid() or crs.toWkt(QgsCoordinateReferenceSystem.WKT2_2019)
 
 
-def dem_of(layer: QgsRasterLayer, band: Optional[int], unit: Optional[str]) -> Dem:
-    """@param band, unit  of the heights; None: as Relevo finds them"""
+def dem_of(layer: QgsRasterLayer, band: Optional[int] = None, unit: Optional[str] = None, options: str = "") -> Dem:
+    """@param band, unit  of the heights; None: as Relevo finds them
+    @param options     of the program, as a shell takes them"""
     crs = None
     # A CRS that was set in QGIS goes before that of the file.
     if layer.crs().isValid() and layer.crs() != layer.dataProvider().crs():
         crs = crs_text(layer.crs())
-    return Dem(file_of(layer), crs, band, unit)
+    try:
+        return Dem(file_of(layer), crs, band, unit, shlex.split(options))
+    except ValueError as error:
+        raise RelevoError(f"options: {options}: {error}") from error
 
 
 def when_of(time: Union[QDateTime, str, None], event: str, zone: str) -> Optional[When]:

@@ -110,6 +110,8 @@ class Library(Backend):
     @contextlib.contextmanager
     def _opened(self, dem: Dem, watch: Watch) -> Iterator[Any]:
         """The DEM; what the package says and raises goes where that of the program does."""
+        if dem.options:
+            raise RelevoError("options: need the program relevo, which is not installed; leave them empty")
         try:
             with _heard(watch, self._relevo.Warning):
                 with self._relevo.open(dem.file, crs=dem.crs, band=dem.band, unit=dem.unit) as opened:

@@ -189,7 +189,7 @@ def _dem_words(dem: Dem) -> List[str]:
         words += ["--crs", dem.crs]
     if dem.band:
         words += ["--band", str(dem.band)]
-    return words + (["--unit", dem.unit] if dem.unit else [])
+    return words + (["--unit", dem.unit] if dem.unit else []) + list(dem.options)
 
 
 def _when_words(when: When) -> List[str]:
