@@ -193,7 +193,7 @@ class Rasters(Case):
         self.assertIn("time zone America/New_York of the place; --tz sets another", self.feedback.infos)
         self.assertTrue(any(text.startswith("mountains outside this DEM") for text in self.feedback.warnings))
 
-    def test_a_part_in_another_crs_and_an_event(self):
+    def test_a_part_at_an_event(self):
         output = self.run_algorithm(
             "shadow", TIME="2026-12-21T00:00:00", EVENT="sunset-30min", ZONE="+01:00", SOFT=True, OUTPUT=self.path("s.tif"),
             EXTENT="-84.3,-84.2,36.2,36.3 [EPSG:4326]",
