@@ -12,7 +12,6 @@
 #include <system_error>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <pthread.h>
@@ -29,9 +28,7 @@
 namespace {
 
 int run(int argc, char** argv) {
-    CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
-    relevo::cli::add_verbs(app);
-    relevo::cli::parse(app, {argv + std::min(argc, 1), argv + argc});
+    relevo::cli::run({argv + std::min(argc, 1), argv + argc});
     return 0;
 }
 

@@ -16,6 +16,14 @@ pkg_check_modules(heif REQUIRED IMPORTED_TARGET libheif)
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake files want its programs too
 pkg_check_modules(ffmpeg REQUIRED IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 find_package(GDAL CONFIG REQUIRED)
+pkg_check_modules(proj REQUIRED IMPORTED_TARGET proj)
+# What calls them does not link them: core/geo/gdal_library.h.
+add_library(relevo_gdal_headers INTERFACE)
+target_include_directories(relevo_gdal_headers SYSTEM INTERFACE
+    $<TARGET_PROPERTY:GDAL::GDAL,INTERFACE_INCLUDE_DIRECTORIES>)
+add_library(relevo_proj_headers INTERFACE)
+target_include_directories(relevo_proj_headers SYSTEM INTERFACE
+    $<TARGET_PROPERTY:PkgConfig::proj,INTERFACE_INCLUDE_DIRECTORIES>)
 find_package(date REQUIRED)
 find_package(glm REQUIRED)
 find_package(hwy REQUIRED CONFIG)

@@ -1,11 +1,14 @@
-# Flags that every target of the project is compiled with. Warnings are errors for developers alone:
-# a compiler that warns of more than ours must not keep people from building.
+# Flags that every target of the project is compiled with. Warnings are for developers alone, as errors: a compiler that warns
+# of more than ours must not keep people from building, and looking for them takes a twentieth of the time.
 add_library(relevo_options INTERFACE)
-target_compile_options(relevo_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
     -Woverloaded-virtual -Wcast-qual -Wimplicit-fallthrough
     -Wno-missing-field-initializers  # designated initialisers leave members at their defaults
     -Wno-restrict                    # GCC 12 sees overlaps in std::string at -O3 (its bug 105329)
-    $<$<BOOL:${RELEVO_TESTS}>:-Werror>)
+    -Werror)
+target_compile_options(relevo_options INTERFACE $<$<BOOL:${RELEVO_TESTS}>:${warnings}>
+    # GCC compiles a tenth faster where it frees no memory before it has 1 GiB; its largest file takes 0.7.
+    $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
 
 # relevo_layer(<name> SOURCES ... [DEPENDS <lower layers>...] [LINKS <libraries used inside>...]
 #              [PUBLIC_LINKS <libraries seen in headers>...])
@@ -20,6 +23,9 @@ function(relevo_layer name)
     target_link_libraries(relevo_${name} PRIVATE relevo_options ${LAYER_LINKS})
     list(TRANSFORM LAYER_DEPENDS PREPEND relevo::)
     target_link_libraries(relevo_${name} PUBLIC ${LAYER_DEPENDS} ${LAYER_PUBLIC_LINKS})
+    if(TARGET relevo_precompiled)  # tests/sweep_on_arm has none
+        target_precompile_headers(relevo_${name} REUSE_FROM relevo_precompiled)
+    endif()
 endfunction()
 
 # relevo_test(<layer> [REFERENCES] [SUITES] SOURCES ... [DEPENDS <layers>...] [LINKS ...])
@@ -29,14 +35,19 @@ endfunction()
 # do no sums of their own are compiled without optimisation in the presets of developers, which takes half the time;
 # REFERENCES are those that compute what they compare with.
 include(GoogleTest)
+set(relevo_test_options $<$<CONFIG:Dev,Asan,Tsan>:-O0>)
 function(relevo_test name)
     cmake_parse_arguments(TEST "REFERENCES;SUITES" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
     add_executable(test_${name} ${TEST_SOURCES})
-    target_compile_options(test_${name} PRIVATE
-        $<$<CONFIG:Dev,Asan,Tsan>:$<IF:$<BOOL:${TEST_REFERENCES}>,-O2,-O0>>)
+    if(TEST_REFERENCES)
+        target_compile_options(test_${name} PRIVATE $<$<CONFIG:Dev,Asan,Tsan>:-O2>)
+    else()
+        target_compile_options(test_${name} PRIVATE ${relevo_test_options})
+        target_precompile_headers(test_${name} REUSE_FROM relevo_precompiled_tests)
+    endif()
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
-        ${TEST_LINKS} GTest::gmock GTest::gtest)
+        ${TEST_LINKS} fmt::fmt GTest::gmock GTest::gtest)
     if(TEST_SUITES)
         file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake @ONLY CONTENT
 "set(layer @name@)

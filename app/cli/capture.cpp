@@ -343,22 +343,22 @@ void capture_and_watch(Arguments arguments) {
 
 }  // namespace
 
-void add_capture(CLI::App& app) {
+void add_capture(Verb app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("capture", "Makes one picture");
+    const Verb verb = app.add_verb("capture", "Makes one picture");
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
                     "Picture to write: png, jpg, webp, avif, tif, or exr (linear light); - is "
                     "standard output")
-        ->required();
+        .required();
     arguments->format.add_to(verb, /*with_format=*/true);
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_option("--save-scene", arguments->save_scene, "Write the scene as JSON");
-    verb.add_option_function<std::string>(
+    verb.add_option_function(
         "--from",
         [arguments](const std::string& path) {
             arguments->from = path;
-            arguments->scene.dem.dem_option->required(false);
+            arguments->scene.dem.dem_option.required(false);
         },
         "Make this picture again from the scene in it; other options override the scene");
     verb.add_flag("--sidecar", arguments->sidecar,
@@ -370,21 +370,21 @@ void add_capture(CLI::App& app) {
     verb.add_flag("--allow-blank", arguments->allow_blank, "Accept a picture that shows no ground");
     verb.add_option("--ab", arguments->ab,
                     "Comparison: left half with these effects, right half without")
-        ->delimiter(',')
-        ->group("Effects");
+        .delimiter(',')
+        .group("Effects");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
-    CLI::Option* timings =
+    const Option timings =
         verb.add_option("--timings", arguments->timings, "Write the time of each stage as JSON")
-            ->group("Diagnosis");
+            .group("Diagnosis");
     verb.add_option("--repeat", arguments->repeat, "Additional frames for --timings")
-        ->needs(timings)
-        ->check(whole_number())
-        ->check(CLI::NonNegativeNumber)
-        ->group("Diagnosis");
+        .needs(timings)
+        .check(whole_number())
+        .check(in_range(0, 1e6))
+        .group("Diagnosis");
     verb.add_option("--dump-shaders", arguments->dump_shaders,
                     "Write the generated shaders into a folder")
-        ->group("Diagnosis");
+        .group("Diagnosis");
     verb.callback([arguments] {
         try {
             if (arguments->watch)

@@ -9,7 +9,9 @@
 #include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -279,16 +281,17 @@ void add_verbs(CLI::App& app) {
         "--progress", [] { ProgressBar::use_lines(true); },
         "Progress of long work as lines for other programs: progress 0.342");
     app.fallthrough();
-    add_view(app);
-    add_capture(app);
-    add_run(app);
-    add_film(app);
-    add_compare(app);
-    add_info(app);
-    add_sun(app);
-    add_plugins(app);
-    add_thumbnail(app);
-    add_doctor(app);
+    const Verb line(app);
+    add_view(line);
+    add_capture(line);
+    add_run(line);
+    add_film(line);
+    add_compare(line);
+    add_info(line);
+    add_sun(line);
+    add_plugins(line);
+    add_thumbnail(line);
+    add_doctor(line);
     check_values(app);
 }
 
@@ -306,6 +309,12 @@ void parse(CLI::App& app, std::vector<std::string> words) {
         app.exit(error, text, text);
         fmt::print("{}", text.str());
     }
+}
+
+void run(std::vector<std::string> words) {
+    CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
+    add_verbs(app);
+    parse(app, std::move(words));
 }
 
 }  // namespace relevo::cli

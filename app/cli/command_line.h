@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}  // namespace CLI
 
 /// All verbs and their options, and how a line of words is read by them.
 namespace relevo::cli {
@@ -18,5 +20,9 @@ void add_verbs(CLI::App& app);
 /// @throws Error (Usage) for words that `app` does not know, with what was probably meant; and what
 ///     the verb throws
 void parse(CLI::App& app, std::vector<std::string> words);
+
+/// Reads the words that follow the program's name, and runs the verb that they name.
+/// @throws as parse()
+void run(std::vector<std::string> words);
 
 }  // namespace relevo::cli

@@ -106,15 +106,15 @@ void compare(const Arguments& arguments) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
+void add_compare(Verb app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("compare", "Compares two pictures");
-    verb.add_option("A", arguments->a, "Picture")->required();
-    verb.add_option("B", arguments->b, "Picture of the same size")->required();
+    const Verb verb = app.add_verb("compare", "Compares two pictures");
+    verb.add_option("A", arguments->a, "Picture").required();
+    verb.add_option("B", arguments->b, "Picture of the same size").required();
     verb.add_option(
             "--tolerance", arguments->tolerance,
             "Largest difference that counts as equal: of 255; for EXR in units of its light (0)")
-        ->check(in_range(0.0, 1e9));
+        .check(in_range(0.0, 1e9));
     verb.add_option("-o,--output", arguments->output,
                     "Write the difference as a picture; the largest difference is white");
     verb.add_flag("--json", arguments->json, "JSON on standard output");

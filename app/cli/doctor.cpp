@@ -271,20 +271,21 @@ void doctor(const std::string& wanted, bool as_json) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app) {
+void add_doctor(Verb app) {
     struct Arguments {
         std::string device = "auto";
         bool json = false, graph = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *app.add_subcommand("doctor", "Lists the GL devices and says which one draws, and why");
+    const Verb verb =
+        app.add_verb("doctor", "Lists the GL devices and says which one draws, and why");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
-    verb.add_flag("--json", arguments->json, "One JSON object on standard output");
+    const Option json =
+        verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.add_flag("--graph", arguments->graph,
                   "The passes and textures of a frame in Graphviz's language, instead")
-        ->excludes("--json");
+        .excludes(json);
     verb.callback([arguments] {
         if (arguments->graph) return print_graph(arguments->device);
         doctor(arguments->device, arguments->json);

@@ -31,36 +31,34 @@ void EffectArguments::check_files(const std::vector<std::string>& files) const {
     }
 }
 
-void EffectArguments::add_to(CLI::App& verb) {
+void EffectArguments::add_to(Verb verb) {
     only_option =
         verb.add_option("--only", only, "Only these effects and what they require (empty: none)")
-            ->delimiter(',')
-            ->expected(0, CLI::detail::expected_max_vector_size)
-            ->group("Effects");
-    verb.add_option("--enable", enable, "Effects to switch on")->delimiter(',')->group("Effects");
-    verb.add_option("--disable", disable, "Effects to switch off")
-        ->delimiter(',')
-        ->group("Effects");
+            .delimiter(',')
+            .any_number()
+            .group("Effects");
+    verb.add_option("--enable", enable, "Effects to switch on").delimiter(',').group("Effects");
+    verb.add_option("--disable", disable, "Effects to switch off").delimiter(',').group("Effects");
     verb.add_option(
             "--order", order,
             "Order of effects on the ground, the lowest first; overlay is that of --overlay: "
             "contours,overlay,tracks")
-        ->delimiter(',')
-        ->group("Effects");
+        .delimiter(',')
+        .group("Effects");
     verb.add_option("--set", settings, "Value of a parameter: layering.texture_m=8")
-        ->allow_extra_args(false)
-        ->group("Effects");
+        .one_word()
+        .group("Effects");
     verb.add_option("--preset", presets, "Preset of switches and values, by name or path: paper")
-        ->allow_extra_args(false)
-        ->group("Effects");
+        .one_word()
+        .group("Effects");
     verb.add_option("--plugin-path", plugin_path, "Folder with more plugins")
-        ->allow_extra_args(false)
-        ->group("Effects");
+        .one_word()
+        .group("Effects");
 }
 
 void EffectArguments::apply_to(scene::Effects& effects) const {
     scene::Effects change;
-    if (only_option && only_option->count() > 0) {
+    if (only_option.count() > 0) {
         change.switches.only.emplace();
         for (const std::string& id : only)
             if (!id.empty()) change.switches.only->push_back(id);

@@ -4,8 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "cli/verb.h"
 #include "scene/scene.h"
 
 namespace relevo::cli {
@@ -16,9 +15,9 @@ bool is_setting(std::string_view word);
 /// --only, --enable, --disable, --order, --set, --preset and --plugin-path.
 struct EffectArguments {
     std::vector<std::string> only, enable, disable, order, settings, presets, plugin_path;
-    CLI::Option* only_option = nullptr;
+    Option only_option;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// Puts what was given in the place of what a scene says: --only and --preset replace its own,
     /// the rest is added. @throws Error (Usage)
     void apply_to(scene::Effects& effects) const;

@@ -223,60 +223,60 @@ void film(Arguments arguments) {
     run_job(arguments.job);
 }
 
-void add_motion(CLI::App& verb, Arguments& arguments) {
+void add_motion(Verb verb, Arguments& arguments) {
     verb.add_option("--motion", arguments.motion,
                     "What moves: day, year, orbit, flight, or two, as in day,orbit (day)")
-        ->group("Film");
+        .group("Film");
     verb.add_option("--duration", arguments.duration_s, "Length in seconds (10)")
-        ->check(in_range(0.001, 1e6))
-        ->group("Film");
+        .check(in_range(0.001, 1e6))
+        .group("Film");
     verb.add_option("--fps", arguments.film.fps, "Frames per second (30)")
-        ->check(in_range(film::kMinFps, film::kMaxFps))
-        ->group("Film");
+        .check(in_range(film::kMinFps, film::kMaxFps))
+        .group("Film");
     verb.add_option("--quality", arguments.quality, "0 to 100 (80); not of gif")
-        ->check(whole_number())
-        ->check(CLI::Range(0, 100))
-        ->group("Film");
-    verb.add_flag("--no-loop", arguments.no_loop, "Play a gif or webp once")->group("Film");
+        .check(whole_number())
+        .check(in_range(0, 100))
+        .group("Film");
+    verb.add_flag("--no-loop", arguments.no_loop, "Play a gif or webp once").group("Film");
     verb.add_option("--span", arguments.span,
                     fmt::format("Times of a day, FROM,TO ({})", kDefaultSpan))
-        ->group("Film");
+        .group("Film");
     verb.add_option("--turns", arguments.turns, "Turns of an orbit, clockwise from above (1)")
-        ->check(in_range(-1000, 1000))
-        ->group("Film");
+        .check(in_range(-1000, 1000))
+        .group("Film");
     // add_flag() gives an optional the value false where there is no flag.
     verb.add_flag_function(
             "--ease,!--no-ease", [&arguments](std::int64_t given) { arguments.ease = given > 0; },
             "Whether the camera begins and ends at rest (flights do, orbits do not)")
-        ->group("Film");
+        .group("Film");
     verb.add_option(
             "--vary", arguments.vary,
             "A parameter from one value to another, ADDRESS=FROM,TO; alone or with --motion")
-        ->group("Film");
+        .group("Film");
     verb.add_option("--along", arguments.along, "Line of a flight: GPX, CSV or GeoJSON")
-        ->group("Film");
+        .group("Film");
     verb.add_option("--above", arguments.height_m,
                     "Least height of a flight above the ground in metres (150)")
-        ->check(in_range(0.1, 1e6))
-        ->group("Film");
+        .check(in_range(0.1, 1e6))
+        .group("Film");
     verb.add_option("--look-ahead", arguments.look_ahead_m,
                     "How far ahead a flight looks, in metres; bends narrower than it are cut")
-        ->check(in_range(1, 1e6))
-        ->group("Film");
+        .check(in_range(1, 1e6))
+        .group("Film");
     verb.add_option("--speed", arguments.speed_m_s,
                     "Highest speed of a flight in m/s, instead of --duration")
-        ->check(in_range(0.01, 1e6))
-        ->group("Film");
+        .check(in_range(0.01, 1e6))
+        .group("Film");
 }
 
 }  // namespace
 
-void add_film(CLI::App& app) {
+void add_film(Verb app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("film", "Makes a film: a day, a year, an orbit, a flight");
+    const Verb verb = app.add_verb("film", "Makes a film: a day, a year, an orbit, a flight");
     JobArguments& job = arguments->job;
     job.scene.add_to(verb);
-    verb.add_option("-o,--output", job.output, "Film to write: mp4, webm, webp or gif")->required();
+    verb.add_option("-o,--output", job.output, "Film to write: mp4, webm, webp or gif").required();
     add_motion(verb, *arguments);
     verb.add_option("--save-job", arguments->save_job,
                     "Write the job as JSON, for relevo run; with --dry-run no film is made");

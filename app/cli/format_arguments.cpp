@@ -6,22 +6,22 @@
 #include "cli/shared.h"
 
 namespace relevo::cli {
-void FormatArguments::add_to(CLI::App& verb, bool with_format) {
+void FormatArguments::add_to(Verb verb, bool with_format) {
     if (with_format)
         verb.add_option("--format", format,
                         "Format of a picture on standard output: png, jpg, webp, avif, tif, exr")
-            ->group("Format");
+            .group("Format");
     verb.add_option("--bits", bits, "Bits of each channel, 8 or 16 (png, tif); default: 8")
-        ->check(CLI::IsMember({8, 16}))
-        ->group("Format");
+        .check(one_of({"8", "16"}))
+        .group("Format");
     verb.add_option("--quality", quality, "Quality of jpg, webp and avif, 1 to 100; default: 95")
-        ->check(whole_number())
-        ->check(in_range(1, 100))
-        ->group("Format");
+        .check(whole_number())
+        .check(in_range(1, 100))
+        .group("Format");
     verb.add_option("--layers", layers,
                     "Data in an exr: a list of depth, normal, position, shadow, ids; or all")
-        ->delimiter(',')
-        ->group("Format");
+        .delimiter(',')
+        .group("Format");
 }
 
 image::Encoding FormatArguments::encoding(const std::string& output) const {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "cli/verb.h"
 #include "image/image.h"
 #include "session/session.h"
 
@@ -19,7 +18,7 @@ struct FormatArguments {
     std::vector<std::string> layers;
 
     /// @param with_format  also --format, for a picture on standard output
-    void add_to(CLI::App& verb, bool with_format);
+    void add_to(Verb verb, bool with_format);
 
     /// @param output  as -o names it. @throws Error (Usage) for --format of a file, and for a
     /// terminal

@@ -137,14 +137,14 @@ nlohmann::ordered_json sun_json(const sun::Position& sun, const sun::Refraction&
 
 }  // namespace
 
-void add_info(CLI::App& app) {
+void add_info(Verb app) {
     struct Arguments {
         DemArguments dem;
         TimeArguments time;
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("info", "Describes a DEM and all assumptions about it");
+    const Verb verb = app.add_verb("info", "Describes a DEM and all assumptions about it");
     arguments->dem.add_to(verb);
     arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");

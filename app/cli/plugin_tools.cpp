@@ -20,15 +20,14 @@ effect::Registry registry_of(const std::vector<std::string>& plugin_path) {
     return effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
 }
 
-void add_new(CLI::App& plugins, const std::vector<std::string>& plugin_path) {
+void add_new(Verb plugins, const std::vector<std::string>& plugin_path) {
     struct Arguments {
         effect::NewPlugin plugin;
         std::string into = ".";
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *plugins.add_subcommand("new", "Writes a new plugin's folder");
-    verb.add_option("ID", arguments->plugin.id, "A letter a-z, then letters and digits")
-        ->required();
+    const Verb verb = plugins.add_verb("new", "Writes a new plugin's folder");
+    verb.add_option("ID", arguments->plugin.id, "A letter a-z, then letters and digits").required();
     verb.add_flag("--native", arguments->plugin.native, "With the C++ source of a module");
     verb.add_option("--from", arguments->plugin.copied, "Copy an installed effect: haze");
     verb.add_option("--into", arguments->into, "Folder for the plugin's folder (.)");
@@ -61,10 +60,10 @@ void check(const session::PluginCheckOptions& options) {
     fmt::print("{}\n", text);
 }
 
-void add_check(CLI::App& plugins, const std::vector<std::string>& plugin_path) {
+void add_check(Verb plugins, const std::vector<std::string>& plugin_path) {
     const auto options = std::make_shared<session::PluginCheckOptions>();
-    CLI::App& verb = *plugins.add_subcommand("check", "Finds mistakes in plugins, also by drawing");
-    verb.add_option("PATH", options->paths, "Plugins, or folders of plugins")->required();
+    const Verb verb = plugins.add_verb("check", "Finds mistakes in plugins, also by drawing");
+    verb.add_option("PATH", options->paths, "Plugins, or folders of plugins").required();
     verb.add_option("--device", options->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.callback([options, &plugin_path] {
@@ -73,15 +72,14 @@ void add_check(CLI::App& plugins, const std::vector<std::string>& plugin_path) {
     });
 }
 
-void add_test(CLI::App& plugins) {
+void add_test(Verb plugins) {
     struct Arguments {
         std::string folder;
         bool update = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *plugins.add_subcommand("test", "Compares a plugin's picture with its golden.png");
-    verb.add_option("FOLDER", arguments->folder, "The plugin's folder")->required();
+    const Verb verb = plugins.add_verb("test", "Compares a plugin's picture with its golden.png");
+    verb.add_option("FOLDER", arguments->folder, "The plugin's folder").required();
     verb.add_flag("--update", arguments->update, "Write golden.png instead");
     verb.callback([arguments] {
         fmt::print("{}\n", session::test_plugin(arguments->folder, arguments->update).text);
@@ -90,7 +88,7 @@ void add_test(CLI::App& plugins) {
 
 }  // namespace
 
-void add_plugin_tools(CLI::App& plugins, const std::vector<std::string>& plugin_path) {
+void add_plugin_tools(Verb plugins, const std::vector<std::string>& plugin_path) {
     add_new(plugins, plugin_path);
     add_check(plugins, plugin_path);
     add_test(plugins);

@@ -114,7 +114,7 @@ void info(const effect::Effect& effect, bool json) {
 
 }  // namespace
 
-void add_plugins(CLI::App& app) {
+void add_plugins(Verb app) {
     struct Arguments {
         std::vector<std::string> plugin_path;
         std::string id;
@@ -125,23 +125,22 @@ void add_plugins(CLI::App& app) {
         }
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *app.add_subcommand("plugins", "Lists effects and their parameters; tools for authors");
-    verb.require_subcommand(0, 1);
-    verb.add_option("--plugin-path", arguments->plugin_path, "Folder with more plugins")
-        ->allow_extra_args(false);
+    const Verb verb =
+        app.add_verb("plugins", "Lists effects and their parameters; tools for authors");
+    verb.require_verb(0, 1);
+    verb.add_option("--plugin-path", arguments->plugin_path, "Folder with more plugins").one_word();
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.fallthrough();
-    CLI::App& list_verb = *verb.add_subcommand("list", "One line for each effect");
-    CLI::App& info_verb = *verb.add_subcommand("info", "One effect with all its parameters");
-    info_verb.add_option("ID", arguments->id, "Plugin")->required();
+    const Verb list_verb = verb.add_verb("list", "One line for each effect");
+    const Verb info_verb = verb.add_verb("info", "One effect with all its parameters");
+    info_verb.add_option("ID", arguments->id, "Plugin").required();
     info_verb.callback([arguments] {
         info(arguments->registry().effect(arguments->id, "plugins"), arguments->json);
     });
     list_verb.callback([] {});
     add_plugin_tools(verb, arguments->plugin_path);
-    verb.callback([arguments, &verb, &list_verb] {
-        if (verb.get_subcommands().empty() || list_verb.count() > 0)
+    verb.callback([arguments, verb, list_verb] {
+        if (!verb.names_verb() || list_verb.count() > 0)
             list(arguments->registry(), arguments->json);
     });
 }

@@ -375,13 +375,13 @@ void run_job(const JobArguments& arguments) {
         Run(arguments, work).run();
 }
 
-void add_run(CLI::App& app) {
+void add_run(Verb app) {
     const auto arguments = std::make_shared<JobArguments>();
-    CLI::App& verb = *app.add_subcommand("run", "Makes the pictures or the film of a job");
-    verb.add_option("JOB", arguments->job, "Job file, JSON: docs/jobs.md")->required();
+    const Verb verb = app.add_verb("run", "Makes the pictures or the film of a job");
+    verb.add_option("JOB", arguments->job, "Job file, JSON: docs/jobs.md").required();
     arguments->scene.add_to(verb, /*with_file=*/false);
-    arguments->scene.dem.dem_option->required(false);
-    const CLI::Option* const output =
+    arguments->scene.dem.dem_option.required(false);
+    const Option output =
         verb.add_option("-o,--output", arguments->output,
                         "Template of the file names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
     arguments->format.add_to(verb, /*with_format=*/false);
@@ -397,20 +397,20 @@ void add_run(CLI::App& app) {
     verb.add_flag("--audit", arguments->audit,
                   "Compare the drawn shadows with the computed ones; implies --sidecar");
     verb.add_flag("--allow-blank", arguments->allow_blank, "Accept pictures that show no ground");
-    CLI::Option* const sheet =
+    const Option sheet =
         verb.add_option("--contact-sheet", arguments->contact_sheet,
                         "Make one picture instead, with all pictures small and with captions")
-            ->group("Contact sheet");
+            .group("Contact sheet");
     verb.add_option("--columns", arguments->columns,
                     "Columns of the contact sheet; default: by shape")
-        ->needs(sheet)
-        ->check(whole_number())
-        ->check(in_range(1, 1000))
-        ->group("Contact sheet");
+        .needs(sheet)
+        .check(whole_number())
+        .check(in_range(1, 1000))
+        .group("Contact sheet");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.callback([arguments, template_given = output] {
-        if (template_given->count() > 0 && arguments->output.empty())
+        if (template_given.count() > 0 && arguments->output.empty())
             bad_usage("-o: expected a template of names but got nothing");
         run_job(*arguments);
     });

@@ -8,20 +8,20 @@
 
 namespace relevo::cli {
 
-void OverlayArguments::add_to(CLI::App& verb) {
+void OverlayArguments::add_to(Verb verb) {
     verb.add_option("--overlay", file,
                     "Raster to show on the ground: figures with a legend, from relevo sun or any "
                     "raster that GDAL reads; an image of red, green and blue in its own colours")
-        ->group("Overlay");
+        .group("Overlay");
     verb.add_option(
             "--overlay-colours", colours,
             "Colours of the overlay: sun, shade, steel, viridis, inferno, grey, or the path of a "
             "gdaldem colour file (with a slash or a dot); default: by the kind of band")
-        ->group("Overlay");
+        .group("Overlay");
     verb.add_option(
             "--overlay-range", range,
             "Values of the first and the last colour, LOW,HIGH; default: the raster's range")
-        ->group("Overlay");
+        .group("Overlay");
 }
 
 void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
@@ -40,15 +40,15 @@ void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
     scene.overlay->range = {*low, *high};
 }
 
-void SceneArguments::add_to(CLI::App& verb, bool with_file) {
+void SceneArguments::add_to(Verb verb, bool with_file) {
     dem.add_to(verb);
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     if (with_file)
-        verb.add_option_function<std::string>(
+        verb.add_option_function(
             "--scene",
             [this](const std::string& path) {
                 file = path;
-                dem.dem_option->required(false);
+                dem.dem_option.required(false);
             },
             "Scene to draw, a file of --save-scene; other options override it");
     verb.add_flag("--trust", trust,
@@ -61,11 +61,10 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     verb.add_option("--stamp", stamps,
                     "Annotations: a list of title, scale, north, graticule, date, sun, "
                     "attribution; or all, none")
-        ->group("Stamps");
+        .group("Stamps");
     // The others have added theirs.
     for (const scene::Option& option : scene::options())
-        if (verb.get_option_no_throw(std::string(option.flag)) == nullptr)
-            values.add_to(verb, option);
+        if (!verb.has_option(std::string(option.flag))) values.add_to(verb, option);
 }
 
 session::Named SceneArguments::named() const {

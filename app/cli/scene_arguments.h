@@ -13,7 +13,7 @@ namespace relevo::cli {
 struct OverlayArguments {
     std::string file, colours, range;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// Puts what was given in the place of what a scene says.
     /// @param more  options that need an overlay were given, too  @throws Error (Usage)
     void apply_to(scene::Scene& scene, bool more) const;
@@ -32,7 +32,7 @@ struct SceneArguments {
     bool trust = false;  ///< --trust
 
     /// @param with_file  there is --scene
-    void add_to(CLI::App& verb, bool with_file = true);
+    void add_to(Verb verb, bool with_file = true);
     /// Puts what was given in the place of what a scene says. @throws Error as those who read
     void apply_to(scene::Scene& scene) const;
     /// What the command line names, and whether it trusts the names in files.

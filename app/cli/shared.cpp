@@ -16,7 +16,7 @@
 
 namespace relevo::cli {
 
-void OptionArguments::add_to(CLI::App& verb, const scene::Option& option) {
+void OptionArguments::add_to(Verb verb, const scene::Option& option) {
     using Kind = scene::Option::Kind;
     const std::string flag(option.flag), help(option.help), group(option.group);
     const scene::Scene usual;
@@ -28,23 +28,23 @@ void OptionArguments::add_to(CLI::App& verb, const scene::Option& option) {
         other.boolean = !other.boolean;
         verb.add_flag_callback(
                 flag, [give, other] { give(other); }, help)
-            ->group(group);
+            .group(group);
         return;
     }
     const std::string otherwise = scene::text_of(option, usual);
-    CLI::Option* const added = verb.add_option_function<std::string>(
+    const Option added = verb.add_option_function(
         flag, [give, &option](const std::string& word) { give(scene::value_of(option, word)); },
         otherwise.empty() ? help : fmt::format("{} ({})", help, otherwise));
-    added->group(group);
+    added.group(group);
     if (option.kind == Kind::Text) return;
-    added->type_name(option.kind == Kind::Number  ? "FLOAT"
-                     : option.kind == Kind::Whole ? "INT"
-                                                  : "TEXT");
-    added->check({[&option](const std::string& word) {
-                      return scene::fault_of(option, scene::value_of(option, word));
-                  },
-                  option.kind == Kind::Word ? fmt::format("{{{}}}", fmt::join(option.words, ","))
-                                            : fmt::format("{} to {}", option.min, option.max)});
+    added.type_name(option.kind == Kind::Number  ? "FLOAT"
+                    : option.kind == Kind::Whole ? "INT"
+                                                 : "TEXT");
+    added.check({[&option](const std::string& word) {
+                     return scene::fault_of(option, scene::value_of(option, word));
+                 },
+                 option.kind == Kind::Word ? fmt::format("{{{}}}", fmt::join(option.words, ","))
+                                           : fmt::format("{} to {}", option.min, option.max)});
 }
 
 bool OptionArguments::has(std::string_view flag) const {
@@ -61,13 +61,13 @@ void OptionArguments::apply_to(scene::Scene& scene) const {
         option->set(scene, value);
 }
 
-void DemArguments::add_to(CLI::App& verb) {
+void DemArguments::add_to(Verb verb) {
     dem_option = verb.add_option("DEM", paths,
                                  "Elevation rasters that GDAL opens; several files are one DEM");
-    dem_option->required();
+    dem_option.required();
     for (const scene::Option& option : scene::options())
         if (option.group == "DEM") values.add_to(verb, option);
-    verb.add_option_function<std::string>(
+    verb.add_option_function(
             "--nodata",
             [this](const std::string& text) {
                 nodata = parse_number(text);
@@ -77,12 +77,12 @@ void DemArguments::add_to(CLI::App& verb) {
                         fmt::format("--nodata: expected a number or none but got \"{}\"", text));
             },
             "Stored value that marks voids; none: no value does")
-        ->group("DEM");
-    verb.add_option_function<std::string>(
+        .group("DEM");
+    verb.add_option_function(
             "--bounds",
             [this](const std::string& text) { bounds = dem::parse_bounds(text, "--bounds"); },
             "Edges of the raster, W,S,E,N in degrees, instead of its georeference")
-        ->group("DEM");
+        .group("DEM");
 }
 
 void DemArguments::apply_to(scene::Scene& scene) const {
@@ -101,7 +101,7 @@ dem::LoadOptions DemArguments::options() const {
     return scene.dem;
 }
 
-void TimeArguments::add_to(CLI::App& verb) {
+void TimeArguments::add_to(Verb verb) {
     verb.add_option("--time", time,
                     "Time: 2026-06-21T18:30+02:00, or without offset, in --tz; or an event with "
                     "--date: sunset-30min, sunrise@46.55,8.56");
@@ -121,7 +121,7 @@ bool TimeArguments::given() const {
     return !time.empty();
 }
 
-void RefractionArguments::add_to(CLI::App& verb) {
+void RefractionArguments::add_to(Verb verb) {
     model.add_to(verb, scene::option("--refraction"));
     verb.add_flag("--no-refraction", off, "Same as --refraction none");
 }
@@ -132,23 +132,23 @@ std::string RefractionArguments::name() const {
     return off ? "none" : scene.refraction;
 }
 
-void ViewArguments::add_to(CLI::App& verb) {
+void ViewArguments::add_to(Verb verb) {
     verb.add_option("--view", view,
                     "Camera as seen from the DEM's centre: az=210,el=30,zoom=1, or top, north, "
                     "north-east, ...; default: where relief shows best")
-        ->group("View");
+        .group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")
-        ->group("View");
+        .group("View");
     verb.add_option("--look-at", look_at, "Place at the centre of the picture, LAT,LON[,H]")
-        ->group("View");
+        .group("View");
     verb.add_option("--heading", heading_deg,
                     "Viewing direction from --eye, degrees clockwise from true north")
-        ->check(any_number())
-        ->group("View");
+        .check(any_number())
+        .group("View");
     verb.add_option("--pitch", pitch_deg, "Viewing direction above the horizontal, degrees")
-        ->check(in_range(-90.0, 90.0))
-        ->group("View");
+        .check(in_range(-90.0, 90.0))
+        .group("View");
 }
 
 bool ViewArguments::any() const {
@@ -190,7 +190,7 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
     if (pitch_deg) result.pitch_deg = *pitch_deg;
 }
 
-CLI::Validator in_range(double min, double max) {
+Check in_range(double min, double max) {
     return {[min, max](const std::string& text) {
                 const std::optional<double> value = parse_number(text);
                 return value && *value >= min && *value <= max
@@ -200,7 +200,7 @@ CLI::Validator in_range(double min, double max) {
             fmt::format("{:.10g} to {:.10g}", min, max)};
 }
 
-CLI::Validator any_number() {
+Check any_number() {
     return {[](const std::string& text) {
                 return parse_number(text) ? std::string()
                                           : fmt::format("expected a number but got {}", text);
@@ -208,7 +208,7 @@ CLI::Validator any_number() {
             ""};
 }
 
-CLI::Validator whole_number() {
+Check whole_number() {
     return {[](const std::string& text) {
                 int value = 0;
                 const char* const end = text.data() + text.size();

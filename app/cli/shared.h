@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "cli/verb.h"
 #include "scene/options.h"
 #include "scene/scene.h"
 #include "session/words.h"
@@ -25,7 +25,7 @@ namespace relevo::cli {
 /// Options of scene::options(), and what was given of them.
 class OptionArguments {
   public:
-    void add_to(CLI::App& verb, const scene::Option& option);
+    void add_to(Verb verb, const scene::Option& option);
     bool has(std::string_view flag) const;
     /// Whether there is any of a JSON object: "overlay".
     bool has_any(std::string_view object) const;
@@ -43,9 +43,9 @@ struct DemArguments {
     std::optional<double> nodata;
     bool no_nodata = false;
     std::optional<dem::Bounds> bounds;
-    CLI::Option* dem_option = nullptr;
+    Option dem_option;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// Puts what was given in the place of what a scene says.
     void apply_to(scene::Scene& scene) const;
     dem::LoadOptions options() const;
@@ -55,7 +55,7 @@ struct DemArguments {
 struct TimeArguments {
     std::string time, date, zone;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// @throws Error (Usage) for --date or --tz without --time, which would say nothing
     bool given() const;
     scene::TimeSpec spec() const { return {time, date, zone}; }
@@ -66,7 +66,7 @@ struct RefractionArguments {
     OptionArguments model;
     bool off = false;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     bool given() const { return off || model.has("--refraction"); }
     /// As scene::Scene has it.
     std::string name() const;
@@ -80,20 +80,20 @@ struct ViewArguments {
     std::string view, eye, look_at;
     std::optional<double> heading_deg, pitch_deg;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     bool any() const;  ///< whether one is given
     /// Puts what was given in the place of what a scene says. @throws Error (Usage)
     void apply_to(scene::Scene& scene) const;
 };
 
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
-CLI::Validator in_range(double min, double max);
+Check in_range(double min, double max);
 
 /// Any number that is one: no infinity, nothing but digits and an exponent.
-CLI::Validator any_number();
+Check any_number();
 
 /// A whole number that an int holds; else "expected a whole number but got 1.5".
-CLI::Validator whole_number();
+Check whole_number();
 
 /// JSON as the contract has it, two blanks a level. Text that is not UTF-8, such as a file's name,
 /// has U+FFFD for what cannot be said.

@@ -4,9 +4,9 @@
 
 namespace relevo::cli {
 
-void add_sun(CLI::App& app) {
-    CLI::App& verb = *app.add_subcommand("sun", "Sun position, shadows, sun hours, horizons");
-    verb.require_subcommand(1);
+void add_sun(Verb app) {
+    const Verb verb = app.add_verb("sun", "Sun position, shadows, sun hours, horizons");
+    verb.require_verb(1);
     add_sun_position(verb);
     add_sun_day(verb);
     add_sun_horizon(verb);

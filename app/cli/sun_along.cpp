@@ -254,28 +254,28 @@ void run(Arguments arguments) {
 
 }  // namespace
 
-void add_sun_along(CLI::App& sun_verb) {
+void add_sun_along(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand("along", "Finds where a walk is in the sun");
+    const Verb verb = sun_verb.add_verb("along", "Finds where a walk is in the sun");
     arguments->terrain.add_to(verb);
-    verb.get_option("DEM")->description(
+    verb.option("DEM").description(
         "DEM... TRACK: elevation rasters, then a GPX, GeoJSON or CSV of the walk");
     verb.add_option("--start", arguments->start,
                     "When the walk begins: 2026-06-21T09:00, or an event such as sunrise+1h with "
                     "its date before it (default: the track's own)");
     verb.add_option("--speed", arguments->speed_kmh,
                     "Speed on the map, km/h (default: the track's own times)")
-        ->check(in_range(0.01, 1000.0));
+        .check(in_range(0.01, 1000.0));
     verb.add_option("--tz", arguments->zone,
                     "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the start (auto)");
     verb.add_option("--track", arguments->track, "Number of the track in the file, from 1")
-        ->check(whole_number())
-        ->check(in_range(1, 1'000'000));
+        .check(whole_number())
+        .check(in_range(1, 1'000'000));
     verb.add_option("--points-crs", arguments->crs, "CRS of columns x and y in a CSV: EPSG:n");
     verb.add_option("--name", arguments->name, "Name of the walk (default: the track's own)");
     verb.add_option("--eye-height", arguments->eye_height_m,
                     "Height of the eye above the ground, m (0)")
-        ->check(in_range(0.0, 10000.0));
+        .check(in_range(0.0, 10000.0));
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });

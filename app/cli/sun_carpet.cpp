@@ -173,14 +173,14 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_carpet(CLI::App& sun_verb) {
+void add_sun_carpet(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *sun_verb.add_subcommand("carpet", "A year of direct sun at a point, day by time of day");
+    const Verb verb =
+        sun_verb.add_verb("carpet", "A year of direct sun at a point, day by time of day");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->days.add_year_to(verb);
-    verb.get_option("--year")->required();
+    verb.option("--year").required();
     verb.add_option("--step", arguments->step,
                     "Step of the time of day (3min), or minutes alone; divides a day");
     arguments->light.add_to(verb);

@@ -443,12 +443,12 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_day(CLI::App& sun_verb) {
+void add_sun_day(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand(
+    const Verb verb = sun_verb.add_verb(
         "day", "Sunrise, twilights, transit, day length; with a DEM also direct sun");
     arguments->terrain.add_to(verb);
-    verb.get_option("DEM")->required(false);
+    verb.option("DEM").required(false);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
     arguments->days.add_to(verb);

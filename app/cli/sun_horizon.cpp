@@ -258,19 +258,19 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_horizon(CLI::App& sun_verb) {
+void add_sun_horizon(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand(
+    const Verb verb = sun_verb.add_verb(
         "horizon", "Terrain horizon of a point; as a panorama also with the sun's paths");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
     verb.add_option("--step", arguments->step_deg,
                     "Step of the azimuth, degrees (0.1; pvlib and pvgis 1, pvsyst 3)")
-        ->check(in_range(0.01, 90.0));
+        .check(in_range(0.01, 90.0));
     verb.add_option("--format", arguments->format,
                     "Format of the table: csv, or a horizon file of pvlib, pvgis or pvsyst")
-        ->check(CLI::IsMember({"csv", "pvlib", "pvgis", "pvsyst"}));
+        .check(one_of({"csv", "pvlib", "pvgis", "pvsyst"}));
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
     arguments->light.add_dip_to(verb);

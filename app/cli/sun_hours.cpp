@@ -184,10 +184,9 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_hours(CLI::App& sun_verb) {
+void add_sun_hours(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *sun_verb.add_subcommand("hours", "Hours of direct sun of each post, as a raster");
+    const Verb verb = sun_verb.add_verb("hours", "Hours of direct sun of each post, as a raster");
     arguments->raster.add_to(verb);
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
@@ -197,15 +196,15 @@ void add_sun_hours(CLI::App& sun_verb) {
                     "Bands: hours; for at most four days also first, last (minutes from the start) "
                     "and spells (number of sunshine periods); global, beam, diffuse, reflected "
                     "(clear-sky irradiation, kWh/m2)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Validator(check_band, {}, "band"));
+        .delimiter(',')
+        .one_word()
+        .check({check_band, ""});
     verb.add_option("--linke", arguments->linke,
                     "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)")
-        ->check(in_range(1.0, 10.0));
+        .check(in_range(1.0, 10.0));
     verb.add_option("--albedo", arguments->albedo,
                     "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)")
-        ->check(in_range(0.0, 1.0));
+        .check(in_range(0.0, 1.0));
     verb.callback([arguments] { run(*arguments); });
 }
 

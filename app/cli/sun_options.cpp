@@ -21,7 +21,7 @@ namespace relevo::cli {
 namespace {
 
 /// A whole number; of one that an int does not hold it is said which years there are.
-CLI::Validator year_number() {
+Check year_number() {
     return {[](const std::string& text) {
                 const std::size_t sign = text.starts_with('-');
                 const bool digits = text.size() > sign + 9 &&
@@ -29,33 +29,33 @@ CLI::Validator year_number() {
                 return digits
                            ? fmt::format("the sun is computed for the years {} to {}, but got {}",
                                          sun::kFirstYear, sun::kLastYear, text)
-                           : whole_number()(text);
+                           : whole_number().fault(text);
             },
             ""};
 }
 
 }  // namespace
 
-void PlaceArguments::add_to(CLI::App& verb) {
-    verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
+void PlaceArguments::add_to(Verb verb) {
+    verb.add_option("--at", at, "Place: LAT,LON[,H]").required();
     verb.add_option("--name", name, "Name of the place, for titles");
     verb.add_option("--eye-height", eye_height_m, "Height of the eye above the ground, m")
-        ->check(in_range(0.0, 10000.0));
+        .check(in_range(0.0, 10000.0));
 }
 
 geo::PlaceText PlaceArguments::parse() const {
     return geo::parse_place(at, "--at");
 }
 
-void DaysArguments::add_to(CLI::App& verb) {
+void DaysArguments::add_to(Verb verb) {
     verb.add_option("--date", date, "Day: 2026-06-21");
     verb.add_option("--from", from, "First day of a range");
     verb.add_option("--to", to, "Last day of the range");
     add_year_to(verb);
 }
 
-void DaysArguments::add_year_to(CLI::App& verb) {
-    verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(year_number());
+void DaysArguments::add_year_to(Verb verb) {
+    verb.add_option("--year", year, "All days of a year, 1900 to 2100").check(year_number());
     verb.add_option("--tz", zone,
                     "Time zone of the days: Europe/Zurich, +05:30, solar, or auto, that of the "
                     "place (auto)");
@@ -104,15 +104,15 @@ double step_s_of(const std::string& step, double least_s, double most_s) {
     return *step_s;
 }
 
-void LightArguments::add_to(CLI::App& verb) {
+void LightArguments::add_to(Verb verb) {
     refraction.add_to(verb);
     verb.add_option("--limb", limb, "Part of the solar disc that counts: upper, center, lower")
-        ->check(CLI::IsMember({"upper", "center", "lower"}));
+        .check(one_of({"upper", "center", "lower"}));
 }
 
-void LightArguments::add_dip_to(CLI::App& verb) {
+void LightArguments::add_dip_to(Verb verb) {
     verb.add_option("--dip", dip_deg, "Dip of a flat horizon, degrees; default: from --eye-height")
-        ->check(in_range(0.0, 5.0));
+        .check(in_range(0.0, 5.0));
 }
 
 namespace {
@@ -144,17 +144,17 @@ light::LightOptions LightArguments::light(const geo::Geodetic& place,
     return options;
 }
 
-void TerrainArguments::add_to(CLI::App& verb) {
+void TerrainArguments::add_to(Verb verb) {
     dem.add_to(verb);
     verb.add_option(
             "-k,--terrestrial-refraction", refraction,
             "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        ->check(in_range(-1.0, 0.9))
-        ->group("Horizon");
+        .check(in_range(-1.0, 0.9))
+        .group("Horizon");
     verb.add_option("--highest", highest_m,
                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        ->check(in_range(-12000.0, 9000.0))
-        ->group("Horizon");
+        .check(in_range(-12000.0, 9000.0))
+        .group("Horizon");
 }
 
 light::HorizonOptions TerrainArguments::horizon(const geo::PlaceText& at,
@@ -281,14 +281,14 @@ nlohmann::ordered_json spans_json(const std::vector<sun::TimeSpan>& spans) {
     return array;
 }
 
-void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& endings_of_verb) {
+void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_of_verb) {
     endings = endings_of_verb;
     verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
     verb.add_option("--scale", scale, "Pixels of a PNG per unit of the drawing (1.5)")
-        ->check(in_range(0.25, 8.0));
-    CLI::Option* csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
-    verb.add_flag("--json", json, "One JSON object on standard output")->excludes(csv_flag);
+        .check(in_range(0.25, 8.0));
+    const Option csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
+    verb.add_flag("--json", json, "One JSON object on standard output").excludes(csv_flag);
 }
 
 std::string OutputArguments::ending() const {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/files_in_use.h"
@@ -28,7 +27,7 @@ struct PlaceArguments {
     std::string at, name;
     std::optional<double> eye_height_m;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// @throws Error (Usage)
     geo::PlaceText parse() const;
 };
@@ -38,9 +37,9 @@ struct DaysArguments {
     std::string date, from, to, zone;
     std::optional<int> year;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// --year and --tz alone, for what takes a whole year.
-    void add_year_to(CLI::App& verb);
+    void add_year_to(Verb verb);
     bool given() const { return !date.empty() || !from.empty() || !to.empty() || year; }
 
     struct Days {
@@ -66,9 +65,9 @@ struct LightArguments {
     std::optional<std::string> limb;
     std::optional<double> dip_deg;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// --dip, where rising over a level horizon is asked for.
-    void add_dip_to(CLI::App& verb);
+    void add_dip_to(Verb verb);
 
     /// Over a level horizon: the Naval Observatory's, unless an option says otherwise.
     /// @param eye_height_m  --eye-height
@@ -93,7 +92,7 @@ struct TerrainArguments {
     double refraction = 0.13;
     std::optional<double> highest_m;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     bool given() const { return !dem.paths.empty(); }
     /// @throws Error as dem::load
     dem::Posts load() const {
@@ -137,7 +136,7 @@ struct OutputArguments {
     double scale = 1.5;
     bool overwrite = false, csv = false, json = false;
 
-    void add_to(CLI::App& verb, const std::vector<std::string>& endings_of_verb);
+    void add_to(Verb verb, const std::vector<std::string>& endings_of_verb);
     /// Opens the file that -o names, before any work is done. Null without -o.
     /// @param dem  what the verb reads besides
     /// @throws Error (Usage) for an unknown ending, and as FilesInUse

@@ -126,19 +126,19 @@ void warn_of_points(std::size_t open, std::size_t holes, std::size_t all) {
 
 }  // namespace
 
-void PointsArguments::add_to(CLI::App& verb) {
-    CLI::Option* const at = verb.get_option("--at");
-    at->required(false);
+void PointsArguments::add_to(Verb verb) {
+    const Option at = verb.option("--at");
+    at.required(false);
     at_ = at;
     verb.add_option("--points", path,
                     "Many places instead of --at: CSV (columns lat, lon, name), GPX or GeoJSON; "
                     "one record for each")
-        ->excludes(at);
+        .excludes(at);
     verb.add_option("--points-crs", crs, "CRS of columns x and y in that CSV: EPSG:n");
 }
 
 bool PointsArguments::given() const {
-    if (path.empty() && at_->count() == 0)
+    if (path.empty() && at_.count() == 0)
         bad_usage("--at: missing; pass --at 46.55,8.56, or --points FILE for many places");
     if (path.empty() && !crs.empty()) bad_usage("--points-crs: needs --points");
     return !path.empty();

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/files_in_use.h"
@@ -19,7 +18,7 @@ struct PointsArguments {
     std::string path, crs;
 
     /// @param verb  that has --at
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// They are asked for, instead of --at. @throws Error (Usage) where neither is
     bool given() const;
     /// Reads the file, which no output may replace. To be called before the DEM is opened: a DEM
@@ -28,7 +27,7 @@ struct PointsArguments {
     std::vector<dem::NamedPlace> read(FilesInUse& files, const OutputArguments& output) const;
 
   private:
-    const CLI::Option* at_ = nullptr;
+    Option at_;
 };
 
 /// What a verb has to say of one point, in the forms that it has for --at; each is made only where

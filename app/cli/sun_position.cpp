@@ -135,13 +135,13 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_position(CLI::App& sun_verb) {
+void add_sun_position(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand("position", "Position of the sun");
+    const Verb verb = sun_verb.add_verb("position", "Position of the sun");
     verb.add_option("--at", arguments->at, "Place: LAT,LON[,H]");
     arguments->points.add_to(verb);
     arguments->time.add_to(verb);
-    verb.get_option("--time")->required();
+    verb.option("--time").required();
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });

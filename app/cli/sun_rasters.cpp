@@ -35,28 +35,28 @@ dem::Grid RasterGround::grid() const {
     return whole() ? posts.grid() : posts.grid().part(window, window.columns, window.rows);
 }
 
-void RasterArguments::add_to(CLI::App& verb) {
+void RasterArguments::add_to(Verb verb) {
     dem.add_to(verb);
     verb.add_option(
             "-k,--terrestrial-refraction", terrestrial_refraction,
             "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        ->check(in_range(-1.0, 0.9));
+        .check(in_range(-1.0, 0.9));
     output.endings = {"tif", "tiff"};
     verb.add_option("-o,--output", output.path,
                     "Cloud-optimised GeoTIFF to write, on the DEM's grid")
-        ->required();
+        .required();
     verb.add_flag("--overwrite", output.overwrite, "Replace an existing file");
     verb.add_option("--co", creation_options,
                     "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
-        ->allow_extra_args(false);
+        .one_word();
     verb.add_option("--clip", clip,
                     "Compute only the posts in W,S,E,N of the DEM's CRS; the terrain around still "
                     "casts shadows")
-        ->type_name("W,S,E,N");
+        .type_name("W,S,E,N");
     verb.add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
     verb.add_option("--highest", highest_m,
                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        ->check(in_range(-500.0, light::kHighestTerrain_m));
+        .check(in_range(-500.0, light::kHighestTerrain_m));
     verb.add_flag("--dry-run", dry_run,
                   "Estimate time and memory from a small part; write nothing");
 }

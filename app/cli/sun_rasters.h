@@ -34,7 +34,7 @@ struct RasterArguments {
     std::optional<double> highest_m;  ///< of terrain beyond the DEM
     bool dry_run = false;
 
-    void add_to(CLI::App& verb);
+    void add_to(Verb verb);
     /// Opens the result, before any work is done. @throws Error as OutputArguments::open, (Usage)
     /// for creation options that there are not
     OutputFile& open(FilesInUse& files) const;

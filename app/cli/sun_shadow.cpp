@@ -253,10 +253,10 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_shadow(CLI::App& sun_verb) {
+void add_sun_shadow(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *sun_verb.add_subcommand("shadow", "Shadow mask of a DEM at a given time, as a raster");
+    const Verb verb =
+        sun_verb.add_verb("shadow", "Shadow mask of a DEM at a given time, as a raster");
     arguments->raster.add_to(verb);
     arguments->time.add_to(verb);
     verb.add_option("--times", arguments->times,

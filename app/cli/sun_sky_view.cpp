@@ -106,29 +106,28 @@ void run_horizons(const Arguments& arguments) {
                arguments.directions, 360.0 / arguments.directions, definition);
 }
 
-std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {
+std::shared_ptr<Arguments> add_directions(Verb verb, int least, int most) {
     const auto arguments = std::make_shared<Arguments>();
     arguments->raster.add_to(verb);
     verb.add_option("--directions", arguments->directions,
                     "Number of azimuths around each post (36)")
-        ->check(in_range(least, most));
+        .check(in_range(least, most));
     return arguments;
 }
 
 }  // namespace
 
-void add_sun_sky_view(CLI::App& sun_verb) {
-    CLI::App& verb =
-        *sun_verb.add_subcommand("sky-view", "Sky-view factor of each post, as a raster");
+void add_sun_sky_view(Verb sun_verb) {
+    const Verb verb = sun_verb.add_verb("sky-view", "Sky-view factor of each post, as a raster");
     const auto arguments = add_directions(verb, 4, 3600);
     verb.add_flag("--level", arguments->level,
                   "For a level plane at each post instead of the inclined ground");
     verb.callback([arguments] { run_sky_view(*arguments); });
 }
 
-void add_sun_horizons(CLI::App& sun_verb) {
-    CLI::App& verb =
-        *sun_verb.add_subcommand("horizons", "Horizon of each post, one band for each azimuth");
+void add_sun_horizons(Verb sun_verb) {
+    const Verb verb =
+        sun_verb.add_verb("horizons", "Horizon of each post, one band for each azimuth");
     const auto arguments = add_directions(verb, 1, 720);
     verb.callback([arguments] { run_horizons(*arguments); });
 }

@@ -202,22 +202,22 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_when(CLI::App& sun_verb) {
+void add_sun_when(Verb sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand(
-        "when", "Times when the sun stands over a summit, seen from a place");
+    const Verb verb =
+        sun_verb.add_verb("when", "Times when the sun stands over a summit, seen from a place");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
     verb.add_option("--over", arguments->over,
                     "Summit: LAT,LON for the highest post nearby, or LAT,LON,H for that point")
-        ->required();
+        .required();
     verb.add_option("--summit-radius", arguments->summit_radius_m,
                     "Search radius of the summit, m (100)")
-        ->check(in_range(0.0, 10000.0));
+        .check(in_range(0.0, 10000.0));
     verb.add_option("--tolerance", arguments->tolerance_deg,
                     "Largest distance of the sun's centre, degrees (0.5)")
-        ->check(in_range(0.001, 45.0));
+        .check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});

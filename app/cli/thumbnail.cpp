@@ -52,15 +52,15 @@ void thumbnail(const Arguments& arguments) {
 
 }  // namespace
 
-void add_thumbnail(CLI::App& app) {
+void add_thumbnail(Verb app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand(
+    const Verb verb = app.add_verb(
         "thumbnail", "Makes a small picture of a DEM for file managers, without a GL device");
     verb.add_option("DEM", arguments->dem, "Elevation raster, a name or a file:// address")
-        ->required();
-    verb.add_option("OUTPUT", arguments->output, "PNG to write or replace")->required();
+        .required();
+    verb.add_option("OUTPUT", arguments->output, "PNG to write or replace").required();
     verb.add_option("-s,--size", arguments->size_px, "Longer side, pixels (256)")
-        ->check(in_range(1, 4096));
+        .check(in_range(1, 4096));
     verb.callback([arguments] { thumbnail(*arguments); });
 }
 

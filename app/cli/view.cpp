@@ -26,12 +26,11 @@ void view(Arguments arguments) {
 
 }  // namespace
 
-void add_view(CLI::App& app) {
+void add_view(Verb app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *app.add_subcommand("view", "Opens a window on a DEM (default: the bundled DEM)");
+    const Verb verb = app.add_verb("view", "Opens a window on a DEM (default: the bundled DEM)");
     arguments->scene.add_to(verb);
-    arguments->scene.dem.dem_option->required(false);
+    arguments->scene.dem.dem_option.required(false);
     verb.add_option("--device", arguments->device,
                     "GL device that draws the ground: auto, an index, software, or a part of its "
                     "name");

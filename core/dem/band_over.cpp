@@ -6,11 +6,11 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 #include "dem/places_over.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/text.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 

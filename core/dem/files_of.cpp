@@ -2,11 +2,10 @@
 
 #include <set>
 
-#include <cpl_string.h>
-#include <gdal.h>
-
 #include "base/error.h"
+#include "base/text.h"
 #include "dem/folder.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 
@@ -52,7 +51,7 @@ class Collector {
         char** const entries = GDALGetFileList(dataset.get());
         for (char** entry = entries; entry && *entry; ++entry) {
             const std::string source = *entry;
-            if (CPLString(source).tolower().rfind(".vrt") == source.size() - 4)
+            if (lower(source).rfind(".vrt") == source.size() - 4)
                 add(source, depth + 1);
             else if (std::filesystem::path file = file_behind(source); !file.empty())
                 files_.push_back(std::move(file));

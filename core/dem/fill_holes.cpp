@@ -7,10 +7,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gdal.h>
-#include <gdal_alg.h>
 
 #include "base/error.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/grid.h"
 #include "dem/membrane.h"

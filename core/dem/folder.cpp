@@ -7,15 +7,14 @@
 #include <set>
 #include <string_view>
 
-#include <cpl_string.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gdal.h>
 
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"

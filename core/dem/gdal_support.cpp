@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <mutex>
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/host_program.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "dem/gdal.h"
 #include "dem/guard.h"
 #include "dem/regular_files.h"
 

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <optional>
 
-#include <cpl_string.h>
 #include <fmt/format.h>
-#include <gdal.h>
-#include <ogr_srs_api.h>
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 

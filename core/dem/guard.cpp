@@ -1,139 +1,40 @@
 #include "dem/guard.h"
 
-#include <array>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include <cpl_http.h>
-#include <cpl_string.h>
-#include <cpl_vsi_virtual.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
 #include <unistd.h>
 
 #include "base/contains.h"
+#include "dem/gdal.h"
+#include "dem/gdal_module.h"
 #include "dem/interpret.h"
 #include "dem/no_raster.h"
 #include "dem/remote.h"
 
 namespace relevo::dem {
-namespace {
-
-constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",     "EEDAI",    "HTTP",          "NGW",
-                                       "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster", "STACIT",
-                                       "STACTA", "WCS",      "WMS",      "WMTS"};
-using OpenFunction = GDALDataset* (*)(GDALOpenInfo*);
-
-struct Disarmed {
-    std::vector<std::pair<GDALDriver*, OpenFunction>> drivers;
-    std::vector<std::pair<std::string, VSIFilesystemHandler*>> systems;
-    bool remote_allowed = false;
-};
-
-std::mutex& mutex() {
-    static std::mutex one;
-    return one;
-}
-
-Disarmed& disarmed() {
-    // Never destroyed: it holds what GDAL has until the process ends.
-    static Disarmed& all = *new Disarmed;
-    return all;
-}
-
-OpenFunction netcdf_open = nullptr;
-OpenFunction geopackage_open = nullptr;
-
-/// netCDF's library itself goes to addresses.
-GDALDataset* open_local_netcdf(GDALOpenInfo* info) {
-    const bool address = std::strstr(info->pszFilename, "://") != nullptr;
-    if (address) {
-        const std::lock_guard lock(mutex());
-        if (!disarmed().remote_allowed) return nullptr;
-    }
-    return netcdf_open(info);
-}
-
-/// A virtual raster may pass options on, and this one is SQL of any kind.
-GDALDataset* open_plain_geopackage(GDALOpenInfo* info) {
-    if (CSLFetchNameValue(info->papszOpenOptions, "PRELUDE_STATEMENTS")) return nullptr;
-    return geopackage_open(info);
-}
-
-GDALDriver* driver(const char* name) {
-    return GDALDriver::FromHandle(GDALGetDriverByName(name));
-}
-
-CPLHTTPResult* fetch_nothing(const char*, CSLConstList, GDALProgressFunc, void*,
-                             CPLHTTPFetchWriteFunc, void*, void*) {
-    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
-    result->nStatus = 1;
-    result->pszErrBuf = CPLStrdup("the net is closed to files that ask for it themselves");
-    return result;
-}
-
-void close_remote_systems() {
-    VSIFilesystemPluginCallbacksStruct* const nothing = VSIAllocFilesystemPluginCallbacksStruct();
-    nothing->open = [](void*, const char*, const char*) -> void* {
-        errno = EACCES;
-        return nullptr;
-    };
-    char** const prefixes = VSIGetFileSystemsPrefixes();
-    for (char** prefix = prefixes; prefix && *prefix; ++prefix) {
-        const std::string name = *prefix;
-        if (!name.starts_with("/vsi") || is_local_file_system(name)) continue;
-        VSIFilesystemHandler* const handler = VSIFileManager::GetHandler(name.c_str());
-        disarmed().systems.emplace_back(name, handler);
-        VSIInstallPluginHandler(name.c_str(), nothing);
-    }
-    CSLDestroy(prefixes);
-    VSIFreeFilesystemPluginCallbacksStruct(nothing);
-}
-
-}  // namespace
 
 void disarm_gdal() {
-    const std::lock_guard lock(mutex());
-    CPLSetConfigOption("GDAL_VRT_ENABLE_PYTHON", "NO");
-    const auto close = [](const char* name) {
-        if (GDALDriver* const found = driver(name)) {
-            disarmed().drivers.emplace_back(found, found->pfnOpen);
-            found->pfnOpen = nullptr;
-        }
-    };
-    close("MEM");
-    for (const char* name : kRemoteDrivers)
-        close(name);
-    if (GDALDriver* const netcdf = driver("netCDF"))
-        netcdf_open = std::exchange(netcdf->pfnOpen, open_local_netcdf);
-    if (GDALDriver* const geopackage = driver("GPKG"))
-        geopackage_open = std::exchange(geopackage->pfnOpen, open_plain_geopackage);
-    close_remote_systems();
-    CPLHTTPSetFetchCallback(fetch_nothing, nullptr);
+    gdal_module().disarm(is_local_file_system);
 }
 
 void allow_remote() {
-    const std::lock_guard lock(mutex());
-    Disarmed& all = disarmed();
-    if (all.drivers.empty() || std::exchange(all.remote_allowed, true)) return;
-    for (const auto& [found, open] : all.drivers)
-        if (found != driver("MEM")) found->pfnOpen = open;
-    for (const auto& [name, handler] : all.systems)
-        VSIFileManager::InstallHandler(name, handler);
-    CPLHTTPSetFetchCallback(nullptr, nullptr);
+    gdal_module().allow_remote();
 }
 
 std::string disarmed_driver_of(const std::string& path) {
-    CPLStringList names;
-    for (const auto& [found, open] : disarmed().drivers)
-        if (!found->pfnOpen) names.AddString(found->GetDescription());
+    GdalStrings names;
+    for (const std::string& name : gdal_module().disarmed_drivers())
+        names.add(name);
     const GDALDriverH found =
-        GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, names.List(), nullptr);
+        GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, names.list(), nullptr);
     return found ? GDALGetDriverShortName(found) : "";
 }
 
@@ -213,6 +114,11 @@ void refuse_unreadable(const std::string& path) {
 
 namespace {
 
+struct DestroyTree {
+    void operator()(CPLXMLNode* tree) const { CPLDestroyXMLNode(tree); }
+};
+using Tree = std::unique_ptr<CPLXMLNode, DestroyTree>;
+
 /// Walks through a virtual raster and those that it names.
 class VrtWalk {
   public:
@@ -238,10 +144,8 @@ class VrtWalk {
             refuse(given_, fmt::format("a virtual raster of {} MiB ('{}'), expected at most {}",
                                        status.st_size >> 20, path, kMaxBytes >> 20));
         inside_.push_back(path);
-        if (CPLXMLNode* const tree = CPLParseXMLFile(path.c_str())) {
-            const CPLXMLTreeCloser closer(tree);
-            elements(tree, CPLGetPath(path.c_str()));
-        }
+        if (const Tree tree{CPLParseXMLFile(path.c_str())})
+            elements(tree.get(), CPLGetPath(path.c_str()));
         inside_.pop_back();
         seen_.push_back(path);
     }
@@ -286,10 +190,7 @@ class VrtWalk {
     void source(const std::string& text, const std::string& folder) {
         std::string name = text;
         if (name.starts_with('<')) {
-            if (CPLXMLNode* const tree = CPLParseXMLString(name.c_str())) {
-                const CPLXMLTreeCloser closer(tree);
-                elements(tree, folder);
-            }
+            if (const Tree tree{CPLParseXMLString(name.c_str())}) elements(tree.get(), folder);
             return;
         }
         if (EQUALN(name.c_str(), "vrt://", 6)) name = name.substr(6, name.find('?') - 6);

@@ -6,11 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include <cpl_string.h>
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/error.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/whole_file.h"
 

@@ -8,18 +8,15 @@
 #include <optional>
 #include <set>
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gdal.h>
 #include <glm/geometric.hpp>
-#include <ogr_api.h>
-#include <ogr_srs_api.h>
 
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -177,8 +174,8 @@ class LineReader {
             return;
         }
         if (OGR_G_HasCurveGeometry(geometry, 1)) {
-            const std::unique_ptr<void, decltype(&OGR_G_DestroyGeometry)> linear(
-                OGR_G_GetLinearGeometry(geometry, 0, nullptr), &OGR_G_DestroyGeometry);
+            const std::unique_ptr<void, void (*)(OGRGeometryH)> linear(
+                OGR_G_GetLinearGeometry(geometry, 0, nullptr), OGR_G_DestroyGeometry.address());
             return collect(linear.get());
         }
         const int inner = OGR_G_GetGeometryCount(geometry);

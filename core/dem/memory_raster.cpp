@@ -6,12 +6,12 @@
 #include <memory>
 #include <utility>
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include "base/error.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
+#include "dem/interpret.h"
 
 namespace relevo::dem {
 namespace {
@@ -40,19 +40,18 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
             "coordinates of the CRS");
     prepare_gdal();
     const GdalMessages messages;
-    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALDriverH const driver = GDALGetDriverByName("GTiff");
     if (!driver) refuse(messages, name_);
+    const Dataset file(GDALCreate(driver, name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
     double transform[6] = {a.x0 - 0.5 * (a.x_column + a.x_row), a.x_column, a.x_row,
                            a.y0 - 0.5 * (a.y_column + a.y_row), a.y_column, a.y_row};
-    const std::unique_ptr<GDALDataset> file(
-        driver->Create(name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
-    if (!file || file->SetGeoTransform(transform) != CE_None) refuse(messages, name_);
-    GDALRasterBand* const band = file->GetRasterBand(1);
-    band->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    band->SetUnitType("m");
+    if (!file || GDALSetGeoTransform(file.get(), transform) != CE_None) refuse(messages, name_);
+    GDALRasterBandH const band = GDALGetRasterBand(file.get(), 1);
+    GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN());
+    GDALSetRasterUnitType(band, "m");
     // GDAL's interface has no const here; it reads.
-    if (band->RasterIO(GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns, rows,
-                       GDT_Float32, 0, 0, nullptr) != CE_None)
+    if (GDALRasterIO(band, GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns,
+                     rows, GDT_Float32, 0, 0) != CE_None)
         refuse(messages, name_);
 }
 

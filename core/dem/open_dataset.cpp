@@ -6,14 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal.h>
 
 #include "base/contains.h"
 #include "base/error.h"
 #include "dem/folder.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <gdal.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
 #include "base/units.h"
+#include "dem/gdal.h"
 #include "dem/photo_pixels.h"
 
 namespace relevo::dem {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <gdal.h>
 #include <glm/common.hpp>
 
 #include "base/log.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 
 namespace relevo::dem {

@@ -6,12 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal.h>
-#include <gdal_utils.h>
 
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/nodata.h"
@@ -232,20 +229,20 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
     const std::string band = fmt::format("{}", piece.about.band);
     const std::string nodata =
         piece.band_scale.nodata ? fmt::format("{}", *piece.band_scale.nodata) : std::string("none");
-    CPLStringList one_band, onto;
+    GdalStrings one_band, onto;
     for (const std::string& word : {std::string("-of"), std::string("VRT"), std::string("-b"), band,
                                     std::string("-a_nodata"), nodata})
-        one_band.AddString(word.c_str());
+        one_band.add(word);
     if (piece.alpha_band > 0) {
-        one_band.AddString("-b");
-        one_band.AddString(fmt::format("{}", piece.alpha_band).c_str());
-        onto.AddString("-srcalpha");
+        one_band.add("-b");
+        one_band.add(fmt::format("{}", piece.alpha_band));
+        onto.add("-srcalpha");
     }
     if (piece.has_mask) {
-        one_band.AddString("-mask");
-        one_band.AddString(fmt::format("mask,{}", band).c_str());
+        one_band.add("-mask");
+        one_band.add(fmt::format("mask,{}", band));
     }
-    GDALTranslateOptions* const translation = GDALTranslateOptionsNew(one_band.List(), nullptr);
+    GDALTranslateOptions* const translation = GDALTranslateOptionsNew(one_band.list(), nullptr);
     const GDALDatasetH plain = GDALTranslate("", dataset.get(), translation, nullptr);
     GDALTranslateOptionsFree(translation);
     if (!plain) refuse(piece.path, fmt::format("cannot be resampled, {}", messages.failure("")));
@@ -276,8 +273,8 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
                                     std::string("nan"),
                                     std::string("-ovr"),
                                     std::string("NONE")})
-        onto.AddString(word.c_str());
-    GDALWarpAppOptions* const warping = GDALWarpAppOptionsNew(onto.List(), nullptr);
+        onto.add(word);
+    GDALWarpAppOptions* const warping = GDALWarpAppOptionsNew(onto.list(), nullptr);
     GDALDatasetH source = dataset.get();
     const GDALDatasetH warped = GDALWarp("", nullptr, 1, &source, warping, nullptr);
     GDALWarpAppOptionsFree(warping);

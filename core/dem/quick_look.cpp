@@ -10,11 +10,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 
@@ -72,24 +72,25 @@ std::optional<QuickLook> read_srtm(const std::string& path, int longest) {
 }
 
 /// Ground between posts of the whole raster.
-void set_spacing(GDALDataset& file, QuickLook& look) {
+void set_spacing(GDALDatasetH file, QuickLook& look) {
     double t[6] = {0, 1, 0, 0, 0, -1};
-    if (file.GetGeoTransform(t) != CE_None) return;
+    if (GDALGetGeoTransform(file, t) != CE_None) return;
     look.column_m = std::hypot(t[1], t[4]);
     look.row_m = std::hypot(t[2], t[5]);
-    const OGRSpatialReference* crs = file.GetSpatialRef();
-    const double width = t[1] * file.GetRasterXSize(), height = t[5] * file.GetRasterYSize();
+    OGRSpatialReferenceH const crs = GDALGetSpatialRef(file);
+    const double width = t[1] * GDALGetRasterXSize(file), height = t[5] * GDALGetRasterYSize(file);
     // No DEM has cells of more than a degree, and few have cells of less than a metre.
     const bool may_be_degrees = std::max(std::abs(t[0]), std::abs(t[0] + width)) <= 360 &&
                                 std::max(std::abs(t[3]), std::abs(t[3] + height)) <= 90.001 &&
                                 std::max(look.column_m, look.row_m) < 1;
-    if (crs ? crs->IsGeographic() : may_be_degrees) {
+    if (crs ? OSRIsGeographic(crs) != 0 : may_be_degrees) {
         const double middle_deg = std::clamp(t[3] + 0.5 * height, -89.0, 89.0);
         look.column_m *= kDegree_m * std::cos(radians(middle_deg));
         look.row_m *= kDegree_m;
     } else if (crs) {
-        look.column_m *= crs->GetLinearUnits();
-        look.row_m *= crs->GetLinearUnits();
+        const double unit_m = OSRGetLinearUnits(crs, nullptr);
+        look.column_m *= unit_m;
+        look.row_m *= unit_m;
     }
 }
 
@@ -99,13 +100,13 @@ void turn_over(Array2d<float>& heights_m) {
         std::ranges::swap_ranges(heights_m.row(r), heights_m.row(heights_m.height() - 1 - r));
 }
 
-QuickLook read(GDALDataset& file, const std::string& path, int longest,
+QuickLook read(GDALDatasetH file, const std::string& path, int longest,
                const GdalMessages& messages) {
-    GDALRasterBand* const band = file.GetRasterBand(1);
+    GDALRasterBandH const band = GDALGetRasterBand(file, 1);
     if (!band) bad_input(fmt::format("{}: no band of heights", printable(path)));
-    const int columns = file.GetRasterXSize(), rows = file.GetRasterYSize();
+    const int columns = GDALGetRasterXSize(file), rows = GDALGetRasterYSize(file);
     const int step = step_for(columns, rows, longest);
-    if (band->GetOverviewCount() == 0 && double{1} * columns * rows > kMostPosts)
+    if (GDALGetOverviewCount(band) == 0 && double{1} * columns * rows > kMostPosts)
         bad_input(
             fmt::format("{}: {} x {} posts, expected at most {:.0f} million without overviews; "
                         "add them with gdaladdo",
@@ -115,14 +116,14 @@ QuickLook read(GDALDataset& file, const std::string& path, int longest,
     look.column_m *= step;
     look.row_m *= step;
     look.heights_m = Array2d<float>(std::max(1, columns / step), std::max(1, rows / step));
-    if (band->RasterIO(GF_Read, 0, 0, columns, rows, look.heights_m.data(), look.heights_m.width(),
-                       look.heights_m.height(), GDT_Float32, 0, 0, nullptr) != CE_None)
+    if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, look.heights_m.data(),
+                     look.heights_m.width(), look.heights_m.height(), GDT_Float32, 0, 0) != CE_None)
         bad_input(fmt::format("{}: cannot be read, {}", printable(path), messages.failure(path)));
     int has_nodata = 0;
-    const double nodata = band->GetNoDataValue(&has_nodata);
+    const double nodata = GDALGetRasterNoDataValue(band, &has_nodata);
     mark_voids(look.heights_m, has_nodata ? std::optional(nodata) : std::nullopt);
     double t[6] = {};
-    if (file.GetGeoTransform(t) == CE_None && t[5] > 0) turn_over(look.heights_m);
+    if (GDALGetGeoTransform(file, t) == CE_None && t[5] > 0) turn_over(look.heights_m);
     return look;
 }
 
@@ -132,7 +133,7 @@ QuickLook quick_look(std::string path, int longest) {
     if (std::optional<QuickLook> tile = read_srtm(path, longest)) return *std::move(tile);
     const GdalMessages messages;
     const Dataset dataset = open_dataset(path);
-    return read(*GDALDataset::FromHandle(dataset.get()), path, longest, messages);
+    return read(dataset.get(), path, longest, messages);
 }
 
 }  // namespace relevo::dem

@@ -4,7 +4,7 @@
 #include <array>
 #include <cctype>
 
-#include <cpl_port.h>
+#include "dem/gdal.h"
 
 namespace relevo::dem {
 namespace {

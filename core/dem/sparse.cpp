@@ -5,8 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <cpl_string.h>
-#include <gdal.h>
+#include "dem/gdal.h"
 
 namespace relevo::dem {
 namespace {

@@ -1,8 +1,8 @@
 #include "dem/versions.h"
 
 #include <fmt/format.h>
-#include <gdal.h>
-#include <ogr_srs_api.h>
+
+#include "dem/gdal.h"
 
 namespace relevo::dem {
 

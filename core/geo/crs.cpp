@@ -11,11 +11,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <proj.h>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "geo/proj.h"
 #include "geo/proj_files.h"
 
 namespace relevo::geo {

@@ -7,10 +7,9 @@
 #include <tuple>
 #include <utility>
 
-#include <proj.h>
-
 #include "base/error.h"
 #include "base/text.h"
+#include "geo/proj.h"
 
 namespace relevo::geo {
 namespace {
@@ -21,8 +20,8 @@ struct Entry {
 };
 
 std::vector<Entry> read_database() {
-    const std::unique_ptr<PJ_CONTEXT, decltype(&proj_context_destroy)> context(
-        proj_context_create(), &proj_context_destroy);
+    const std::unique_ptr<PJ_CONTEXT, PJ_CONTEXT* (*)(PJ_CONTEXT*)> context(
+        proj_context_create(), proj_context_destroy.address());
     proj_log_level(context.get(), PJ_LOG_NONE);
     PROJ_CRS_LIST_PARAMETERS* const wanted = proj_get_crs_list_parameters_create();
     const PJ_TYPE types[] = {PJ_TYPE_GEOGRAPHIC_2D_CRS, PJ_TYPE_PROJECTED_CRS};

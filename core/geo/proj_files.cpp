@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "geo/proj.h"
+
 namespace relevo::geo {
 namespace {
 

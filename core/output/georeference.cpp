@@ -5,14 +5,11 @@
 #include <cstring>
 #include <memory>
 
-#include <cpl_minixml.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "output/scratch_files.h"
 
@@ -20,13 +17,17 @@ namespace relevo::output {
 namespace {
 
 struct Close {
-    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
 };
 
-OGRSpatialReference crs_of(const Georeference& where) {
-    OGRSpatialReference crs;
-    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (crs.SetFromUserInput(where.crs.c_str()) != OGRERR_NONE)
+struct Free {
+    void operator()(char* text) const { VSIFree(text); }
+};
+using Text = std::unique_ptr<char, Free>;
+
+dem::GdalCrs crs_of(const Georeference& where) {
+    dem::GdalCrs crs(where.crs);
+    if (!crs.known())
         failed(fmt::format("georeference: {}: GDAL does not know this CRS", printable(where.crs)));
     return crs;
 }
@@ -41,23 +42,23 @@ std::string world_text(const std::array<double, 6>& g) {
 }
 
 std::string escaped(const std::string& text) {
-    const std::unique_ptr<char, decltype(&VSIFree)> result(
-        CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML), VSIFree);
+    const Text result(CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML));
     return result.get();
 }
 
 /// As GDAL's "persistent auxiliary metadata".
 std::string aux_text(const Georeference& where) {
-    const OGRSpatialReference crs = crs_of(where);
+    const dem::GdalCrs crs = crs_of(where);
     char* exported = nullptr;
     const char* const options[] = {"FORMAT=WKT2_2018", nullptr};
-    const OGRErr error = crs.exportToWkt(&exported, options);
-    const std::unique_ptr<char, decltype(&VSIFree)> wkt(exported, VSIFree);
+    const OGRErr error = OSRExportToWktEx(crs.handle(), &exported, options);
+    const Text wkt(exported);
     if (error != OGRERR_NONE)
         failed(fmt::format("georeference: {}: GDAL has no WKT of this CRS", printable(where.crs)));
-    const std::vector<int>& axes = crs.GetDataAxisToSRSAxisMapping();
+    int count = 0;
+    const int* const axes = OSRGetDataAxisToSRSAxisMapping(crs.handle(), &count);
     std::string mapping;
-    for (const int axis : axes)
+    for (const int axis : std::span(axes, static_cast<std::size_t>(count)))
         mapping += fmt::format("{}{}", mapping.empty() ? "" : ",", axis);
     const auto& g = where.geotransform;
     return fmt::format(
@@ -94,7 +95,7 @@ std::vector<std::string> georeference_texts(const Georeference& where) {
 void write_geotiff(OutputFile& file, std::span<const std::byte> tiff, const Georeference& where) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    const OGRSpatialReference crs = crs_of(where);
+    const dem::GdalCrs crs = crs_of(where);
     const ScratchFiles scratch([&] { return file.open_scratch(); });
     const std::string path = scratch.path("picture.tif");
     const auto refuse = [&] {
@@ -108,11 +109,11 @@ void write_geotiff(OutputFile& file, std::span<const std::byte> tiff, const Geor
     if (VSIFCloseL(plain) != 0 || !written) refuse();
     {
         const char* const drivers[] = {"GTiff", nullptr};
-        const std::unique_ptr<GDALDataset, Close> dataset(GDALDataset::FromHandle(
-            GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers, nullptr, nullptr)));
+        const std::unique_ptr<void, Close> dataset(
+            GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers, nullptr, nullptr));
         std::array<double, 6> transform = where.geotransform;
-        if (!dataset || dataset->SetGeoTransform(transform.data()) != CE_None ||
-            dataset->SetSpatialRef(&crs) != CE_None)
+        if (!dataset || GDALSetGeoTransform(dataset.get(), transform.data()) != CE_None ||
+            GDALSetSpatialRef(dataset.get(), crs.handle()) != CE_None)
             refuse();
     }
     // What is written when it is closed may fail, too.

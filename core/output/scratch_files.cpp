@@ -10,10 +10,11 @@
 #include <string_view>
 #include <utility>
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "dem/gdal.h"
 
 namespace relevo::output {
 

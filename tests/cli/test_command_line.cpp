@@ -1,6 +1,7 @@
 #include <functional>
 #include <memory>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "cli/command_line.h"

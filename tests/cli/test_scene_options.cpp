@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -28,7 +29,7 @@ bool is_number(const Option& option) {
 Scene from_line(const Option& option, const std::string& value) {
     CLI::App app;
     SceneArguments arguments;
-    arguments.add_to(app);
+    arguments.add_to(Verb(app));
     std::vector<std::string> words{"a.tif", "--overlay", "b.tif", std::string(option.flag)};
     if (option.kind != Kind::Flag) words.back() += "=" + value;
     std::ranges::reverse(words);  // as CLI11 takes them
@@ -107,7 +108,7 @@ TEST(SceneOptions, ADefaultOnTheLineReplacesWhatASceneSays) {
                                "encoding": "terrarium"}})";
     CLI::App app;
     SceneArguments arguments;
-    arguments.add_to(app);
+    arguments.add_to(Verb(app));
     app.parse(fmt::format("--scene {} --memory 1024 --encoding none", path));
     const Scene scene = arguments.scene();
     EXPECT_EQ(scene.dem.max_posts, dem::posts_in_mib(1024));

@@ -1,0 +1,185 @@
+// The module lib/relevo/gdal.so: what is done with GDAL's C++ classes.
+#include "dem/gdal_module.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <cpl_http.h>
+#include <cpl_string.h>
+#include <cpl_vsi_virtual.h>
+#include <gdal_priv.h>
+
+namespace relevo::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",     "EEDAI",    "HTTP",          "NGW",
+                                       "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster", "STACIT",
+                                       "STACTA", "WCS",      "WMS",      "WMTS"};
+using OpenFunction = GDALDataset* (*)(GDALOpenInfo*);
+
+struct Disarmed {
+    std::vector<std::pair<GDALDriver*, OpenFunction>> drivers;
+    std::vector<std::pair<std::string, VSIFilesystemHandler*>> systems;
+    bool remote_allowed = false;
+};
+
+std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+}
+
+Disarmed& disarmed() {
+    // Never destroyed: it holds what GDAL has until the process ends.
+    static Disarmed& all = *new Disarmed;
+    return all;
+}
+
+OpenFunction netcdf_open = nullptr;
+OpenFunction geopackage_open = nullptr;
+
+/// netCDF's library itself goes to addresses.
+GDALDataset* open_local_netcdf(GDALOpenInfo* info) {
+    const bool address = std::strstr(info->pszFilename, "://") != nullptr;
+    if (address) {
+        const std::lock_guard lock(mutex());
+        if (!disarmed().remote_allowed) return nullptr;
+    }
+    return netcdf_open(info);
+}
+
+/// A virtual raster may pass options on, and this one is SQL of any kind.
+GDALDataset* open_plain_geopackage(GDALOpenInfo* info) {
+    if (CSLFetchNameValue(info->papszOpenOptions, "PRELUDE_STATEMENTS")) return nullptr;
+    return geopackage_open(info);
+}
+
+GDALDriver* driver(const char* name) {
+    return GDALDriver::FromHandle(GDALGetDriverByName(name));
+}
+
+CPLHTTPResult* fetch_nothing(const char*, CSLConstList, GDALProgressFunc, void*,
+                             CPLHTTPFetchWriteFunc, void*, void*) {
+    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+    result->nStatus = 1;
+    result->pszErrBuf = CPLStrdup("the net is closed to files that ask for it themselves");
+    return result;
+}
+
+void close_remote_systems(bool (*is_local_file_system)(std::string_view name)) {
+    VSIFilesystemPluginCallbacksStruct* const nothing = VSIAllocFilesystemPluginCallbacksStruct();
+    nothing->open = [](void*, const char*, const char*) -> void* {
+        errno = EACCES;
+        return nullptr;
+    };
+    char** const prefixes = VSIGetFileSystemsPrefixes();
+    for (char** prefix = prefixes; prefix && *prefix; ++prefix) {
+        const std::string name = *prefix;
+        if (!name.starts_with("/vsi") || is_local_file_system(name)) continue;
+        VSIFilesystemHandler* const handler = VSIFileManager::GetHandler(name.c_str());
+        disarmed().systems.emplace_back(name, handler);
+        VSIInstallPluginHandler(name.c_str(), nothing);
+    }
+    CSLDestroy(prefixes);
+    VSIFreeFilesystemPluginCallbacksStruct(nothing);
+}
+
+void disarm(bool (*is_local_file_system)(std::string_view name)) {
+    const std::lock_guard lock(mutex());
+    CPLSetConfigOption("GDAL_VRT_ENABLE_PYTHON", "NO");
+    const auto close = [](const char* name) {
+        if (GDALDriver* const found = driver(name)) {
+            disarmed().drivers.emplace_back(found, found->pfnOpen);
+            found->pfnOpen = nullptr;
+        }
+    };
+    close("MEM");
+    for (const char* name : kRemoteDrivers)
+        close(name);
+    if (GDALDriver* const netcdf = driver("netCDF"))
+        netcdf_open = std::exchange(netcdf->pfnOpen, open_local_netcdf);
+    if (GDALDriver* const geopackage = driver("GPKG"))
+        geopackage_open = std::exchange(geopackage->pfnOpen, open_plain_geopackage);
+    close_remote_systems(is_local_file_system);
+    CPLHTTPSetFetchCallback(fetch_nothing, nullptr);
+}
+
+void allow_remote() {
+    const std::lock_guard lock(mutex());
+    Disarmed& all = disarmed();
+    if (all.drivers.empty() || std::exchange(all.remote_allowed, true)) return;
+    for (const auto& [found, open] : all.drivers)
+        if (found != driver("MEM")) found->pfnOpen = open;
+    for (const auto& [name, handler] : all.systems)
+        VSIFileManager::InstallHandler(name, handler);
+    CPLHTTPSetFetchCallback(nullptr, nullptr);
+}
+
+std::vector<std::string> disarmed_drivers() {
+    const std::lock_guard lock(mutex());
+    std::vector<std::string> names;
+    for (const auto& [found, open] : disarmed().drivers)
+        if (!found->pfnOpen) names.emplace_back(found->GetDescription());
+    return names;
+}
+
+/// GDAL's own files of this machine, but for what is neither file nor folder.
+class RegularFiles : public VSIFilesystemHandler {
+  public:
+    RegularFiles(VSIFilesystemHandler* all, void (*skipped)(const std::string& name))
+        : all_(all), skipped_(skipped) {}
+
+    VSIVirtualHandle* Open(const char* name, const char* access, bool set_error,
+                           CSLConstList options) override {
+        std::error_code unknown;
+        const fs::file_status status = fs::status(name, unknown);
+        if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
+            skipped_(name);
+            errno = EINVAL;
+            return nullptr;
+        }
+        return all_->Open(name, access, set_error, options);
+    }
+    int Stat(const char* name, VSIStatBufL* status, int flags) override {
+        return all_->Stat(name, status, flags);
+    }
+    int Unlink(const char* name) override { return all_->Unlink(name); }
+    int Mkdir(const char* name, long mode) override { return all_->Mkdir(name, mode); }
+    int Rmdir(const char* name) override { return all_->Rmdir(name); }
+    char** ReadDirEx(const char* name, int most) override { return all_->ReadDirEx(name, most); }
+    char** SiblingFiles(const char* name) override { return all_->SiblingFiles(name); }
+    int Rename(const char* from, const char* to) override { return all_->Rename(from, to); }
+    int IsCaseSensitive(const char* name) override { return all_->IsCaseSensitive(name); }
+    GIntBig GetDiskFreeSpace(const char* name) override { return all_->GetDiskFreeSpace(name); }
+    int SupportsSparseFiles(const char* name) override { return all_->SupportsSparseFiles(name); }
+    VSIDIR* OpenDir(const char* name, int depth, const char* const* options) override {
+        return all_->OpenDir(name, depth, options);
+    }
+    bool IsLocal(const char* name) override { return all_->IsLocal(name); }
+
+  private:
+    std::unique_ptr<VSIFilesystemHandler> all_;
+    void (*skipped_)(const std::string& name);
+};
+
+void open_regular_files_only(void (*skipped)(const std::string& name)) {
+    // GDAL deletes it when the process ends.
+    VSIFileManager::InstallHandler("", new RegularFiles(VSIFileManager::GetHandler(""), skipped));
+}
+
+}  // namespace
+}  // namespace relevo::dem
+
+extern "C" __attribute__((visibility("default"))) const relevo::dem::GdalModule*
+relevo_gdal_module() {
+    static const relevo::dem::GdalModule module{relevo::dem::disarm, relevo::dem::allow_remote,
+                                                relevo::dem::disarmed_drivers,
+                                                relevo::dem::open_regular_files_only};
+    return &module;
+}
