@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -276,6 +277,14 @@ Whole MainWindow::whole_views() const {
     Whole whole{pose_in(opening_->home_view()), pose_in(above)};
     // The vertical at the camera differs from that at the DEM's centre.
     whole.above = from_above(whole.above, state_.land, whole.above.eye_m, 0);
+    const scene::Camera camera = camera_of(state_.document.pose, state_.land);
+    const double aspect = size().x / size().y;
+    const std::vector<glm::dvec3>& ground = opening_->opened()->outline.points;
+    const auto visible = std::ranges::count_if(ground, [&](const glm::dvec3& point_m) {
+        const auto at = in_picture(camera, point_m, aspect);
+        return at && std::abs(at->x) < 1 && std::abs(at->y) < 1;
+    });
+    whole.in_view = static_cast<double>(visible) / std::max<std::size_t>(ground.size(), 1);
     return whole;
 }
 

@@ -197,7 +197,7 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
 }
 
 std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m) {
-    constexpr double kAhead_deg = -10;
+    constexpr double kAhead_deg = 0;
     if (std::isnan(land.ground_under(point_m))) return std::nullopt;
     Pose standing = pose;
     standing.eye_m = point_m;

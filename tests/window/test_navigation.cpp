@@ -161,7 +161,7 @@ TEST_F(Navigation, StandsAtAPointAndTurnsToOne) {
     EXPECT_NEAR(eye.lon_rad, at.lon_rad, 1e-12);
     EXPECT_NEAR(eye.height_m, 500 + kWalk_m, 1e-6);
     EXPECT_EQ(standing.heading_deg, pose_.heading_deg);
-    EXPECT_EQ(standing.pitch_deg, -10);  // not at the feet
+    EXPECT_EQ(standing.pitch_deg, 0);  // not at the feet
     const glm::dvec3 other = ground(pose_, {-0.7, 0.4});
     const Pose turned = facing(standing, land_, other);
     EXPECT_EQ(turned.eye_m, standing.eye_m);

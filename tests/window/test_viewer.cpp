@@ -126,7 +126,7 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     EXPECT_LT(scene()["camera"]["eye"][2], 20000);
     // And a walk begins with a look ahead.
     ASSERT_TRUE(changes([&] { act({"key", "g"}); }));
-    EXPECT_EQ(scene()["camera"]["pitch"], -10);
+    EXPECT_EQ(scene()["camera"]["pitch"], 0);
 }
 
 TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {
