@@ -78,6 +78,7 @@ void MainWindow::run() {
             want_view();  // early: the scene's thread draws while this one draws the panels
         }
         open_requested_files();
+        if (opening_->is_refused() && !import_sheet_.is_open()) opening_->throw_refusal();
         check_files();
         if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing &&
             !film_->shows_frame())
@@ -151,7 +152,8 @@ void MainWindow::draw_panels() {
     if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        waiting_text(opening_->scene());
+        if (opening_->is_opening()) waiting_text(opening_->scene());
+        import_sheet_.draw(size());
         return;
     }
     if (picture_) draw_over_image();

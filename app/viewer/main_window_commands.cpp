@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "base/paths.h"
 #include "sun/zone_of_place.h"
 #include "viewer/export.h"
 
@@ -66,9 +67,12 @@ void MainWindow::process_keys() {
 
 bool MainWindow::run_program_command(Command command) {
     switch (command) {
-        case Command::Open:
-            open_dialog_.open(opening_->requested_file());
+        case Command::Open: {
+            const std::string& file = opening_->requested_file();
+            // The folder of the bundled DEM has no files of the user's.
+            open_dialog_.open(file.starts_with(share_dir().string()) ? "" : file);
             return true;
+        }
         case Command::HowToRead:
             if (is_open()) {
                 const scene::Scene& scene = state_.document.scene;

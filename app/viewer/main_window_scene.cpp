@@ -130,7 +130,8 @@ void MainWindow::poll_opening() {
             return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
             pacing_.need_frames(3);
-            return ask_how_to_read();
+            ask_how_to_read();
+            return;
     }
 }
 
