@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "base/text.h"
 #include "dem/remote.h"
 #include "image/image.h"
 #include "render/renderer.h"
@@ -47,6 +48,12 @@ std::string free_name(const std::string& stem, const std::string& ending) {
     for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
         name = fmt::format("{}-{}.{}", stem, n, ending);
     return name;
+}
+
+std::string in_folder(const std::string& file) {
+    std::error_code unknown;
+    const std::filesystem::path whole = std::filesystem::absolute(file, unknown);
+    return unknown ? "" : " in " + printable(whole.parent_path().string());
 }
 
 std::string free_picture_name() {
@@ -92,8 +99,8 @@ std::string trust_option(const scene::Scene& scene) {
 
 std::string save_scene(const scene::Scene& scene) {
     const std::string name = save_json(scene::scene_text(scene, ""));
-    return fmt::format("{0}: scene saved; relevo view --scene {0}{1} opens it", name,
-                       trust_option(scene));
+    return fmt::format("{0}: scene saved{2}; relevo view --scene {0}{1} opens it", name,
+                       trust_option(scene), in_folder(name));
 }
 
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
@@ -164,7 +171,7 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
         image::write(file, image, metadata);
         file.finish();
     });
-    std::string message = name + ": picture saved";
+    std::string message = name + ": picture saved" + in_folder(name);
     for (const std::string& note : notes)
         message += "; " + note;
     return message;

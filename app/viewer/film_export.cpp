@@ -13,6 +13,7 @@
 #include "session/batch.h"
 #include "session/film_batch.h"
 #include "session/scene_inputs.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
 namespace {
@@ -78,8 +79,9 @@ std::string FilmExport::write() {
     };
     if (is_cancelled_) throw Cancelled();
     const session::FilmReport report = session::draw_film(shots, options, times, files);
-    std::string text = fmt::format("{}: film saved, {} frames, {:.3g} s", printable(file()),
-                                   frames(), static_cast<double>(frames()) / plan_->film.film.fps);
+    std::string text =
+        fmt::format("{}: film saved{}, {} frames, {:.3g} s", printable(file()), in_folder(file()),
+                    frames(), static_cast<double>(frames()) / plan_->film.film.fps);
     if (report.blank > 0)
         text += fmt::format("; {} frames show only sky, the first is frame {}", report.blank,
                             report.first_blank);

@@ -195,6 +195,7 @@ std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return "opening " + short_name(opening_->next_scene().dems) + " ...   Esc cancels";
     if (const std::string film = film_->progress(); !film.empty()) return film;
+    if (picture_export_) return "drawing the picture ...";
     return is_drawing() ? "drawing ..." : "";
 }
 

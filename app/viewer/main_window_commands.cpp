@@ -264,7 +264,7 @@ void MainWindow::save_profile() {
             file.write(text);
             file.finish();
         });
-        messages_.report(name + ": profile saved");
+        messages_.report(name + ": profile saved" + in_folder(name));
     });
 }
 
