@@ -73,6 +73,7 @@ void MainWindow::run() {
         process_keys();
         if (is_open()) {
             process_mouse(std::min(passed_s, 0.1));
+            fit_home();
             process_film(passed_s);
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
@@ -246,8 +247,10 @@ void MainWindow::hand_over_scene() {
         overlay_->show_frame(thread);
     else if (overlay_->update(opened, thread))
         pacing_.need_frames(2);
-    if (state_.compare_is_wanted && !comparison_->thread())
+    if (state_.compare_is_wanted && !comparison_->thread()) {
+        window_->set_line(free_middle().x / size().x);
         comparison_->start(whole_scene(), opened, wanted_now(), overlay_->laid());
+    }
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     if (takes_picture_ && is_image_complete()) take_picture();
 }

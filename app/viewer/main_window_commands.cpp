@@ -227,6 +227,7 @@ void MainWindow::move(Command command) {
             messages_.note("no ground to walk on here; click a point, then press G");
         return;
     }
+    if (command == Command::Whole) note_home();
     if (command == Command::Walk || command == Command::StandHere)
         messages_.note(hand_->is_walking()
                            ? "walking at eye height: W A S D, faster with Shift; G flies again"

@@ -236,9 +236,12 @@ void line_of_sight_of(Measurement& measurement) {
             fmt::format("the end is visible, {:.1f} m above the line of sight over the "
                         "ground after {}",
                         -sight->missing_m, length_text(sight->highest.distance_m)));
-    wrapped(
-        fmt::format("the end is hidden by the ground after {}; a target {:.1f} m higher is visible",
-                    length_text(sight->highest.distance_m), sight->missing_m));
+    constexpr double kHighest_m = 1000;  // of what may stand there
+    std::string text =
+        "the end is hidden by the ground after " + length_text(sight->highest.distance_m);
+    if (sight->missing_m < kHighest_m)
+        text += fmt::format("; a target {:.1f} m higher is visible", sight->missing_m);
+    wrapped(text);
 }
 
 }  // namespace

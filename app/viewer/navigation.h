@@ -19,6 +19,8 @@ struct Pose {
     double heading_deg = 0;  ///< clockwise from true north
     double pitch_deg = 0;    ///< above the horizontal
     double fov_y_rad = 0;
+
+    bool operator==(const Pose&) const = default;
 };
 
 /// The ground below the camera.

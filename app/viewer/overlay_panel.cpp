@@ -92,7 +92,7 @@ void period(State& state) {
     ImGui::SameLine();
     date_field(state, "to", chosen.last);
     if (sun::days_between(chosen.first, chosen.last) < 0)
-        ImGui::TextDisabled("the last day is before the first: one day");
+        ImGui::TextDisabled("the last day is before the first; shown is the first");
 }
 
 /// Resolution of the overlay, and progress.

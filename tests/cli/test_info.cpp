@@ -103,8 +103,8 @@ TEST(InfoVerb, ReportsSpikesAndOutliers) {
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(
         run.out.find(
-            "outliers   1 heights impossible on Earth\nspikes     1 posts more than 180 m "
-            "above or below all their neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
+            "outliers   1 heights impossible on Earth\nspikes     1 post more than 180 m "
+            "above or below all its neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
         std::string::npos)
         << run.out;
 }
