@@ -10,7 +10,7 @@ import re
 import sys
 
 MOST_LINES = 60
-FOLDERS = ("app", "core", "include", "plugins", "tools")
+FOLDERS = ("app", "bindings", "core", "include", "plugins", "tools")
 REASON = "In one piece:"
 COMMENTS_AND_TEXTS = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Fa-f])\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:\\\n|[^\n])*',

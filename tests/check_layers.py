@@ -88,12 +88,12 @@ def check_plugins(root):
 
 
 def check_names(root):
-    """Core and app name no plugin: adding or removing one edits nothing else."""
+    """Core, app and bindings name no plugin: adding or removing one edits nothing else."""
     ids = [path.parent.name for path in (root / "plugins").glob("*/plugin.json")]
     if not ids:
         return
     quoted = re.compile(r'"(' + "|".join(map(re.escape, ids)) + r')"')
-    for folder in ("core", "app"):
+    for folder in ("core", "app", "bindings"):
         for path in sorted((root / folder).rglob("*")):
             if path.suffix in {".h", ".cpp"}:
                 for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the words that users read against the table "Words" of docs/terms.md, and the line length of their pages.
 
-Read are the pages below, the texts of app/ and core/ (string literals with a blank in them, so that keys and options
+Read are the pages below, the texts of app/, bindings/ and core/ (string literals with a blank in them, so that keys and options
 stay free), and the names and descriptions of plugins, presets, parameters and schemas. Code in pages (`...`, fences) is not.
 A word is refused by the pattern of its row; a row without a pattern needs a reader. New rows need an entry here.
 
@@ -14,7 +14,8 @@ import re
 import sys
 
 PAGES = ("README.md", "CHANGELOG.md", "docs/cli.md", "docs/dem-formats.md", "docs/gallery.md", "docs/jobs.md",
-         "docs/plugin-guide.md", "docs/scene.md", "docs/terms.md", "docs/viewer.md")
+         "docs/library.md", "docs/plugin-guide.md", "docs/scene.md", "docs/terms.md", "docs/translating.md",
+         "docs/viewer.md")
 MOST_COLUMNS = 120
 
 # The left column of the table, and what finds it. None: only a reader can tell.
@@ -98,7 +99,7 @@ def described(value):
 
 def sources(root):
     """The (file, line, text) of what the program says."""
-    for folder in ("app", "core"):
+    for folder in ("app", "bindings", "core"):
         for path in sorted((root / folder).rglob("*")):
             if path.suffix in {".h", ".cpp"}:
                 for line, text in literals(path.read_text(encoding="utf-8")):

@@ -281,6 +281,7 @@ void add_verbs(CLI::App& app) {
     add_info(app);
     add_sun(app);
     add_plugins(app);
+    add_thumbnail(app);
     add_doctor(app);
     check_values(app);
 }

@@ -15,5 +15,6 @@ void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_sun(CLI::App& app);
 void add_plugins(CLI::App& app);
+void add_thumbnail(CLI::App& app);
 
 }  // namespace relevo::cli

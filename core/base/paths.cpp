@@ -1,14 +1,36 @@
 #include "base/paths.h"
 
 #include <cstdlib>
+#include <string>
+
+#include <dlfcn.h>
 
 namespace relevo {
 namespace {
 
-std::filesystem::path prefix() {
+/// The file that this code is in: the program, or the library that another program has loaded.
+std::filesystem::path own_file() {
     std::error_code ignored;
+    Dl_info info{};
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    return program.parent_path().parent_path();
+    if (dladdr(reinterpret_cast<const void*>(&own_file), &info) == 0 || !info.dli_fname)
+        return program;
+    const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, ignored);
+    // dladdr() has a program's name as it was called, which may be a name on the search path.
+    return file.filename().string().find(".so") == std::string::npos ? program : file;
+}
+
+/// `bin/relevo`, `lib/librelevo.so.0` and `lib/x86_64-linux-gnu/librelevo.so.0` are of one.
+const std::filesystem::path& prefix() {
+    static const std::filesystem::path found = [] {
+        std::error_code ignored;
+        const std::filesystem::path above = own_file().parent_path().parent_path();
+        const bool deeper =
+            !std::filesystem::exists(above / "share" / "relevo", ignored) &&
+            std::filesystem::exists(above.parent_path() / "share" / "relevo", ignored);
+        return deeper ? above.parent_path() : above;
+    }();
+    return found;
 }
 
 }  // namespace

@@ -5,12 +5,13 @@
 
 namespace relevo {
 
-/// Where the program's read-only files are: `../share/relevo` as seen from the program, in a build
-/// tree and in an installation alike. `$RELEVO_SHARE` overrides it.
+/// Where the read-only files are: `../share/relevo` as seen from the program, or from the library
+/// where another program has loaded that (also from `lib/x86_64-linux-gnu`), in a build tree and in
+/// an installation alike. `$RELEVO_SHARE` overrides it.
 /// Holds `data/`, `plugins/` and `shaders/`.
 std::filesystem::path share_dir();
 
-/// Where the program's loadable modules are: `../lib/relevo` as seen from the program.
+/// Where the program's loadable modules are: `../lib/relevo` as seen from there.
 std::filesystem::path module_dir();
 
 /// The file `name` of a folder; nothing where that is outside it, by `..`, by an absolute name or

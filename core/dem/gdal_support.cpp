@@ -1,6 +1,7 @@
 #include "dem/gdal_support.h"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 
 #include <cpl_conv.h>
@@ -22,13 +23,20 @@ void to_debug_log(CPLErr, int, const char* text) {
     log::debug(fmt::format("GDAL: {}", text));
 }
 
+std::atomic<bool> shared{false};
+
 }  // namespace
+
+void share_gdal() {
+    shared = true;
+}
 
 void prepare_gdal() {
     static std::once_flag once;
     std::call_once(once, [] {
-        CPLSetErrorHandler(to_debug_log);
         GDALAllRegister();
+        if (shared) return;
+        CPLSetErrorHandler(to_debug_log);
         disarm_gdal();
         open_regular_files_only();
         // By itself it is a twentieth of the machine's memory, whatever --memory is.
@@ -45,7 +53,8 @@ void hold_blocks(std::int64_t bytes) {
 }
 
 void spare_blocks() {
-    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() <= kBlockBytes)
+    if (!shared && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) &&
+        GDALGetCacheMax64() <= kBlockBytes)
         GDALSetCacheMax64(kBlockBytes / 2);
 }
 

@@ -120,7 +120,7 @@ void disarm_gdal() {
 void allow_remote() {
     const std::lock_guard lock(mutex());
     Disarmed& all = disarmed();
-    if (std::exchange(all.remote_allowed, true)) return;
+    if (all.drivers.empty() || std::exchange(all.remote_allowed, true)) return;
     for (const auto& [found, open] : all.drivers)
         if (found != driver("MEM")) found->pfnOpen = open;
     for (const auto& [name, handler] : all.systems)

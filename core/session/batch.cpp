@@ -148,17 +148,22 @@ class Batch {
 
 }  // namespace
 
+void settle(scene::Shot& shot, SceneTimes& times, SceneInputs& inputs) {
+    shot.scene.effects = inputs.settled(shot.scene.effects);
+    shot.scene.time.at = sun::exact_iso(shot.utc);
+    shot.scene.time.date.clear();
+    shot.scene.view = times.settled_view(shot.scene);
+    shot.scene = times.with_absolute_paths(std::move(shot.scene));
+}
+
 void settle(std::vector<scene::Shot>& shots, SceneTimes& times, SceneInputs& inputs) {
     for (scene::Shot& shot : shots) {
         try {
-            shot.scene.effects = inputs.settled(shot.scene.effects);
+            inputs.settled(shot.scene.effects);
         } catch (const Error& error) {
             throw Error(error.code(), printable(shot.output.string()) + ": " + error.what());
         }
-        shot.scene.time.at = sun::exact_iso(shot.utc);
-        shot.scene.time.date.clear();
-        shot.scene.view = times.settled_view(shot.scene);
-        shot.scene = times.with_absolute_paths(std::move(shot.scene));
+        settle(shot, times, inputs);
     }
 }
 

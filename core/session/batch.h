@@ -16,6 +16,11 @@
 /// Draws many pictures, one after the other.
 namespace relevo::session {
 
+/// Completes a shot's scene as it is recorded in its picture: time in UTC, absolute paths,
+/// installed effects only.
+/// @throws Error (BadInput) for unknown effects and parameters
+void settle(scene::Shot& shot, SceneTimes& times, SceneInputs& inputs);
+
 /// Completes each shot's scene as it is recorded in its picture: time in UTC, absolute paths,
 /// installed effects only.
 /// @throws Error (BadInput) for unknown effects and parameters; the message names the first picture

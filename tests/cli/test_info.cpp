@@ -146,7 +146,7 @@ TEST(InfoVerb, IsOfAllPostsWhateverMemoryHolds) {
     const Result all = with({});
     EXPECT_NE(all.out.find("posts      1200 x 640\n"), std::string::npos) << all.out;
     EXPECT_NE(all.out.find("heights    500.0 to 4321.0 m\n"), std::string::npos) << all.out;
-    EXPECT_NE(all.out.find("spikes     1 posts"), std::string::npos) << all.out;
+    EXPECT_NE(all.out.find("spikes     1 post"), std::string::npos) << all.out;
     EXPECT_EQ(with({"--memory", "1"}).out, all.out);
     EXPECT_EQ(with({"--memory", "1", "--json"}).out, with({"--json"}).out);
 }

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "relevo/relevo.h"
+
+/// What every function of the C interface goes through: arguments are checked, exceptions become
+/// codes.
+namespace relevo::c {
+
+/// The call itself is wrong: RELEVO_RESULT_BAD_CALL.
+struct BadCall {
+    std::string message;
+};
+/// relevo_progress has asked for it: RELEVO_RESULT_CANCELLED.
+struct Cancelled {};
+/// A callback has thrown: RELEVO_RESULT_FAILED.
+struct CallbackThrew {
+    std::string which;
+};
+
+/// The code of the exception that is being handled; keeps its message for relevo_error().
+relevo_result code_of_exception(const char* function) noexcept;
+void prepare_library();
+
+/// Does the work of a function.
+/// @param function  its name, which errors of the call begin with
+template <typename Body>
+relevo_result guarded(const char* function, const Body& body) noexcept {
+    try {
+        prepare_library();
+        body();
+        return RELEVO_RESULT_OK;
+    } catch (...) {
+        return code_of_exception(function);
+    }
+}
+
+/// A text for the caller, which lasts until the thread's next one.
+const char* returned_text(std::string text);
+
+/// @throws BadCall
+template <typename T>
+T& need(T* argument, const char* name) {
+    if (!argument) throw BadCall{std::string(name) + ": null"};
+    return *argument;
+}
+
+/// @throws BadCall unless `count` is what an array needs
+void check_count(const char* name, std::size_t count, std::size_t needed);
+
+/// A struct of the caller's version as one of ours; what it lacks is 0.
+/// @throws BadCall for null, and for a size that no version has
+template <typename T>
+T read_struct(const T* given, const char* name) {
+    const std::size_t size = need(given, name).size;
+    if (size < sizeof(std::size_t) || size > 16 * sizeof(T))
+        throw BadCall{std::string(name) + ".size: expected " + std::to_string(sizeof(T)) +
+                      " but got " + std::to_string(size)};
+    T ours{};
+    std::memcpy(&ours, given, std::min(size, sizeof(T)));
+    return ours;
+}
+
+/// Fills a struct of the caller's version.
+template <typename T>
+void write_struct(T ours, T* to) {
+    ours.size = to->size;
+    std::memcpy(to, &ours, std::min(ours.size, sizeof(T)));
+}
+
+/// Progress of work that is told in shares.
+class Progress {
+  public:
+    /// @param progress  may be null @throws BadCall
+    explicit Progress(const relevo_progress* progress) {
+        if (progress) given_ = read_struct(progress, "progress");
+    }
+    /// The part of all work that comes next, 0 to 1.
+    void begin_part(double share) { part_ = share; }
+    /// @param of_part  done since the last call
+    /// @throws Cancelled, CallbackThrew
+    void add(double of_part);
+
+  private:
+    relevo_progress given_{};
+    double part_ = 1, done_ = 0;
+};
+
+}  // namespace relevo::c

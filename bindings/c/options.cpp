@@ -1,0 +1,54 @@
+#include "options.h"
+
+#include <utility>
+
+#include "scene/scene_reader.h"
+#include "session/scene_times.h"
+
+namespace relevo::c {
+namespace {
+
+constexpr const char* kText = "(text)";  // in the place of a file's name
+
+void take(scene::Scene& scene, const json::Value& value, const std::filesystem::path& folder) {
+    const scene::SceneReader reader("scene", kText, folder);
+    json::ObjectReader object("scene", kText, "", value);
+    object.number("format", 1, 1, 1, true);
+    reader.take(object, "", scene);
+    object.finish();
+}
+
+}  // namespace
+
+Options::Options(const char* text, const std::string& who)
+    : value_(json::parse(who, "options", text ? text : "{}")),
+      reader_(who, "options", "", value_) {}
+
+void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder) {
+    if (text) take(scene, json::parse("scene", kText, text), folder);
+}
+
+scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
+    json::Value list;
+    list.kind = json::Value::Kind::Array;
+    for (const std::string& file : files) {
+        json::Value& item = list.items.emplace_back();
+        item.kind = json::Value::Kind::String;
+        item.text = file;
+    }
+    json::Value dem = json::parse("dem", kText, text ? text : "{}");
+    if (dem.kind == json::Value::Kind::Object) dem.members.emplace_back("files", std::move(list));
+    json::Value whole;
+    whole.kind = json::Value::Kind::Object;
+    whole.members.emplace_back("dem", std::move(dem));
+    scene::Scene scene;
+    take(scene, whole, {});
+    return scene;
+}
+
+bool same_dem(scene::Scene a, scene::Scene b) {
+    b.holes = a.holes;
+    return session::dem_key(a) == session::dem_key(b);
+}
+
+}  // namespace relevo::c

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "json/object_reader.h"
+#include "scene/scene.h"
+
+namespace relevo::c {
+
+/// A JSON text of the caller's, an object whose members are read one by one.
+class Options {
+  public:
+    /// @param text  null: no members
+    /// @param who   what errors begin with
+    /// @throws Error (BadInput) for what is no JSON object
+    Options(const char* text, const std::string& who);
+    Options(const Options&) = delete;
+    Options& operator=(const Options&) = delete;
+
+    json::ObjectReader& reader() { return reader_; }
+
+  private:
+    json::Value value_;
+    json::ObjectReader reader_;
+};
+
+/// Changes a scene by a JSON text, as a shot of a job does. "format" may be there.
+/// @param text    null: no change
+/// @param folder  from which relative paths count
+/// @throws Error (BadInput)
+void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder);
+
+/// A scene of a DEM.
+/// @param text  members of `dem` without `files`; null: none
+/// @throws Error (BadInput)
+scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
+
+/// Whether two scenes show one DEM, read in the same way. How its voids are drawn may differ.
+bool same_dem(scene::Scene a, scene::Scene b);
+
+}  // namespace relevo::c

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/contains.h"
+#include "base/error.h"
+#include "base/units.h"
+#include "dem.h"
+#include "light/point/horizon.h"
+#include "options.h"
+#include "session/sun_raster.h"
+#include "session/words.h"
+#include "sun/events.h"
+#include "sun/position.h"
+
+namespace relevo::c {
+namespace {
+
+/// @throws Error (BadInput) for what no instant holds
+sun::Instant instant_of(double time_s) {
+    constexpr double kMost_s = 1e11;  // the year 5138; what is not computed sun::check_year() says
+    if (!(std::abs(time_s) < kMost_s))
+        bad_input(fmt::format("time: {:.10g}: expected seconds since 1970", time_s));
+    return sun::Instant::from_unix_us(std::llround(time_s * 1e6));
+}
+
+double seconds_of(sun::Instant instant) {
+    return static_cast<double>(instant.unix_us()) * 1e-6;
+}
+
+sun::Refraction refraction_of(const char* model, const geo::Geodetic& place) {
+    const std::string name = model ? model : "standard";
+    if (!contains(std::vector<std::string>{"standard", "saemundsson", "none"}, name))
+        bad_input(
+            fmt::format("refraction: expected standard, saemundsson or none but got {}", name));
+    return session::refraction_at(name, place);
+}
+
+relevo_event event_of(const sun::Event& event) {
+    // The names are literals, which end with 0.
+    return {sun::name_of(event.kind).data(), seconds_of(event.utc), degrees(event.azimuth_rad),
+            degrees(event.elevation_rad)};
+}
+
+light::HorizonOptions horizon_options(const char* text, size_t directions) {
+    Options options(text, "relevo_horizon");
+    json::ObjectReader& reader = options.reader();
+    light::HorizonOptions result;
+    result.eye_height_m = reader.number("eye_height", 0, 0, 10'000, false);
+    result.refraction =
+        reader.number("terrestrial_refraction", session::kTerrestrialRefraction, -1, 0.9, false);
+    constexpr size_t kFew = 30;  // a direction by itself takes a thirtieth of all of them
+    result.few_directions = directions < kFew;
+    reader.finish();
+    return result;
+}
+
+}  // namespace
+}  // namespace relevo::c
+
+using namespace relevo;
+
+relevo_result relevo_sun_position(const relevo_place* place, const double* times_s, size_t count,
+                                  const char* refraction, double* azimuth_deg,
+                                  double* elevation_deg, double* apparent_deg) {
+    return c::guarded("relevo_sun_position", [&] {
+        const geo::Geodetic at = c::place_of(place);
+        if (count > 0) c::need(times_s, "times_s");
+        const sun::Refraction air = c::refraction_of(refraction, at);
+        for (size_t i = 0; i < count; ++i) {
+            const sun::Position position = sun::position(c::instant_of(times_s[i]), at);
+            if (azimuth_deg) azimuth_deg[i] = degrees(position.azimuth_rad);
+            if (elevation_deg) elevation_deg[i] = degrees(position.elevation_rad);
+            if (apparent_deg) apparent_deg[i] = degrees(air.apparent_rad(position.elevation_rad));
+        }
+    });
+}
+
+relevo_result relevo_sun_events(const relevo_place* place, const char* date, const char* zone,
+                                relevo_event* events, size_t capacity, size_t* count) {
+    return c::guarded("relevo_sun_events", [&] {
+        c::need(count, "count") = 0;
+        if (capacity > 0) c::need(events, "events");
+        const geo::Geodetic at = c::place_of(place);
+        const sun::Day day = sun::day_events(sun::parse_date(&c::need(date, "date")),
+                                             session::zone_of(zone ? zone : "", at).zone, at);
+        *count = day.events.size();
+        for (size_t i = 0; i < std::min(capacity, day.events.size()); ++i)
+            events[i] = c::event_of(day.events[i]);
+    });
+}
+
+relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* place, const char* options,
+                             const double* azimuth_deg, size_t count, double* elevation_deg,
+                             double* distance_m) {
+    return c::guarded("relevo_horizon", [&] {
+        const geo::Geodetic at = c::place_of(place);
+        const light::HorizonOptions wanted = c::horizon_options(options, count);
+        if (count > 0) {
+            c::need(azimuth_deg, "azimuth_deg");
+            c::need(elevation_deg, "elevation_deg");
+        }
+        const auto of = c::dems().get(dem, "dem");
+        const light::TerrainHorizon horizon(of->posts(), at, wanted);
+        for (size_t i = 0; i < count; ++i) {
+            if (!std::isfinite(azimuth_deg[i]))
+                bad_input("azimuth_deg: expected finite numbers of degrees");
+            const light::HorizonPoint point = horizon.at(radians(azimuth_deg[i]));
+            elevation_deg[i] = degrees(point.elevation_rad);
+            if (distance_m) distance_m[i] = point.distance_m;
+        }
+    });
+}

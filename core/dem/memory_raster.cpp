@@ -1,0 +1,61 @@
+#include "dem/memory_raster.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include "base/error.h"
+#include "dem/gdal_support.h"
+
+namespace relevo::dem {
+namespace {
+
+std::string next_name() {
+    static std::atomic<int> number{0};
+    return fmt::format("/vsimem/relevo/{}/heights.tif", ++number);
+}
+
+[[noreturn]] void refuse(const GdalMessages& messages, const std::string& name) {
+    VSIUnlink(name.c_str());
+    failed("heights: GDAL does not take them, " + messages.failure(name));
+}
+
+}  // namespace
+
+MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const Affine& a)
+    : name_(next_name()) {
+    const double area = a.x_column * a.y_row - a.x_row * a.y_column;
+    if (!std::isfinite(area) || area == 0 || !std::isfinite(a.x0 + a.y0))
+        bad_input("heights: transform: expected finite numbers and cells with an area");
+    prepare_gdal();
+    const GdalMessages messages;
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    if (!driver) refuse(messages, name_);
+    const std::unique_ptr<GDALDataset> file(
+        driver->Create(name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
+    double transform[6] = {a.x0 - 0.5 * (a.x_column + a.x_row), a.x_column, a.x_row,
+                           a.y0 - 0.5 * (a.y_column + a.y_row), a.y_column, a.y_row};
+    if (!file || file->SetGeoTransform(transform) != CE_None) refuse(messages, name_);
+    GDALRasterBand* const band = file->GetRasterBand(1);
+    band->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    band->SetUnitType("m");
+    // GDAL's interface has no const here; it reads.
+    if (band->RasterIO(GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns, rows,
+                       GDT_Float32, 0, 0, nullptr) != CE_None)
+        refuse(messages, name_);
+}
+
+MemoryRaster::MemoryRaster(MemoryRaster&& other) noexcept
+    : name_(std::exchange(other.name_, std::string())) {}
+
+MemoryRaster::~MemoryRaster() {
+    if (!name_.empty()) VSIUnlink(name_.c_str());
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,197 @@
+// Figures of the library are the program's.
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "c/library.h"
+#include "cli/program.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+/// The bands of a raster as the program writes it, one after the other; holes are NaN.
+std::vector<float> written(std::vector<std::string> arguments) {
+    const std::string path = (scratch_dir() / "program.tif").string();
+    arguments.insert(arguments.end(), {bundled_dem(), "-o", path, "--overwrite", "-q"});
+    const Result made = relevo(arguments);
+    EXPECT_EQ(made.status, 0) << made.err;
+    GDALAllRegister();
+    const std::unique_ptr<GDALDataset> file(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
+    const auto posts = static_cast<std::size_t>(file->GetRasterXSize()) *
+                       static_cast<std::size_t>(file->GetRasterYSize());
+    std::vector<float> values(posts * static_cast<std::size_t>(file->GetRasterCount()));
+    EXPECT_EQ(file->RasterIO(GF_Read, 0, 0, file->GetRasterXSize(), file->GetRasterYSize(),
+                             values.data(), file->GetRasterXSize(), file->GetRasterYSize(),
+                             GDT_Float32, file->GetRasterCount(), nullptr, 0, 0, 0, nullptr),
+              CE_None);
+    return values;
+}
+
+/// Whether all values are those of the other, to the bit; NaN equals NaN.
+bool equal(const std::vector<float>& a, const std::vector<float>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (!(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) return false;
+    return true;
+}
+
+class Figures : public testing::Test {
+  protected:
+    DemHandle dem_ = open_bundled();
+    std::vector<float> values_ = std::vector<float>(posts_of(dem_.get()));
+};
+
+TEST_F(Figures, ShadowsAreThoseOfTheProgram) {
+    expect_ok(relevo_shadow(dem_.get(), R"({"time": "2026-12-21T14:00Z"})", values_.data(),
+                            values_.size(), nullptr, nullptr));
+    EXPECT_TRUE(equal(values_, written({"sun", "shadow", "--time", "2026-12-21T14:00Z"})));
+    expect_ok(relevo_shadow(dem_.get(),
+                            R"({"time": "2026-12-21T14:00Z", "soft": true, "refraction": "none",
+                                "terrestrial_refraction": 0.2})",
+                            values_.data(), values_.size(), nullptr, nullptr));
+    EXPECT_TRUE(equal(values_, written({"sun", "shadow", "--time", "2026-12-21T14:00Z", "--soft",
+                                        "--no-refraction", "-k", "0.2"})));
+}
+
+TEST_F(Figures, HoursAndIrradiationAreThoseOfTheProgram) {
+    values_.resize(3 * values_.size());
+    const char* about = nullptr;
+    expect_ok(relevo_sun_hours(dem_.get(),
+                               R"({"from": "2026-12-20", "to": "2026-12-21", "zone": "-05:00",
+                                   "bands": ["hours", "first", "global"], "linke": 2, "step": 120})",
+                               values_.data(), values_.size(), nullptr, &about));
+    EXPECT_TRUE(equal(values_, written({"sun", "hours", "--from", "2026-12-20", "--to",
+                                        "2026-12-21", "--tz", "-05:00", "--bands",
+                                        "hours,first,global", "--linke", "2", "--step", "2min"})));
+    const auto json = nlohmann::json::parse(about);
+    EXPECT_EQ(json["holes"], 0);
+    EXPECT_TRUE(std::string(json["definition"]).find("irradiation") != std::string::npos);
+    EXPECT_TRUE(json.contains("beyond"));
+}
+
+TEST_F(Figures, AYearTakesDirectionsAsInTheProgram) {
+    expect_ok(relevo_sun_hours(dem_.get(), R"({"year": 2026})", values_.data(), values_.size(),
+                               nullptr, nullptr));
+    EXPECT_TRUE(equal(values_, written({"sun", "hours", "--year", "2026"})));
+}
+
+TEST_F(Figures, SkyViewsAreThoseOfTheProgram) {
+    expect_ok(relevo_sky_view(dem_.get(), R"({"directions": 16, "level": true})", values_.data(),
+                              values_.size(), nullptr, nullptr));
+    EXPECT_TRUE(equal(values_, written({"sun", "sky-view", "--directions", "16", "--level"})));
+}
+
+TEST_F(Figures, ADemFromMemoryGivesTheSame) {
+    std::vector<float> heights(values_.size());
+    expect_ok(relevo_dem_read(dem_.get(), heights.data(), heights.size()));
+    const relevo_grid grid = grid_of(dem_.get());
+    const char* crs = nullptr;
+    expect_ok(relevo_dem_crs(dem_.get(), &crs));
+    auto raster = sized<relevo_raster>();
+    raster.heights_m = heights.data();
+    raster.count = heights.size();
+    raster.columns = grid.columns;
+    raster.rows = grid.rows;
+    std::memcpy(raster.transform, grid.transform, sizeof grid.transform);
+    raster.crs = crs;
+    relevo_dem* made = nullptr;
+    expect_ok(relevo_dem_from_heights(&raster, &made));
+    const DemHandle copy(made);
+
+    const char* const options = R"({"date": "2026-06-21"})";
+    std::vector<float> of_copy(values_.size());
+    expect_ok(
+        relevo_sun_hours(dem_.get(), options, values_.data(), values_.size(), nullptr, nullptr));
+    expect_ok(
+        relevo_sun_hours(copy.get(), options, of_copy.data(), of_copy.size(), nullptr, nullptr));
+    EXPECT_TRUE(equal(values_, of_copy));
+    const std::string scene =
+        R"({"time": {"at": "2026-06-21T14:00Z"}, "picture": {"size": [96, 64]}})";
+    EXPECT_EQ(draw(open_session(dem_.get(), scene).get()).rgba,
+              draw(open_session(copy.get(), scene).get()).rgba);
+}
+
+TEST_F(Figures, ThePositionIsThatOfTheProgram) {
+    auto place = sized<relevo_place>();
+    place.lat_deg = 46.95;
+    place.lon_deg = 7.44;
+    place.height_m = 540;
+    const double times_s[] = {1782036000, 1782050400};  // 2026-06-21T10:00Z and 14:00Z
+    double azimuth_deg[2], elevation_deg[2], apparent_deg[2];
+    expect_ok(
+        relevo_sun_position(&place, times_s, 2, nullptr, azimuth_deg, elevation_deg, apparent_deg));
+    for (int i = 0; i < 2; ++i) {
+        const Result run = relevo({"sun", "position", "--at", "46.95,7.44,540", "--json", "--time",
+                                   i == 0 ? "2026-06-21T10:00Z" : "2026-06-21T14:00Z"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const auto json = nlohmann::json::parse(run.out);
+        EXPECT_NEAR(azimuth_deg[i], json["azimuth_deg"], 1e-6);
+        EXPECT_NEAR(elevation_deg[i], json["elevation_deg"], 1e-6);
+        EXPECT_NEAR(apparent_deg[i], json["apparent_elevation_deg"], 1e-6);
+    }
+}
+
+TEST_F(Figures, EventsAreThoseOfTheProgram) {
+    auto place = sized<relevo_place>();
+    place.lat_deg = 46.95;
+    place.lon_deg = 7.44;
+    relevo_event events[20];
+    std::size_t count = 0;
+    expect_ok(relevo_sun_events(&place, "2026-06-21", "Europe/Zurich", events, 20, &count));
+    const Result run = relevo({"sun", "day", "--at", "46.95,7.44,0", "--date", "2026-06-21", "--tz",
+                               "Europe/Zurich", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto json = nlohmann::json::parse(run.out)["events"];
+    ASSERT_EQ(count, json.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(events[i].kind, json[i]["kind"]);
+        EXPECT_NEAR(events[i].azimuth_deg, json[i]["azimuth_deg"], 1e-6);
+    }
+    // Only the number is asked for.
+    std::size_t again = 0;
+    expect_ok(relevo_sun_events(&place, "2026-06-21", nullptr, nullptr, 0, &again));
+    EXPECT_EQ(again, count);
+}
+
+TEST_F(Figures, TheHorizonIsThatOfTheProgram) {
+    const relevo_grid grid = grid_of(dem_.get());
+    auto place = sized<relevo_place>();
+    place.lat_deg = grid.centre_lat_deg;
+    place.lon_deg = grid.centre_lon_deg;
+    std::vector<double> azimuth_deg, elevation_deg(360), distance_m(360);
+    for (int i = 0; i < 360; ++i)
+        azimuth_deg.push_back(i);
+    expect_ok(relevo_horizon(dem_.get(), &place, R"({"eye_height": 2})", azimuth_deg.data(), 360,
+                             elevation_deg.data(), distance_m.data()));
+    const Result run = relevo({"sun", "horizon", bundled_dem(), "--at",
+                               fmt::format("{},{}", place.lat_deg, place.lon_deg), "--eye-height",
+                               "2", "--step", "1", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto json = nlohmann::json::parse(run.out)["horizon"];
+    ASSERT_EQ(json.size(), 360U);
+    for (std::size_t i = 0; i < 360; ++i) {
+        EXPECT_NEAR(elevation_deg[i], json[i]["horizon_deg"], 1e-6);
+        if (json[i]["distance_m"].is_null())
+            EXPECT_TRUE(std::isnan(distance_m[i]));
+        else
+            EXPECT_NEAR(distance_m[i], json[i]["distance_m"], 1e-3);
+    }
+    double height_m = 0;
+    expect_ok(relevo_dem_height(dem_.get(), place.lat_deg, place.lon_deg, &height_m));
+    EXPECT_GT(height_m, 100);
+    expect_ok(relevo_dem_height(dem_.get(), 0, 0, &height_m));
+    EXPECT_TRUE(std::isnan(height_m));
+}
+
+}  // namespace
+}  // namespace relevo::test
