@@ -46,13 +46,14 @@ relevo_package(relevo
     TEXT "Opens any elevation raster, shows it as the sun lights it at a place, date and"
          "time, and computes shadows, hours of direct sun, horizons and sky views."
          "The window, the command line, manual pages and completions."
-    DEPENDS "librelevo0 ${exact}, relevo-data ${exact}, fonts-liberation, tzdata"
+    DEPENDS "librelevo0 ${exact}, relevo-data ${exact}"
     RECOMMENDS "libgl1-mesa-dri")
 relevo_package(librelevo0
     SUMMARY "terrain and sun: library"
     TEXT "DEMs, figures of sunlight over them, and pictures for other programs, with the"
          "modules that the library and the program load."
-    DEPENDS "relevo-data ${exact}, fonts-liberation, tzdata" SECTION libs)
+    DEPENDS "relevo-data ${exact}, fonts-liberation, tzdata, libegl1, libopengl0 | libgl1"
+    RECOMMENDS "libgl1-mesa-dri" SECTION libs)
 relevo_package(librelevo-dev
     SUMMARY "terrain and sun: headers of the library and of plugins"
     TEXT "For programs that use the library, and for native effect plugins: headers,"
@@ -66,7 +67,7 @@ relevo_package(relevo-data
 relevo_package(python3-relevo
     SUMMARY "terrain and sun: Python package"
     TEXT "DEMs, figures of sunlight over them, and pictures as NumPy arrays."
-    DEPENDS "librelevo0 ${exact}, python3, python3-numpy" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
+    DEPENDS "librelevo0 ${exact}, ${RELEVO_PYTHON_DEPENDS}" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
 set(CPACK_DEBIAN_RELEVO-DATA_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
 
@@ -74,6 +75,10 @@ set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO0_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers
     ${CMAKE_CURRENT_BINARY_DIR}/shlibs)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/shlibs "librelevo 0 librelevo0 (>= ${PROJECT_VERSION})\n")
+
+# Python's files are compiled when they are installed, so that nothing is left when they are removed.
+set(CPACK_DEBIAN_PYTHON3-RELEVO_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/python3-relevo/postinst
+    ${CMAKE_CURRENT_SOURCE_DIR}/debian/python3-relevo/prerm)
 
 # Copyright and changelog of every package.
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/changelog

@@ -20,7 +20,7 @@ inside apt-get -qq install -y --no-install-recommends man-db bash-completion gcc
 mkdir "$root/debs"
 cp "$folder"/*.deb "$root/debs"
 say "apt install"
-inside sh -c 'apt-get install -y --no-install-recommends libgl1-mesa-dri libegl1 /debs/*.deb > /dev/null'
+inside sh -c 'apt-get install -y --no-install-recommends libgl1-mesa-dri /debs/*.deb > /dev/null'
 files > "$root/with"
 
 dem=/usr/share/relevo/data/dem/jacksboro.tif
@@ -53,7 +53,7 @@ inside sh -c 'printf "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n1
     $(printf "%s" "$line" | sed "s#%s#128#; s#%u#file:///tmp/a%20grid.asc#; s#%o#/tmp/thumbnail.png#") && test -s /tmp/thumbnail.png'
 
 say "removed again"
-inside sh -c 'apt-get purge -y relevo librelevo0 librelevo-dev relevo-data "python3-relevo*" > /dev/null'
+inside sh -c 'apt-get purge -y $(dpkg-query -W -f "${Package} " "*relevo*") > /dev/null'
 files > "$root/without"
 left=$(grep -i relevo "$root/without" || true)
 [ -z "$left" ] || { say "left: $left"; exit 1; }

@@ -32,6 +32,7 @@ ALLOWED = (
     ("overlay_controller.cpp", r"sun (hours|shadow|sky-view)( --bands \{\})?", "command lines"),
     ("sun_overlay.cpp", r"Sky-view factor|Direct sun, .*|(First|Last) light|Irradiation|Sun hours|.* to .*",
      "titles in scenes and pictures, which do not depend on the language"),
+    ("window_words.cpp", r".*--.*", "parts of messages of core, to find them"),
 )
 
 TOKEN = re.compile(

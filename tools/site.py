@@ -13,7 +13,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Files that pages link to, besides pages.
-LINKED = ("include/relevo/relevo.h", "core/dem/dry_land.cpp", "LICENSE")
+LINKED = ("include/relevo/relevo.h", "core/dem/dry_land.cpp", "LICENSE", "locale/relevo.pot")
 
 
 def copy(name, source):
@@ -33,7 +33,7 @@ def write_index(path, title, names):
 def put_together(build, source):
     shutil.rmtree(source, ignore_errors=True)
     source.mkdir(parents=True)
-    for name in ("README.md", "CHANGELOG.md", "docs", "data/README.md", "examples/library", *LINKED):
+    for name in ("README.md", "CHANGELOG.md", "docs", "data/README.md", "examples/library", "examples/notebook", *LINKED):
         copy(name, source)
     plugins = sorted(path.parent.name for path in ROOT.glob("plugins/*/README.md"))
     for plugin in plugins:

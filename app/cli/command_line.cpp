@@ -18,6 +18,7 @@
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/effects.h"
@@ -39,7 +40,9 @@ Named named_verb(const CLI::App& app) {
 }
 
 bool is_global_flag(const std::string& word) {
-    return word == "-q" || word == "--quiet" || word == "-v" || word == "--verbose";
+    constexpr std::array<std::string_view, 5> kFlags = {"-q", "--quiet", "-v", "--verbose",
+                                                        "--progress"};
+    return contains(kFlags, word);
 }
 
 /// CLI11 would only say that a command is missing.
@@ -274,6 +277,9 @@ void add_verbs(CLI::App& app) {
     app.add_flag_callback(
         "-v,--verbose", [] { log::set_level(log::Level::Debug); },
         "More messages on standard error");
+    app.add_flag_callback(
+        "--progress", [] { ProgressBar::use_lines(true); },
+        "Progress of long work as lines for other programs: progress 0.342");
     app.fallthrough();
     const Verb line(app);
     add_view(line);

@@ -92,6 +92,8 @@ void JobRun::read(const JobArguments& arguments) {
     }
     trusted.tell();
     warn_of_skipped(drawn_up.left_out);
+    for (const std::string& warning : drawn_up.warnings)
+        log::warning(warning);
     shots = std::move(drawn_up.shots);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "base/text.h"
 #include "dem/remote.h"
 #include "image/image.h"
 #include "render/renderer.h"
@@ -48,6 +49,12 @@ std::string free_name(const std::string& stem, const std::string& ending) {
     for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
         name = fmt::format("{}-{}.{}", stem, n, ending);
     return name;
+}
+
+std::string folder_of(const std::string& file) {
+    std::error_code unknown;
+    const std::filesystem::path whole = std::filesystem::absolute(file, unknown);
+    return unknown ? "." : printable(whole.parent_path().string());
 }
 
 std::string free_picture_name() {
@@ -93,8 +100,8 @@ std::string trust_option(const scene::Scene& scene) {
 
 std::string save_scene(const scene::Scene& scene) {
     const std::string name = save_json(scene::scene_text(scene, ""));
-    return tr_format("{0}: scene saved; relevo view --scene {0}{1} opens it", name,
-                     trust_option(scene));
+    return tr_format("{0}: scene saved in {2}; relevo view --scene {0}{1} opens it", name,
+                     trust_option(scene), folder_of(name));
 }
 
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
@@ -169,7 +176,7 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
         image::write(file, image, metadata);
         file.finish();
     });
-    std::string message = tr_format("{}: picture saved", name);
+    std::string message = tr_format("{}: picture saved in {}", name, folder_of(name));
     for (const std::string& note : notes)
         message += "; " + note;
     return message;

@@ -29,6 +29,8 @@ std::string write_under_free_name(const std::string& ending,
 /// A name in the working folder that no file has: "day.mp4", "day-2.mp4" ...
 /// @param stem  may have folders in front
 std::string free_name(const std::string& stem, const std::string& ending);
+/// The folder of a file, absolute, for a message.
+std::string folder_of(const std::string& file);
 /// A free name for a picture in the working folder: "picture.png", "picture-2.png" ...
 std::string free_picture_name();
 /// Writes the scene to the working folder under a free name.

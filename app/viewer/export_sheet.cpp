@@ -47,6 +47,8 @@ constexpr std::array<Size, 6> kSizes = {{{tr_later("window"), {0, 0}},
                                          {tr_later("A4 at 300 dpi"), {3508, 2480}},
                                          {tr_later("A2 at 300 dpi"), {7016, 4961}}}};
 
+constexpr int kPng = 0, kTiff = 5;  // indices of kFormats
+
 constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
 
 struct Kind {
@@ -77,6 +79,12 @@ std::size_t kind_of(const scene::Scene& scene) {
     return found == kKinds.end() ? 0 : static_cast<std::size_t>(found - kKinds.begin());
 }
 
+/// Stamps of one scale and direction, which panoramas and stereo pairs lack.
+bool needs_picture(bool scene::Stamps::*stamp) {
+    return stamp == &scene::Stamps::scale || stamp == &scene::Stamps::north ||
+           stamp == &scene::Stamps::graticule;
+}
+
 }  // namespace
 
 void ExportSheet::take_scene(const scene::Scene& scene) {
@@ -84,13 +92,23 @@ void ExportSheet::take_scene(const scene::Scene& scene) {
     what_ = kind_of(scene);
 }
 
-/// A kind sets a size that suits it.
+double ExportSheet::aspect() const {
+    // Side by side each eye has half of the width.
+    const bool is_pair = kKinds[what_].stereo == scene::Stereo::Parallel;
+    return static_cast<double>(size_px_.x) / (is_pair ? 2 * size_px_.y : size_px_.y);
+}
+
+/// A kind sets a size and a format that suit it.
 void ExportSheet::kind_field() {
     if (!ImGui::BeginCombo(tr_label("What"), tr(kKinds[what_].name))) return;
     for (std::size_t i = 0; i < kKinds.size(); ++i) {
         if (!ImGui::Selectable(tr_label(kKinds[i].name), i == what_)) continue;
         what_ = i;
         size_px_ = kKinds[i].size_px;
+        if (kKinds[i].is_ortho)
+            format_ = kTiff;
+        else if (format_ == kTiff)
+            format_ = kPng;
     }
     ImGui::Separator();
     if (ImGui::Selectable(tr_label("film ..."))) command_ = Command::Film;
@@ -109,9 +127,12 @@ void ExportSheet::size_fields(glm::vec2 window_px) {
     }
     if (ImGui::InputInt2(tr_label("Pixels"), &size_px_.x))
         size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
-    ImGui::BeginDisabled(kKinds[what_].is_ortho);
-    ImGui::Checkbox(tr_label("Centred on what the panels leave free"), &is_centred_);
-    ImGui::EndDisabled();
+    if (kKinds[what_].is_ortho) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", tr("at most: a map has the shape of the DEM"));
+    } else {
+        ImGui::Checkbox(tr_label("Centred on what the panels leave free"), &is_centred_);
+    }
 }
 
 void ExportSheet::format_fields() {
@@ -127,10 +148,14 @@ void ExportSheet::format_fields() {
             if (ImGui::Selectable(tr_format("{} a pixel", samples).c_str())) samples_ = samples;
         ImGui::EndCombo();
     }
-    const bool has_alpha = kFormats[static_cast<std::size_t>(format_)].has_alpha;
-    ImGui::BeginDisabled(!has_alpha);
+    ImGui::BeginDisabled(!can_be_transparent());
     ImGui::Checkbox(tr_label("Transparent where there is no ground"), &is_transparent_);
     ImGui::EndDisabled();
+}
+
+bool ExportSheet::can_be_transparent() const {
+    return kFormats[static_cast<std::size_t>(format_)].has_alpha &&
+           kKinds[what_].stereo != scene::Stereo::Anaglyph;
 }
 
 void ExportSheet::stamp_fields(const scene::Scene& scene) {
@@ -138,9 +163,10 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
     ImGui::TextUnformatted(tr("On the picture:"));
     int column = 0;
     for (const auto& [word, member] : scene::stamp_words()) {
-        if (member == &scene::Stamps::attribution && stamps_->attribution_text.empty()) continue;
         if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
+        ImGui::BeginDisabled(!kKinds[what_].is_picture() && needs_picture(member));
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
+        ImGui::EndDisabled();
     }
     ImGui::BeginDisabled(!kKinds[what_].is_picture());
     ImGui::Checkbox(tr_label("Around the picture, so that nothing lies on it"), &stamps_->margin);
@@ -148,6 +174,9 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
     if (stamps_->title)
         ImGui::InputText(tr_label("Title"), &stamps_->title_text,
                          ImGuiInputTextFlags_AutoSelectAll);
+    if (stamps_->attribution)
+        ImGui::InputTextWithHint(tr_label("Source"), tr("of the data"), &stamps_->attribution_text,
+                                 ImGuiInputTextFlags_AutoSelectAll);
 }
 
 PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
@@ -158,8 +187,9 @@ PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
     order.scene.width_px = size_px_.x;
     order.scene.height_px = size_px_.y;
     order.scene.samples = samples_;
-    order.scene.transparent = is_transparent_ && format.has_alpha;
+    order.scene.transparent = is_transparent_ && can_be_transparent();
     order.scene.stamps = stamps_.value_or(scene.stamps);
+    if (order.scene.stamps.attribution_text.empty()) order.scene.stamps.attribution = false;
     const Kind& kind = kKinds[what_];
     order.scene.ortho = kind.is_ortho;
     order.scene.view.panorama = kind.panorama;
@@ -189,7 +219,9 @@ void ExportSheet::result(const scene::Scene& scene, sun::Instant utc, const sun:
         ImGui::TextWrapped("%s", error.what());
         return;
     }
-    ImGui::TextWrapped("%s", printable(wanted.path).c_str());
+    const bool has_world_file = kKinds[what_].is_ortho && format_ != kTiff;
+    ImGui::TextWrapped("%s%s", printable(wanted.path).c_str(),
+                       has_world_file ? tr(", with a world file and .aux.xml") : "");
     if (is_busy) ImGui::BeginDisabled();
     if (ImGui::Button(is_busy ? tr_label("drawing ...") : tr_label("Export"),
                       {8 * ImGui::GetFontSize(), 0}))

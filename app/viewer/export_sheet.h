@@ -21,8 +21,8 @@ class ExportSheet {
     bool is_open() const { return is_open_; }
     /// What the sheet does to the view: centres the picture on what the panels leave free.
     bool is_centred() const { return is_centred_; }
-    /// Width over height of the picture.
-    double aspect() const { return static_cast<double>(size_px_.x) / size_px_.y; }
+    /// Width over height of the picture, of a stereo pair of each of its two.
+    double aspect() const;
 
     /// @param scene    as it is now, with the view of the picture
     /// @param utc, zone  its time, for the name
@@ -39,6 +39,7 @@ class ExportSheet {
     void kind_field();
     void size_fields(glm::vec2 window_px);
     void format_fields();
+    bool can_be_transparent() const;
     void stamp_fields(const scene::Scene& scene);
     /// @throws Error (BadInput) for names and formats that cannot be
     PictureOrder order(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone) const;

@@ -13,6 +13,7 @@
 #include "session/batch.h"
 #include "session/film_batch.h"
 #include "session/scene_inputs.h"
+#include "viewer/export.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -79,8 +80,9 @@ std::string FilmExport::write() {
     };
     if (is_cancelled_) throw Cancelled();
     const session::FilmReport report = session::draw_film(shots, options, times, files);
-    std::string text = tr_format("{}: film saved, {} frames, {:.3g} s", printable(file()), frames(),
-                                 static_cast<double>(frames()) / plan_->film.film.fps);
+    std::string text =
+        tr_format("{}: film saved in {}, {} frames, {:.3g} s", printable(file()), folder_of(file()),
+                  frames(), static_cast<double>(frames()) / plan_->film.film.fps);
     if (report.blank > 0)
         text += tr_format_plural("; {} frame shows only sky, it is frame {}",
                                  "; {} frames show only sky, the first is frame {}", report.blank,

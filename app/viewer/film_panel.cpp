@@ -130,7 +130,9 @@ void FilmPanel::stamp(const State& state, const FilmClock& clock, const FilmStat
     if (status.shows_frame) {
         const std::string time =
             fmt::format("{}   {:.2f} s", time_of(state.document), clock.time_s());
-        ImGui::TextUnformatted(fitting({time + "   " + camera_of(state), time}).c_str());
+        const bool moves = status.plan && (status.plan->film.orbit || status.plan->film.flight);
+        ImGui::TextUnformatted(
+            fitting({moves ? time + "   " + camera_of(state) : time, time}).c_str());
     } else if (has_frames(status)) {
         const std::string length =
             tr_format("{} frames, {:.3g} s", clock.frames(), clock.length_s());

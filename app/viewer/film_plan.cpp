@@ -48,6 +48,8 @@ FilmPlan plan_film(const FilmWanted& wanted, session::SceneTimes& times) {
         plan.frames = scene::shots_of(
             plan.job, [&](const scene::Scene& scene) { return times.of(scene); }, kMostFilmFrames,
             [&](const scene::Scene& scene) { return times.motion_ground(scene); });
+        for (const std::string& warning : plan.frames.warnings)
+            plan.note += (plan.note.empty() ? "" : "\n") + warning;
     } catch (const Error& error) {
         plan.frames = {};
         plan.error = text_of(error);

@@ -21,6 +21,8 @@ constexpr double kZoomRate = 14, kGlideRate = 7;
 constexpr float kPanANotch_px = 60;
 /// An eye below this height walks where it is.
 constexpr double kLow_m = 50;
+/// Distance of a camera within the DEM, by that of one that shows all of it from above.
+constexpr double kNear = 0.15;
 
 }  // namespace
 
@@ -107,9 +109,10 @@ bool Hand::move(Command command, const std::function<Whole()>& whole) {
         case Command::FromAbove: {
             // If most of the DEM is in view, all of it stays in view.
             const double away_m = distance(pose.eye_m, middle);
-            const Pose all = whole().above;
-            const bool sees_all = away_m > 0.5 * distance(all.eye_m, middle);
-            pose = sees_all ? all : from_above(pose, state_.land, middle, away_m);
+            const Whole all = whole();
+            const bool is_low = away_m < kNear * distance(all.above.eye_m, middle);
+            const bool sees_all = all.in_view > 0.5 && !is_low;
+            pose = sees_all ? all.above : from_above(pose, state_.land, middle, away_m);
             return true;
         }
         case Command::Walk:

@@ -22,6 +22,7 @@ struct Click {
 /// Home view of the whole DEM, and from above.
 struct Whole {
     Pose home, above;
+    double in_view = 0;  ///< fraction of the DEM's ground within the current picture, 0 to 1
 };
 
 /// Moves the camera, the sun and a comparison's dividing line by mouse, wheel and held keys.

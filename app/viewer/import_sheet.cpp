@@ -15,6 +15,7 @@
 #include "viewer/sheet.h"
 #include "viewer/translation.h"
 #include "viewer/window.h"
+#include "viewer/window_words.h"
 
 namespace relevo::viewer {
 namespace {
@@ -25,6 +26,12 @@ constexpr std::array<const char*, 8> kUnits = {
     tr_later("as the file says"), "m", "ft", "us-ft", "cm", "mm", "dm", "km"};
 constexpr std::array<const char*, 3> kEncodings = {tr_later("none: a band has heights"),
                                                    "terrain-rgb", "terrarium"};
+
+/// A message about the files in words of the sheet, which names them above.
+std::string sheet_words(const std::string& message, const std::vector<std::string>& files) {
+    const std::string subject = printable(files.front()) + ": ";
+    return window_words(message.starts_with(subject) ? message.substr(subject.size()) : message);
+}
 
 }  // namespace
 
@@ -90,8 +97,11 @@ void ImportSheet::want_preview() {
 }
 
 void ImportSheet::crs_field() {
-    ImGui::InputTextWithHint(tr_label("CRS"), tr("as the file says; or search"), &fields_.crs,
-                             ImGuiInputTextFlags_AutoSelectAll);
+    const bool is_entered = ImGui::InputTextWithHint(
+        tr_label("CRS"), tr("as the file says; or search"), &fields_.crs,
+        ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
+    if (is_entered && searched_ == fields_.crs && !found_.empty())
+        fields_.crs = found_.front().code;
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip(
             "%s",
@@ -109,9 +119,8 @@ void ImportSheet::found_crs() {
             error_ = error.what();
         }
     }
-    const bool is_chosen = !found_.empty() && found_.front().code == fields_.crs;
-    if (found_.empty() || is_chosen) {
-        ImGui::TextDisabled("%s", is_chosen ? found_.front().name.c_str() : "");
+    if (found_.empty() || is_found_chosen()) {
+        ImGui::TextDisabled("%s", found_.empty() ? "" : found_.front().name.c_str());
         return;
     }
     if (ImGui::BeginChild("found", {0, 6 * ImGui::GetTextLineHeightWithSpacing()}, true))
@@ -148,16 +157,19 @@ void ImportSheet::preview(float width_px) {
         texture_ = has_picture ? texture_of(shown_->picture) : gl::Texture();
     }
     if (!error_.empty()) return ImGui::TextWrapped("%s", error_.c_str());
+    if (!found_.empty() && !is_found_chosen())
+        return ImGui::TextDisabled("%s", tr("Return takes the first CRS"));
     if (!shown_) return ImGui::TextDisabled("%s", tr("reading ..."));
     if (shown_->error == reason_) return;
-    if (!shown_->error.empty()) return ImGui::TextWrapped("%s", shown_->error.c_str());
+    if (!shown_->error.empty())
+        return ImGui::TextWrapped("%s", sheet_words(shown_->error, dem_.files).c_str());
     const gl::Extent extent = texture_.extent();
     const float scale = std::min(width_px / static_cast<float>(extent.width),
                                  width_px * 0.7f / static_cast<float>(extent.height));
     ImGui::Image(
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name())),
         {scale * static_cast<float>(extent.width), scale * static_cast<float>(extent.height)});
-    ImGui::TextWrapped("%s", shown_->text.c_str());
+    ImGui::TextWrapped("%s", window_words(shown_->text).c_str());
 }
 
 void ImportSheet::draw(glm::vec2 size_px) {
@@ -170,7 +182,7 @@ void ImportSheet::draw(glm::vec2 size_px) {
         ImGuiCond_Appearing);
     if (ImGui::Begin(tr_label("How the DEM is read"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::TextUnformatted(printable(short_name(dem_.files)).c_str());
-        if (!reason_.empty()) ImGui::TextWrapped("%s", reason_.c_str());
+        if (!reason_.empty()) ImGui::TextWrapped("%s", sheet_words(reason_, dem_.files).c_str());
         ImGui::Separator();
         const float fields_px = 0.55f * ImGui::GetContentRegionAvail().x;
         const float height_px = ImGui::GetContentRegionAvail().y - 1.5f * line;

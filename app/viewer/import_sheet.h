@@ -42,6 +42,7 @@ class ImportSheet {
 
     void crs_field();
     void found_crs();
+    bool is_found_chosen() const { return !found_.empty() && found_.front().code == fields_.crs; }
     void other_fields();
     void preview(float width_px);
     void want_preview();

@@ -74,11 +74,13 @@ void MainWindow::run() {
         process_keys();
         if (is_open()) {
             process_mouse(std::min(passed_s, 0.1));
+            fit_home();
             process_film(passed_s);
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
         }
         open_requested_files();
+        if (opening_->is_refused() && !import_sheet_.is_open()) opening_->throw_refusal();
         check_files();
         if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing &&
             !film_->shows_frame())
@@ -152,7 +154,8 @@ void MainWindow::draw_panels() {
     if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        waiting_text(opening_->scene());
+        if (opening_->is_opening()) waiting_text(opening_->scene());
+        import_sheet_.draw(size());
         return;
     }
     if (picture_) draw_over_image();
@@ -194,6 +197,7 @@ std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return tr_format("opening {} ...   Esc cancels", short_name(opening_->next_scene().dems));
     if (const std::string film = film_->progress(); !film.empty()) return film;
+    if (picture_export_) return tr("drawing the picture ...");
     return is_drawing() ? tr("drawing ...") : "";
 }
 
@@ -244,8 +248,10 @@ void MainWindow::hand_over_scene() {
         overlay_->show_frame(thread);
     else if (overlay_->update(opened, thread))
         pacing_.need_frames(2);
-    if (state_.compare_is_wanted && !comparison_->thread())
+    if (state_.compare_is_wanted && !comparison_->thread()) {
+        window_->set_line(free_middle().x / size().x);
         comparison_->start(whole_scene(), opened, wanted_now(), overlay_->laid());
+    }
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     if (takes_picture_ && is_image_complete()) take_picture();
 }

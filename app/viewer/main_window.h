@@ -102,6 +102,10 @@ class MainWindow {
     bool is_image_complete() const;
     /// The pose of a view that leaves room for the panels.
     Pose pose_in(const scene::View& view) const;
+    /// After the window was resized: the whole DEM stays in view if the camera shows that.
+    void fit_home();
+    /// Notes that the camera shows the whole DEM in this window.
+    void note_home();
 
     // ---- files: main_window_files.cpp; they throw Error (BadInput) for files that are wrong
 
@@ -203,6 +207,8 @@ class MainWindow {
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
     double wanted_exaggeration_ = 1;
+    std::optional<Pose> home_;                     // of the whole DEM,
+    glm::vec2 home_size_{0};                       // in a window of this size
     Clock::time_point checked_at_ = Clock::now();  // files
     std::optional<Clock::time_point> first_picture_at_;
     bool sun_moved_ = false;      // in the frame before

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "base/paths.h"
 #include "sun/zone_of_place.h"
 #include "viewer/export.h"
 #include "viewer/translation.h"
@@ -65,9 +67,12 @@ void MainWindow::process_keys() {
 
 bool MainWindow::run_program_command(Command command) {
     switch (command) {
-        case Command::Open:
-            open_dialog_.open(opening_->requested_file());
+        case Command::Open: {
+            const std::string& file = opening_->requested_file();
+            // The folder of the bundled DEM has no files of the user's.
+            open_dialog_.open(file.starts_with(share_dir().string()) ? "" : file);
             return true;
+        }
         case Command::HowToRead:
             if (is_open()) {
                 const scene::Scene& scene = state_.document.scene;
@@ -222,6 +227,7 @@ void MainWindow::move(Command command) {
             messages_.note(tr("no ground to walk on here; click a point, then press G"));
         return;
     }
+    if (command == Command::Whole) note_home();
     if (command == Command::Walk || command == Command::StandHere)
         messages_.note(hand_->is_walking()
                            ? tr("walking at eye height: W A S D, faster with Shift; G flies again")
@@ -259,7 +265,7 @@ void MainWindow::save_profile() {
             file.write(text);
             file.finish();
         });
-        messages_.report(tr_format("{}: profile saved", name));
+        messages_.report(tr_format("{}: profile saved in {}", name, folder_of(name)));
     });
 }
 
@@ -276,6 +282,14 @@ Whole MainWindow::whole_views() const {
     Whole whole{pose_in(opening_->home_view()), pose_in(above)};
     // The vertical at the camera differs from that at the DEM's centre.
     whole.above = from_above(whole.above, state_.land, whole.above.eye_m, 0);
+    const scene::Camera camera = camera_of(state_.document.pose, state_.land);
+    const double aspect = size().x / size().y;
+    const std::vector<glm::dvec3>& ground = opening_->opened()->outline.points;
+    const auto visible = std::ranges::count_if(ground, [&](const glm::dvec3& point_m) {
+        const auto at = in_picture(camera, point_m, aspect);
+        return at && std::abs(at->x) < 1 && std::abs(at->y) < 1;
+    });
+    whole.in_view = static_cast<double>(visible) / std::max<std::size_t>(ground.size(), 1);
     return whole;
 }
 

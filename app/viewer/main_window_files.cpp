@@ -48,7 +48,10 @@ void MainWindow::open_requested_files() {
     const std::vector<std::string> dems = std::exchange(state_.files_to_open, {});
     std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
     const std::optional<RecentDem> imported = import_sheet_.take();
-    if (!is_open()) return;
+    if (!is_open()) {
+        if (imported) open_imported(*imported);
+        return;
+    }
     if (const std::string track = film_->take_track(); !track.empty()) files.push_back(track);
     if (imported || recent || !dems.empty() || !files.empty()) film_->end_preview();
     if (imported) return open_imported(*imported);
@@ -94,6 +97,7 @@ void MainWindow::open_imported(const RecentDem& dem) {
 
 void MainWindow::open_scene(scene::Scene scene) {
     state_.message.clear();
+    import_sheet_.close();
     opening_->open(std::move(scene), first_wanted());
     pacing_.need_frames(3);
 }
@@ -198,6 +202,9 @@ void MainWindow::stand_where_taken(const std::string& path) {
 void MainWindow::ask_how_to_read() {
     const std::optional<Opening::Failure> failure = opening_->take_failure();
     if (!failure || !is_raster_file(failure->scene.dems.front())) return;
+    const scene::Scene& scene = failure->scene;
+    // Without an open scene the sheet is alone in the window; it mends nothing else.
+    if (!is_open() && preview_of({scene.dems, scene.dem, 4})->error != failure->reason) return;
     state_.message.clear();
     refused_ = failure->scene;
     import_sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason);

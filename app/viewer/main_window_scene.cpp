@@ -131,7 +131,8 @@ void MainWindow::poll_opening() {
             return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
             pacing_.need_frames(3);
-            return ask_how_to_read();
+            ask_how_to_read();
+            return;
     }
 }
 
@@ -173,6 +174,7 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     const sun::Zone zone_before = document.zone;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
     document.pose = pose_in(view.value_or(scene.view));
+    view ? home_.reset() : note_home();
     const bool has_time = is_first || !opening_->scene().time.at.empty();
     state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
     history_.add(document);
@@ -261,6 +263,21 @@ bool MainWindow::is_image_of_now() const {
 
 bool MainWindow::is_image_complete() const {
     return is_image_of_now() && picture_->sharp && overlay_->is_complete();
+}
+
+void MainWindow::note_home() {
+    home_ = state_.document.pose;
+    home_size_ = size();
+}
+
+void MainWindow::fit_home() {
+    if (home_size_ == size() || film_->shows_frame()) return;
+    const bool is_home = home_ == state_.document.pose;
+    home_size_ = size();
+    if (!is_home) return;
+    state_.document.pose = pose_in(opening_->home_view());
+    note_home();
+    pacing_.moved();
 }
 
 Pose MainWindow::pose_in(const scene::View& view) const {

@@ -239,6 +239,10 @@ void line_of_sight_of(Measurement& measurement) {
             tr_format("the end is visible, {:.1f} m above the line of sight over the "
                       "ground after {}",
                       -sight->missing_m, length_text(sight->highest.distance_m)));
+    constexpr double kHighest_m = 1000;  // of what may stand there
+    if (sight->missing_m > kHighest_m)
+        return wrapped(tr_format("the end is hidden by the ground after {}",
+                                 length_text(sight->highest.distance_m)));
     wrapped(
         tr_format("the end is hidden by the ground after {}; a target {:.1f} m higher is visible",
                   length_text(sight->highest.distance_m), sight->missing_m));

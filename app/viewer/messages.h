@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "viewer/window_words.h"
 
 namespace relevo::viewer {
 
@@ -26,7 +28,8 @@ class Messages {
     /// @param shown  the text that panels draw; outlives this
     explicit Messages(std::string& shown) : shown_(shown) {}
 
-    void show(std::string text) { shown_ = std::move(text); }
+    /// @param text  as on the command line; window_words() are shown
+    void show(std::string_view text) { shown_ = window_words(text); }
     /// Shows a text for some seconds.
     void note(std::string text);
     /// Shows a text for some seconds and logs it.

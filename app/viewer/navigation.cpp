@@ -197,7 +197,7 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
 }
 
 std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m) {
-    constexpr double kAhead_deg = -10;
+    constexpr double kAhead_deg = 0;
     if (std::isnan(land.ground_under(point_m))) return std::nullopt;
     Pose standing = pose;
     standing.eye_m = point_m;
@@ -216,7 +216,14 @@ Pose centred(const Pose& pose, const Land& land, const scene::Insets& insets, do
     const scene::Camera camera = camera_of(pose, land);
     const glm::dvec2 low(2 * insets.left - 1, 2 * insets.bottom - 1),
         high(1 - 2 * insets.right, 1 - 2 * insets.top);
-    const glm::dvec2 middle = 0.5 * (low + high);
+    // Angles, not pixels: off the axis of a lens a pixel is a smaller angle.
+    const auto between = [&](glm::dvec2 a, glm::dvec2 b) {
+        const glm::dvec3 bisector = ray(camera, a, window) + ray(camera, b, window);
+        return in_picture(camera, camera.eye_m + normalize(bisector), window).value();
+    };
+    const glm::dvec2 half = 0.5 * (low + high);
+    const glm::dvec2 middle(between({low.x, half.y}, {high.x, half.y}).x,
+                            between({half.x, low.y}, {half.x, high.y}).y);
     const auto angle = [&](glm::dvec2 a, glm::dvec2 b) {
         return std::acos(
             std::clamp(dot(ray(camera, a, window), ray(camera, b, window)), -1.0, 1.0));

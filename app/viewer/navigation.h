@@ -19,6 +19,8 @@ struct Pose {
     double heading_deg = 0;  ///< clockwise from true north
     double pitch_deg = 0;    ///< above the horizontal
     double fov_y_rad = 0;
+
+    bool operator==(const Pose&) const = default;
 };
 
 /// The ground below the camera.
@@ -76,7 +78,7 @@ Pose look_around(const Pose& pose, double right_deg, double up_deg);
 Pose fly(const Pose& pose, const Land& land, const glm::dvec3& by_m);
 /// Moves horizontally by (right, forward) [m], at eye height above ground.
 Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m);
-/// Stands at eye height on the drawn ground at a point, looking as before but not at the feet.
+/// Stands at eye height on the drawn ground at a point, looking as before but not downwards.
 /// @returns none: there is no ground
 std::optional<Pose> stand(const Pose& pose, const Land& land, const glm::dvec3& point_m);
 /// Turns to a point.

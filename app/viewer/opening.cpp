@@ -45,12 +45,13 @@ void Opening::cancel() {
 void Opening::begin(scene::Scene scene, bool is_reload) {
     if (next_) discard_.take(std::move(next_->thread));
     failure_.reset();
+    first_error_ = nullptr;
     auto thread = std::make_unique<SceneThread>(scene, device_, &Window::wake);
     next_ = Attempt{std::move(scene), std::move(thread), is_reload};
 }
 
 Opening::Event Opening::poll() {
-    if (next_)
+    if (is_opening())
         if (const Event event = poll_next(); event != Event::None) return event;
     return opened_ && !is_broken_ ? poll_open() : Event::None;
 }
@@ -61,7 +62,7 @@ Opening::Event Opening::poll_next() {
     } catch (const gl::DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        if (!opened_) throw;
+        if (!opened_) first_error_ = std::current_exception();
         fail(error.what());
         return Event::Failed;
     }
@@ -72,7 +73,8 @@ Opening::Event Opening::poll_next() {
 
 void Opening::fail(std::string reason) {
     messages_.show(reason);
-    failure_ = Failure{std::move(next_->scene), std::move(reason)};
+    failure_ = Failure{next_->scene, std::move(reason)};
+    if (!opened_) return;  // thread() stays
     discard_.take(std::move(next_->thread));
     next_.reset();
 }

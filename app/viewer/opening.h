@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,12 +45,15 @@ class Opening {
     /// Gives up the next scene. Requires can_cancel().
     void cancel();
     bool can_cancel() const { return opened_ && next_; }
-    bool is_opening() const { return next_.has_value(); }
-    /// @throws std::exception if the first scene cannot be opened
+    bool is_opening() const { return next_.has_value() && !is_refused(); }
     Event poll();
     std::optional<Failure> take_failure() { return std::exchange(failure_, std::nullopt); }
+    /// Whether the first scene could not be opened, and no other has been requested since.
+    bool is_refused() const { return first_error_ != nullptr; }
+    /// Throws why the first scene could not be opened. Requires is_refused().
+    [[noreturn]] void throw_refusal() const { std::rethrow_exception(first_error_); }
 
-    /// The thread of the open scene, or of the first one while it opens.
+    /// The thread of the open scene, or of the first one while it opens or if it was refused.
     SceneThread& thread() const { return opened_ ? *open_.thread : *next_->thread; }
     /// Null: the first scene is still being opened.
     const std::shared_ptr<const Opened>& opened() const { return opened_; }
@@ -92,6 +96,7 @@ class Opening {
     bool is_broken_ = false;                // its posts cannot be read completely
     bool went_back_ = false;                // open_ or next_ is complete_, after a failure
     std::optional<Failure> failure_;
+    std::exception_ptr first_error_;        // while the first scene is refused; next_ is its
     std::optional<scene::Scene> complete_;  // the last one whose posts were all read
     scene::View home_view_;
     std::string requested_file_;

@@ -94,7 +94,7 @@ void period(State& state) {
     ImGui::SameLine();
     date_field(state, tr("to"), chosen.last);
     if (sun::days_between(chosen.first, chosen.last) < 0)
-        ImGui::TextDisabled("%s", tr("the last day is before the first: one day"));
+        ImGui::TextDisabled("%s", tr("the last day is before the first; shown is the first"));
 }
 
 /// Resolution of the overlay, and progress.

@@ -14,6 +14,7 @@
 #include "session/picture_file.h"
 #include "session/record.h"
 #include "viewer/document.h"
+#include "viewer/export.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -92,8 +93,8 @@ std::string PictureExport::write() {
     if (const auto where = session::georeference_of(session)) session::write_beside(beside, *where);
     if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
     files.finish_outputs();
-    std::string text = tr_format("{}: picture saved, {} x {}", printable(order_.path),
-                                 scene.width_px, scene.height_px);
+    std::string text = tr_format("{}: picture saved in {}, {} x {}", printable(order_.path),
+                                 folder_of(order_.path), scene.width_px, scene.height_px);
     for (const std::string& note : session.stamp_notes())
         text += "; " + note;
     return text;

@@ -61,13 +61,14 @@ void calendar(State& state, sun::Date date) {
         ImGui::OpenPopup("calendar");
     if (!ImGui::BeginPopup("calendar")) return;
     int year = date.year, month = date.month - 1;
-    ImGui::SetNextItemWidth(140);
+    const float em = ImGui::GetFontSize();
+    ImGui::SetNextItemWidth(8.75f * em);
     if (ImGui::Combo("##month", &month, tr_all(kMonths).data(), 12))
         set_date(state, in_year({date.year, month + 1,
                                  std::min(date.day, days_in_month(date.year, month + 1))},
                                 date.year));
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(120);
+    ImGui::SetNextItemWidth(7.5f * em);
     if (ImGui::InputInt("##year", &year))
         set_date(state, in_year(date, std::clamp(year, kFirstYear, kLastYear)));
     // Weeks begin on Monday; 1 January 1900 was one.
@@ -75,13 +76,13 @@ void calendar(State& state, sun::Date date) {
     for (const char* name : {tr_later("Mo"), tr_later("Tu"), tr_later("We"), tr_later("Th"),
                              tr_later("Fr"), tr_later("Sa"), tr_later("Su")}) {
         ImGui::TextDisabled("%s", tr(name));
-        ImGui::SameLine(0, 14);
+        ImGui::SameLine(0, 0.875f * em);
     }
     ImGui::NewLine();
-    const ImVec2 cell{28, 0};
+    const ImVec2 cell{1.75f * em, 0};
     for (int i = 0; i < offset; ++i) {
         ImGui::Dummy(cell);
-        ImGui::SameLine(0, 4);
+        ImGui::SameLine(0, 0.25f * em);
     }
     for (int day = 1; day <= days_in_month(date.year, date.month); ++day) {
         const bool chosen = day == date.day;
@@ -92,7 +93,7 @@ void calendar(State& state, sun::Date date) {
             ImGui::CloseCurrentPopup();
         }
         if (chosen) ImGui::PopStyleColor();
-        if ((offset + day) % 7 != 0) ImGui::SameLine(0, 4);
+        if ((offset + day) % 7 != 0) ImGui::SameLine(0, 0.25f * em);
     }
     ImGui::EndPopup();
 }
@@ -142,7 +143,7 @@ void play(State& state) {
     int speed = 0;
     for (std::size_t i = 0; i < kSpeeds.size(); ++i)
         if (kSpeeds[i] <= state.hours_a_second + 1e-9) speed = static_cast<int>(i);
-    ImGui::SetNextItemWidth(110);
+    ImGui::SetNextItemWidth(6.875f * ImGui::GetFontSize());
     if (ImGui::Combo("##speed", &speed, tr_all(kNames).data(), static_cast<int>(kNames.size())))
         state.hours_a_second = kSpeeds[static_cast<std::size_t>(speed)];
     ImGui::SameLine();

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "base/error.h"
 #include "base/watchdog.h"
@@ -50,6 +51,12 @@ void end_where_the_display_goes() {
     const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
     if (!set) return;
     set([](void*) -> int { end_program("view: the connection to the display was lost"); });
+}
+
+/// Closes the innermost menu, list or calendar; the focus returns to what it lies over.
+void close_popup() {
+    const int levels = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+    if (levels > 0) ImGui::ClosePopupToLevel(levels - 1, true);
 }
 
 /// The letter on a key in the user's keyboard layout, else the key itself.
@@ -149,6 +156,7 @@ struct Window::Impl {
     std::vector<int> tapped;
     std::vector<std::string> dropped;
     bool has_input = false;  // clicks, keys or wheel events
+    bool closes_popup = false;
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
@@ -374,6 +382,8 @@ void Window::draw(const std::function<void()>& panels) {
     for (const int key : tapped)
         if (key >= 0) io.KeysDown[key] = glfwGetKey(impl_->handle, key) == GLFW_PRESS;
     panels();
+    // After the panels: the same Esc must not also close the sheet that gets the focus back.
+    if (std::exchange(impl_->closes_popup, false)) close_popup();
     const glm::ivec2 size = size_px();
     if (impl_->before.target) {
         const float x = impl_->line * ImGui::GetIO().DisplaySize.x;
@@ -390,11 +400,15 @@ void Window::draw(const std::function<void()>& panels) {
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
     if (ImGui::GetIO().WantTextInput) keys.clear();
-    // Esc first ends what is active in the panels.
-    const bool is_inside =
-        ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
-    if (is_inside)
-        std::erase_if(keys, [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; });
+    // Esc first ends what is active in the panels. ImGui closes popups only with its own keyboard.
+    const bool has_popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    const bool is_active = ImGui::IsAnyItemActive();
+    if (has_popup || is_active) {
+        const bool has_escape = std::erase_if(keys, [](const KeyPress& press) {
+                                    return press.key == GLFW_KEY_ESCAPE;
+                                }) > 0;
+        if (has_escape && !is_active && !panels_have_keys()) impl_->closes_popup = true;
+    }
     if (!panels_have_keys()) return keys;
     std::erase_if(keys, [&](const KeyPress& press) {
         const bool is_function = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;

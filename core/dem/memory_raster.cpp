@@ -33,6 +33,11 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     const double area = a.x_column * a.y_row - a.x_row * a.y_column;
     if (!std::isfinite(area) || area == 0 || !std::isfinite(a.x0 + a.y0))
         bad_input("heights: transform: expected finite numbers and cells with an area");
+    if (a.x0 == 0.5 && std::abs(a.y0) == 0.5 && a.x_column == 1 && a.x_row == 0 &&
+        a.y_column == 0 && a.y_row == 2 * a.y0)
+        bad_input(
+            "heights: transform: the identity, which GDAL has where it knows no place; expected "
+            "coordinates of the CRS");
     prepare_gdal();
     const GdalMessages messages;
     GDALDriverH const driver = GDALGetDriverByName("GTiff");
@@ -54,7 +59,8 @@ MemoryRaster::MemoryRaster(MemoryRaster&& other) noexcept
     : name_(std::exchange(other.name_, std::string())) {}
 
 MemoryRaster::~MemoryRaster() {
-    if (!name_.empty()) VSIUnlink(name_.c_str());
+    if (name_.empty()) return;
+    VSIUnlink(name_.c_str());
 }
 
 }  // namespace relevo::dem

@@ -34,8 +34,10 @@ void mark_voids(Array2d<float>& heights_m, std::optional<double> nodata) {
 
 /// How many posts of a side are kept of `columns` by `rows`.
 int step_for(int columns, int rows, int longest) {
-    return std::max(1, (std::max(columns, rows) + longest - 1) / longest);
+    return std::max(1, (std::max(columns, rows) - 1) / longest + 1);
 }
+
+constexpr double kMostPosts = 4e8;  // that are read for a look without overviews: some seconds
 
 /// The side of an SRTM tile with so many bytes; 0 if there is none.
 int srtm_side(std::uintmax_t bytes) {
@@ -78,8 +80,9 @@ void set_spacing(GDALDatasetH file, QuickLook& look) {
     OGRSpatialReferenceH const crs = GDALGetSpatialRef(file);
     const double width = t[1] * GDALGetRasterXSize(file), height = t[5] * GDALGetRasterYSize(file);
     // No DEM has cells of more than a degree, and few have cells of less than a metre.
-    const bool may_be_degrees = std::abs(width) <= 360 && std::abs(height) <= 180 &&
-                                std::max(look.column_m, look.row_m) <= 1;
+    const bool may_be_degrees = std::max(std::abs(t[0]), std::abs(t[0] + width)) <= 360 &&
+                                std::max(std::abs(t[3]), std::abs(t[3] + height)) <= 90.001 &&
+                                std::max(look.column_m, look.row_m) < 1;
     if (crs ? OSRIsGeographic(crs) != 0 : may_be_degrees) {
         const double middle_deg = std::clamp(t[3] + 0.5 * height, -89.0, 89.0);
         look.column_m *= kDegree_m * std::cos(radians(middle_deg));
@@ -91,12 +94,23 @@ void set_spacing(GDALDatasetH file, QuickLook& look) {
     }
 }
 
+/// Rows from the south become rows from the north.
+void turn_over(Array2d<float>& heights_m) {
+    for (int r = 0; r < heights_m.height() / 2; ++r)
+        std::ranges::swap_ranges(heights_m.row(r), heights_m.row(heights_m.height() - 1 - r));
+}
+
 QuickLook read(GDALDatasetH file, const std::string& path, int longest,
                const GdalMessages& messages) {
     GDALRasterBandH const band = GDALGetRasterBand(file, 1);
     if (!band) bad_input(fmt::format("{}: no band of heights", printable(path)));
     const int columns = GDALGetRasterXSize(file), rows = GDALGetRasterYSize(file);
     const int step = step_for(columns, rows, longest);
+    if (GDALGetOverviewCount(band) == 0 && double{1} * columns * rows > kMostPosts)
+        bad_input(
+            fmt::format("{}: {} x {} posts, expected at most {:.0f} million without overviews; "
+                        "add them with gdaladdo",
+                        printable(path), columns, rows, kMostPosts / 1e6));
     QuickLook look;
     set_spacing(file, look);
     look.column_m *= step;
@@ -108,6 +122,8 @@ QuickLook read(GDALDatasetH file, const std::string& path, int longest,
     int has_nodata = 0;
     const double nodata = GDALGetRasterNoDataValue(band, &has_nodata);
     mark_voids(look.heights_m, has_nodata ? std::optional(nodata) : std::nullopt);
+    double t[6] = {};
+    if (GDALGetGeoTransform(file, t) == CE_None && t[5] > 0) turn_over(look.heights_m);
     return look;
 }
 

@@ -213,10 +213,11 @@ std::string to_text(const Summary& s) {
     line("voids", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
     if (s.outliers > 0) line("outliers", fmt::format("{} heights impossible on Earth", s.outliers));
     if (s.worst_spike)
-        line("spikes", fmt::format("{} posts more than {:.0f} m above or below all their "
+        line("spikes", fmt::format("{} {} more than {:.0f} m above or below all {} "
                                    "neighbours, the worst by {:.0f} m at {}",
-                                   s.spikes.count, s.spikes.limit_m, s.spikes.worst_m,
-                                   geo::degrees_text(*s.worst_spike)));
+                                   s.spikes.count, s.spikes.count == 1 ? "post" : "posts",
+                                   s.spikes.limit_m, s.spikes.count == 1 ? "its" : "their",
+                                   s.spikes.worst_m, geo::degrees_text(*s.worst_spike)));
     line("unit", fmt::format("{} ({})", s.unit, s.unit_source));
     line("above", s.vertical_datum.empty() ? "unknown" : s.vertical_datum);
     for (const std::string& assumption : s.assumptions)

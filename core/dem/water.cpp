@@ -31,6 +31,12 @@ constexpr std::int64_t kLargePosts = 900;
 constexpr double kLargeClosed = 0.65, kCompact = 120;
 constexpr int kFar = 4;           // posts behind its shore, where land has risen by two steps
 constexpr double kRisesOn = 0.4;  // of the shore
+// A lake that lies on two sheets of a map may have heights that differ by a rounding.
+constexpr float kSeam_m = 0.02f;
+constexpr double kSeam = 0.25;  // of a lake's rim, at most
+// Resampling with cubic kernels lowers the shore of a lake below it. Behind it land rises, on 0.81
+// of the shore of Lake Garda, and is lower on 0.02. Of a plain's terrace it is higher on one half.
+constexpr double kRingedHigher = 0.7, kRingedLower = 0.1;
 
 class WaterFinder {
   public:
@@ -181,14 +187,32 @@ class WaterFinder {
 
     /// What is around a flat.
     struct Rim {
-        std::vector<float> rises;      // where it is higher
-        std::vector<float> far_rises;  // kFar posts further out, straight on
-        std::int64_t lower = 0, edge = 0;
+        std::vector<float> rises;           // where it is higher
+        std::vector<float> far_rises;       // kFar posts further out, straight on
+        std::vector<float> far_from_lower;  // the same behind posts that are lower
+        std::int64_t lower = 0, edge = 0, seam = 0;
         float deepest_m = 0;  // how far it is lower
 
         double higher() const { return static_cast<double>(rises.size()); }
         double all() const { return higher() + static_cast<double>(lower); }
     };
+
+    /// Adds a post to the rim. @param far  further out  @param level  of the flat [m]
+    void add(float rise, const glm::ivec2& far, float level, Rim& rim) const {
+        if (rise < 0 && rise >= -kSeam_m) {
+            ++rim.seam;
+            return;
+        }
+        if (rise > 0) {
+            rim.rises.push_back(rise);
+        } else {
+            ++rim.lower;
+            rim.deepest_m = std::max(rim.deepest_m, -rise);
+        }
+        if (far.x >= 0 && far.y >= 0 && far.x < h_.width() && far.y < h_.height() &&
+            !is_hole(far.x, far.y))
+            (rise > 0 ? rim.far_rises : rim.far_from_lower).push_back(h_.at(far.x, far.y) - level);
+    }
 
     /// Looks at all that is connected to a post and of its height, and at what is around that.
     void try_lake(int column, int row) {
@@ -212,18 +236,13 @@ class WaterFinder {
                     if (seen_.at(at.x, at.y)) continue;
                     seen_.at(at.x, at.y) = 1;
                     posts.push_back(at);
-                } else if (rise > 0) {
-                    rim.rises.push_back(rise);
-                    const glm::ivec2 far = at + kFar * step;
-                    if (far.x >= 0 && far.y >= 0 && far.x < h_.width() && far.y < h_.height() &&
-                        !is_hole(far.x, far.y))
-                        rim.far_rises.push_back(h_.at(far.x, far.y) - level);
                 } else {
-                    ++rim.lower;
-                    rim.deepest_m = std::max(rim.deepest_m, -rise);
+                    add(rise, at + kFar * step, level, rim);
                 }
             }
         }
+        if (static_cast<double>(rim.seam) > kSeam * (rim.all() + static_cast<double>(rim.seam)))
+            rim.lower += rim.seam;
         if (!is_lake(std::ssize(posts), rim) || (rim.edge > 0 && is_collar(level))) return;
         for (const glm::ivec2& post : posts)
             kind_of_posts().at(post.x, post.y) = WaterKind::Lake;
@@ -247,9 +266,24 @@ class WaterFinder {
         // Shores that were averaged rise by a step and waver by one, and then rise on.
         const auto rises_on =
             std::ranges::count_if(rim.far_rises, [&](float rise) { return rise > 1.5f * step; });
-        return terraced && static_cast<double>(rises_on) >= kRisesOn * rim.higher() &&
-               posts >= kLargePosts && rim.deepest_m < 1.5f * step &&
-               rim.higher() >= kLargeClosed * rim.all() && rim.all() * rim.all() <= kCompact * size;
+        const bool is_large =
+            terraced && posts >= kLargePosts && rim.all() * rim.all() <= kCompact * size;
+        return is_large &&
+               (is_ringed(rim, step) ||
+                (static_cast<double>(rises_on) >= kRisesOn * rim.higher() &&
+                 rim.deepest_m < 1.5f * step && rim.higher() >= kLargeClosed * rim.all()));
+    }
+
+    /// Whether land rises all around behind a shore that may be lower than the flat.
+    static bool is_ringed(const Rim& rim, float step) {
+        std::int64_t higher = 0, lower = 0;
+        for (const std::vector<float>* rises : {&rim.far_rises, &rim.far_from_lower})
+            for (const float rise : *rises) {
+                higher += rise > 1.5f * step;
+                lower += rise < -1.5f * step;
+            }
+        return static_cast<double>(higher) >= kRingedHigher * rim.all() &&
+               static_cast<double>(lower) <= kRingedLower * rim.all();
     }
 
     const Array2d<float>& h_;

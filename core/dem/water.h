@@ -38,7 +38,7 @@ struct Water {
 /// within a millimetre, at least 64 on 0.01 km2, with higher ground on 95 % of their rim. Heights
 /// in steps, such as whole metres, make terraces of plains that rise by one step: there the rim
 /// must rise by two and more on a quarter of it, or the flat be large and compact (water.cpp has
-/// the limits).
+/// the limits). A large one may have a lower rim, from resampling, if the land behind it is higher.
 /// @param heights_m  NaN for holes
 /// @param grid       of as many posts
 /// Takes about 10 ms a million posts (tests/dem/bench_dem.cpp).

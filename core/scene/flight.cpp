@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/units.h"
 #include "scene/ground_path.h"
 #include "scene/motion.h"
@@ -46,8 +45,9 @@ std::vector<double> shares(const FlightMotion& motion) {
 /// Heights of a flight along a line: above all ground near it.
 class FlightHeights {
   public:
+    /// @param warning  is set if a part of the line has no ground
     FlightHeights(const GroundPath& path, const Reach& reach, double height_m,
-                  const MotionGround& ground) {
+                  const MotionGround& ground, std::string& warning) {
         const double whole_m = path.length_m() + reach.look_ahead_m;
         constexpr double kMost = 100'000, kPerLook = 64;
         step_m_ = std::max(whole_m / kMost, std::min(reach.look_ahead_m, whole_m) / kPerLook);
@@ -61,10 +61,10 @@ class FlightHeights {
             bad_input("expected a line over the DEM but all of it lies outside, or in voids");
         const double share = static_cast<double>(outside) * step_m_ / path.length_m();
         if (share > 0.01)
-            log::warning(
-                fmt::format("flight: {:.0f} % of the line has no ground; the height is "
-                            "kept from the nearest that it has",
-                            std::min(100 * share, 100.0)));
+            warning = fmt::format(
+                "flight: {:.0f} % of the line has no ground; the height is "
+                "kept from the nearest that it has",
+                std::min(100 * share, 100.0));
         for (double& at_m : heights_m_)
             at_m += height_m;
         const auto radius = static_cast<std::size_t>(std::ceil(reach.rise_m / step_m_));
@@ -89,10 +89,11 @@ double mean_speed_m_s(const FlightMotion& motion) {
     return length_m * motion.fps / motion.frames;
 }
 
-std::vector<Pose> along_line(const FlightMotion& motion, const MotionGround& ground) {
+std::vector<Pose> along_line(const FlightMotion& motion, const MotionGround& ground,
+                             std::string& warning) {
     const Reach reach = reach_of(motion, mean_speed_m_s(motion));
     const GroundPath path(motion.along, reach.look_ahead_m);
-    const FlightHeights heights(path, reach, motion.height_m, ground);
+    const FlightHeights heights(path, reach, motion.height_m, ground, warning);
     std::vector<geo::Geodetic> eyes, aims;
     for (const double share : shares(motion)) {
         const double at_m = share * path.length_m(), ahead_m = at_m + reach.look_ahead_m;
@@ -282,9 +283,9 @@ double frames_at_speed(const FlightMotion& motion, double speed_m_s) {
 }
 
 std::vector<View> flight_views(const FlightMotion& motion, const View& view,
-                               const MotionGround& ground) {
+                               const MotionGround& ground, std::string& warning) {
     std::vector<Pose> poses =
-        motion.views.empty() ? along_line(motion, ground) : through_views(motion, ground);
+        motion.views.empty() ? along_line(motion, ground, warning) : through_views(motion, ground);
     steady(poses, motion.fps);
     std::vector<View> result;
     for (const Pose& pose : poses) {

@@ -25,6 +25,10 @@ constexpr double kFilledWell = 0.4;
 /// the grid's axes on.
 constexpr double kOblique_deg = 15;
 constexpr double kStraightOn = 0.8;
+/// How much better the south is than the side, by its score.
+constexpr double kSouthern = 0.05;
+/// A country is recognised by its outline, as on maps: from the south, and from higher up.
+constexpr double kCountry_m = 300e3, kSouthernOfCountry = 0.4, kFirstOfCountry_deg = 46;
 constexpr double kPictureAspect = 1.25;
 /// A globe is seen from straight above the middle of its map, north up.
 constexpr double kGlobeAzimuth_deg = 180, kGlobeElevation_deg = 90;
@@ -103,6 +107,17 @@ double obliqueness(double azimuth_deg, double row_deg) {
     return kStraightOn + (1 - kStraightOn) * std::min(beside / kOblique_deg, 1.0);
 }
 
+/// The longer side of the ground [m].
+double side_m(const GroundNet& net) {
+    glm::dvec2 least(1e300), most(-1e300);
+    for (const glm::dvec3& point : net) {
+        if (std::isnan(point.x)) continue;
+        least = glm::min(least, glm::dvec2(point));
+        most = glm::max(most, glm::dvec2(point));
+    }
+    return std::max(most.x - least.x, most.y - least.y);
+}
+
 }  // namespace
 
 double Aspect::score() const {
@@ -172,10 +187,12 @@ Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay
         return best;
     }
     constexpr double kMiddle_deg = 34;
+    const bool is_country = side_m(net) > kCountry_m;
     double azimuth_deg = wanted.azimuth_deg.value_or(0);
     if (!wanted.azimuth_deg) {
         double most = -1;
         const double row_deg = row_azimuth_deg(net);
+        const double southern = is_country ? kSouthernOfCountry : kSouthern;
         for (int i = 0; i < kAzimuths; ++i) {
             // From the south on: of equals the first is taken, and maps are read from there.
             const double turn_deg = (i + 1) / 2 * (360.0 / kAzimuths) * (i % 2 ? 1 : -1);
@@ -183,8 +200,8 @@ Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay
             Aspect aspect =
                 aspect_from(net, candidate_deg, wanted.elevation_deg.value_or(kMiddle_deg), day);
             const DefaultTime light = day.estimate(candidate_deg);
-            const double southern = 1 + 0.05 * std::cos(radians(turn_deg));
-            const double score = aspect.score() * southern * obliqueness(candidate_deg, row_deg) *
+            const double score = aspect.score() * (1 + southern * std::cos(radians(turn_deg))) *
+                                 obliqueness(candidate_deg, row_deg) *
                                  (light.within_bounds ? 1 : 0.3);
             if (score <= most + 1e-9) continue;
             most = score;
@@ -192,7 +209,8 @@ Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay
         }
     }
     best.orbit.azimuth_deg = azimuth_deg;
-    double elevation_deg = wanted.elevation_deg.value_or(kFirstElevation_deg);
+    double elevation_deg =
+        wanted.elevation_deg.value_or(is_country ? kFirstOfCountry_deg : kFirstElevation_deg);
     best.aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
     while (!wanted.elevation_deg && elevation_deg + kElevationStep_deg <= kHighestView_deg &&
            (best.aspect.in_sight < kEnoughInSight ||

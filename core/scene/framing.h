@@ -39,8 +39,9 @@ struct Framing {
 inline constexpr double kLowestView_deg = 25, kHighestView_deg = 40;
 
 /// Fills in the angles that an orbit leaves open: the azimuth of 24 from which relief stands up
-/// best, and the lowest elevation from 28 to 40 degrees that hides little of it. Hangs on the DEM
-/// alone, never on the time or the size of the picture, so that pictures of one DEM are of one
+/// best, and the lowest elevation from 28 to 40 degrees that hides little of it. Ground of more
+/// than 300 km is seen from 46 degrees and from the south if that is nearly as good. Depends on the
+/// DEM alone, never on the time or the size of the picture, so that pictures of one DEM are of one
 /// view. What goes round the Earth is seen from high above the middle of its map. Takes some 2 ms
 /// (tests/scene/test_framing.cpp).
 Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay& day);

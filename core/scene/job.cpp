@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -150,19 +151,22 @@ class Expansion {
     }
 
     /// The views of a camera that moves over the ground of a draft.
-    std::vector<Change> views_of(const Axis& axis, const Draft& draft) const {
+    std::vector<Change> views_of(const Axis& axis, const Draft& draft) {
         const MotionGround ground = ground_of_(draft.scene);
         std::vector<View> views;
+        std::string warning;
         try {
             if (const auto* const orbit = std::get_if<OrbitMotion>(&*axis.motion))
                 views = orbit_views(*orbit, draft.scene.view, ground);
             else
-                views =
-                    flight_views(std::get<FlightMotion>(*axis.motion), draft.scene.view, ground);
+                views = flight_views(std::get<FlightMotion>(*axis.motion), draft.scene.view, ground,
+                                     warning);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
             fail(axis.line, axis.path, error.what());
         }
+        if (!warning.empty() && !contains(result_.warnings, warning))
+            result_.warnings.push_back(warning);
         std::vector<Change> result;
         for (const View& view : views) {
             const std::string name = fmt::format("{:04}", result.size() + 1);

@@ -133,6 +133,7 @@ struct Shots {
     std::vector<Shot> shots;
     /// Of pictures that are left out because their event does not happen on their day: why.
     std::vector<std::string> left_out;
+    std::vector<std::string> warnings;  ///< about flights over places without ground
 };
 
 /// Draws up a job's pictures, with their names.

@@ -127,7 +127,11 @@ class JobReader {
                 {name, [this_ = reader_, json = json_, &item, path, name](Draft& draft) {
                      ObjectReader shot = this_.inside(item, path);
                      shot.take("name");
+                     const int camera = shot.has("camera") ? shot.line_of("camera") : 0;
                      this_.take(shot, path, draft.scene);
+                     if (camera > 0 && draft.scene.ortho)
+                         shot.fail(camera, "camera",
+                                   "a map has no camera; remove picture.ortho, or this");
                      shot.finish();
                      draft.names["shot"] = name;
                  }});

@@ -77,11 +77,12 @@ double frames_at_speed(const FlightMotion& motion, double speed_m_s);
 /// all ground within Reach::rise_m along it, through views it is raised where it would come nearer
 /// to the ground than the views are. Where the line has no ground, it keeps the height from the
 /// nearest that it has.
-/// @param view  its field of view is that of a flight along a line
+/// @param view     its field of view is that of a flight along a line
+/// @param warning  is set if more than 1 % of the line has no ground
 /// @throws Error (BadInput) `expected E but got G` for a line or views that are one place, and for
 ///     a line without any ground
 std::vector<View> flight_views(const FlightMotion& motion, const View& view,
-                               const MotionGround& ground);
+                               const MotionGround& ground, std::string& warning);
 
 /// Raises eyes that are less than `clearance_m` above the ground, and their neighbours with them.
 /// @param eyes      heights with the exaggeration; of places without ground nothing is asked

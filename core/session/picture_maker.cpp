@@ -48,9 +48,14 @@ int side_of(double pixels, int max_side_px) {
     return std::max(most / kTileStep_px, 1) * kTileStep_px;
 }
 
+/// Pixels of the largest picture that is drawn as one frame.
+double largest_frame_px(const scene::Scene& scene, const PictureFormat& format) {
+    return scene.ortho ? std::min(format.frame_px, kMapFrame_px) : format.frame_px;
+}
+
 bool fits(const scene::Scene& scene, const PictureFormat& format, int max_side_px) {
     return std::max(scene.width_px, scene.height_px) <= max_side_px &&
-           double{1} * scene.width_px * scene.height_px <= format.frame_px;
+           double{1} * scene.width_px * scene.height_px <= largest_frame_px(scene, format);
 }
 
 [[noreturn]] void refuse_in_bands(const scene::Scene& scene, const std::string& what) {
@@ -251,14 +256,15 @@ image::Picture PictureMaker::whole(render::PassTimes* times) {
 void PictureMaker::refuse_in_tiles() const {
     const auto refuse = [&](const std::string& what) {
         bad_input(fmt::format("{}: expected a picture of at most {:.0f} pixels but got {} x {}",
-                              what, format_.frame_px, picture_px_.x, picture_px_.y));
+                              what, largest_frame_px(scene_, format_), picture_px_.x,
+                              picture_px_.y));
     };
     if (!format_.layers.empty()) refuse("--layers");
     if (impl_.drawn->without()) refuse("--ab");
     if (impl_.options.audited) refuse("--audit");
-    refuse_whole_frame_effects(*impl_.drawn,
-                               fmt::format("a picture of at most {:.0f} pixels but got {} x {}",
-                                           format_.frame_px, picture_px_.x, picture_px_.y));
+    refuse_whole_frame_effects(
+        *impl_.drawn, fmt::format("a picture of at most {:.0f} pixels but got {} x {}",
+                                  largest_frame_px(scene_, format_), picture_px_.x, picture_px_.y));
 }
 
 void refuse_whole_frame_effects(const DrawnEffects& drawn, const std::string& expected) {

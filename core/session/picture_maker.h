@@ -28,6 +28,9 @@ int samples_of(const scene::Scene& scene);
 inline constexpr int kMargin_px = 256;
 /// Pixels of the frames that larger pictures are made of: their targets take 60 bytes each.
 inline constexpr double kTileFrame_px = 1 << 23;
+/// Pixels of the largest map that is one frame. A map may have a pixel for each post, and larger
+/// ones more pages of normals than there is room for: all normals would be of a coarser level.
+inline constexpr double kMapFrame_px = 1 << 24;
 
 /// @throws Error (BadInput) for active effects that compute from the whole frame
 /// @param expected  what they would need, for the message

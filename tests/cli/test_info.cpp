@@ -103,8 +103,8 @@ TEST(InfoVerb, ReportsSpikesAndOutliers) {
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(
         run.out.find(
-            "outliers   1 heights impossible on Earth\nspikes     1 posts more than 180 m "
-            "above or below all their neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
+            "outliers   1 heights impossible on Earth\nspikes     1 post more than 180 m "
+            "above or below all its neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
         std::string::npos)
         << run.out;
 }
@@ -146,7 +146,7 @@ TEST(InfoVerb, IsOfAllPostsWhateverMemoryHolds) {
     const Result all = with({});
     EXPECT_NE(all.out.find("posts      1200 x 640\n"), std::string::npos) << all.out;
     EXPECT_NE(all.out.find("heights    500.0 to 4321.0 m\n"), std::string::npos) << all.out;
-    EXPECT_NE(all.out.find("spikes     1 posts"), std::string::npos) << all.out;
+    EXPECT_NE(all.out.find("spikes     1 post"), std::string::npos) << all.out;
     EXPECT_EQ(with({"--memory", "1"}).out, all.out);
     EXPECT_EQ(with({"--memory", "1", "--json"}).out, with({"--json"}).out);
 }

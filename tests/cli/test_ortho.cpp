@@ -352,6 +352,14 @@ TEST_F(Ortho, ASceneOfAMapRefusesACamera) {
     expect_failure({"-q", "run", job.string()}, 3,
                    "job: " + job.string() +
                        ":2: sweep[0].cameras: a map has no camera; remove picture.ortho, or this");
+    const std::filesystem::path shots = dir_ / "shots.json";
+    std::ofstream(shots) << R"({"format": 1, "dem": {"files": [")" << bundled_dem()
+                         << R"("]}, "picture": {"ortho": true},
+                         "shots": [{"name": "a"}, {"name": "b",
+                         "camera": {"orbit": {"azimuth": 90}}}], "output": "{shot}.png"})";
+    expect_failure({"-q", "run", shots.string()}, 3,
+                   "job: " + shots.string() +
+                       ":3: shots[1].camera: a map has no camera; remove picture.ortho, or this");
 }
 
 TEST_F(Ortho, LinearLightHasNoMargin) {

@@ -146,6 +146,33 @@ TEST(Water, AResampledLakeIsALake) {
     EXPECT_EQ(find_water(h, alps(h)).lakes, 1);
 }
 
+TEST(Water, ALakeOnTwoSheetsIsALake) {
+    // As the lakes of Thun and Brienz in DHM25: 558.01 m and 558 m.
+    const auto h = ground(120, 80, [](int x, int y) {
+        return hills(x, y) < 10 ? (x < 60 ? 558.01f : 558.0f)
+                                : 558.5f + static_cast<float>(hills(x, y)) - 9;
+    });
+    const Water water = find_water(h, alps(h));
+    EXPECT_EQ(water.kind.at(57, 40), WaterKind::Lake);
+    EXPECT_EQ(water.kind.at(62, 40), WaterKind::Lake);
+}
+
+TEST(Water, AShoreThatACubicKernelLoweredIsOneOfALake) {
+    // As Lake Garda in SRTM in whole metres: a ring below the lake, and mountains behind it.
+    const auto ringed = [](double behind) {
+        return ground(160, 120, [behind](int x, int y) {
+            const double r = std::hypot(x - 80, y - 60);
+            if (r < 40) return 562.0;
+            if (r < 42 && y < 95) return 561.0 - (x + y) % 2;
+            return std::round(562 + behind * (r - 39.5));
+        });
+    };
+    const auto lake = ringed(8);
+    EXPECT_EQ(find_water(lake, alps(lake)).lakes, 1);
+    const auto hilltop = ringed(-8);
+    EXPECT_FALSE(find_water(hilltop, alps(hilltop)).any());
+}
+
 TEST(Water, TerracesOfWholeMetresAreNoLakes) {
     const auto whole = [](double metres) { return std::floor(metres); };
     const auto slope =

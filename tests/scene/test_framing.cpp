@@ -43,6 +43,17 @@ TEST(Framing, AWallHidesWhatLiesBehindIt) {
     EXPECT_TRUE(other_deg <= 60 || other_deg >= 300) << other_deg;
 }
 
+TEST(Framing, CountriesAreSeenFromTheSouthAndFromHigherUp) {
+    // A step that shows well from the north.
+    GroundNet net = net_of([](double, double y) { return y > 8e3 ? 0.0 : 300.0; });
+    const DefaultDay day = day_at(-41);
+    for (glm::dvec3& point : net)
+        point = {20 * point.x, 20 * point.y, 7 * point.z};
+    const Orbit orbit = frame_ground({}, net, day).orbit;
+    EXPECT_LE(std::abs(*orbit.azimuth_deg - 180), 60);
+    EXPECT_EQ(*orbit.elevation_deg, 46);
+}
+
 TEST(Framing, LevelGroundFillsAsMuchAsItsProjectionDoes) {
     // Straight on a square of side a is a wide and a sin(el) high in parallel rays; in a picture of
     // 5 : 4 of which it fills 95 % of the width.

@@ -171,6 +171,11 @@ TEST(Path, SaysWhatIsNone) {
 
 // --- Motions
 
+std::vector<View> views_of(const FlightMotion& motion, const MotionGround& ground) {
+    std::string warning;
+    return flight_views(motion, View(), ground, warning);
+}
+
 /// Hills of 300 m, 2 km apart, with a wall of 200 m across, and no ground beyond 12 km.
 MotionGround hills(double exaggeration = 1) {
     const geo::LocalFrame frame(geo::geodetic_deg(46.5, 8));
@@ -231,7 +236,7 @@ TEST(Flight, AlongALineIsSmoothAndAboveTheGround) {
         for (const auto& [x, y] :
              {std::pair(-6000, -3000), {-2000, 1000}, {2500, -500}, {6000, 2500}})
             motion.along.push_back(place(ground, x, y));
-        const std::vector<View> views = flight_views(motion, View(), ground);
+        const std::vector<View> views = views_of(motion, ground);
         ASSERT_EQ(views.size(), 600u);
         for (const View& view : views)
             EXPECT_GE(above_m(view, ground), 100 - 0.5);
@@ -264,7 +269,7 @@ TEST(Flight, SharpTurnsAreTakenSlowly) {
     FlightMotion motion{.look_ahead_m = 100, .frames = 600};
     for (const auto& [x, y] : {std::pair(-4000, 0), {4000, 0}, {-4000, 30}})
         motion.along.push_back(place(ground, x, y));
-    const Smoothness smooth = smoothness_of(flight_views(motion, View(), ground), ground);
+    const Smoothness smooth = smoothness_of(views_of(motion, ground), ground);
     EXPECT_LE(smooth.heading_deg.first, kMostTurn_deg_s / 30 + 1e-9);
     EXPECT_LT(smooth.heading_deg.second, 0.1);
 }
@@ -287,7 +292,7 @@ TEST(Flight, ThroughViewsPassesThemAndStaysAboveTheGround) {
                     looking_from(ground, 0, 3000, 300, 80, -20),  // turns on the spot
                     looking_from(ground, 5000, 100, 20, 180, 3)};
     motion.views.back().fov_y_rad = radians(20);
-    const std::vector<View> views = flight_views(motion, View(), ground);
+    const std::vector<View> views = views_of(motion, ground);
     ASSERT_EQ(views.size(), 450u);
     for (const View& view : views)
         EXPECT_GE(above_m(view, ground), 19.9);
@@ -313,10 +318,14 @@ TEST(Flight, OutsideTheDem) {
     const MotionGround ground = hills();
     FlightMotion motion{.frames = 100};
     motion.along = {place(ground, 20000, 0), place(ground, 30000, 0)};
-    EXPECT_EQ(test::error_of([&] { flight_views(motion, View(), ground); }),
+    EXPECT_EQ(test::error_of([&] { views_of(motion, ground); }),
               "exit 3: expected a line over the DEM but all of it lies outside, or in voids");
     motion.along = {place(ground, 0, 0), place(ground, 20000, 0)};
-    const std::vector<View> views = flight_views(motion, View(), ground);
+    std::string warning;
+    const std::vector<View> views = flight_views(motion, View(), ground, warning);
+    EXPECT_EQ(warning,
+              "flight: 39 % of the line has no ground; the height is kept from the nearest that it "
+              "has");
     for (const View& view : views)
         EXPECT_GT(view.eye->place.height_m, 300);
     EXPECT_LT(smoothness_of(views, ground).height_m.second, 10);  // 5 km/s
@@ -326,9 +335,9 @@ TEST(Flight, OneFrameAndSameViews) {
     const MotionGround ground = hills();
     FlightMotion motion{.frames = 1};
     motion.along = {place(ground, 0, 0), place(ground, 2000, 0)};
-    EXPECT_EQ(flight_views(motion, View(), ground).size(), 1u);
+    EXPECT_EQ(views_of(motion, ground).size(), 1u);
     motion.views = {looking_from(ground, 0, 0, 60, 0, 0), looking_from(ground, 0, 0, 60, 360, 0)};
-    EXPECT_THAT(test::error_of([&] { flight_views(motion, View(), ground); }),
+    EXPECT_THAT(test::error_of([&] { views_of(motion, ground); }),
                 HasSubstr("expected two different views or more"));
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "session/picture_maker.h"
 #include "session/session.h"
 #include "support/support.h"
 
@@ -57,6 +58,19 @@ TEST_P(LargePictures, InTilesAreAsInOneFrame) {
         // change.
         EXPECT_LT(off.share_over_1, 0.0002);
     }
+}
+
+TEST(LargeMaps, AreInTilesWhereNormalsOfEachPostHaveNoRoomInOneFrame) {
+    scene::Scene scene;
+    scene.ortho = true;
+    const auto is_tiled = [&](int side_px) {
+        scene.width_px = scene.height_px = side_px;
+        return frame_px(scene, {}, 16384) != glm::ivec2(side_px);
+    };
+    EXPECT_FALSE(is_tiled(4096));
+    EXPECT_TRUE(is_tiled(4608));
+    scene.ortho = false;
+    EXPECT_FALSE(is_tiled(4608));
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, LargePictures,

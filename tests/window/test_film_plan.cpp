@@ -311,7 +311,8 @@ TEST_F(Film, IsDrawnIntoTheWorkingFolder) {
     wanted_.wish.file.size_px = {64, 48};
     const auto film = std::make_shared<const FilmPlan>(plan());
     FilmExport drawing(film, "software", [] {});
-    EXPECT_EQ(result_of(drawing), "jacksboro_film.mp4: film saved, 6 frames, 0.2 s");
+    EXPECT_EQ(result_of(drawing), "jacksboro_film.mp4: film saved in " +
+                                      fs::current_path().string() + ", 6 frames, 0.2 s");
     EXPECT_EQ(drawing.drawn(), 6u);
     EXPECT_TRUE(fs::exists("jacksboro_film.mp4"));
     FilmExport again(film, "software", [] {});

@@ -9,6 +9,7 @@
 #include "effect/registry.h"
 #include "viewer/file_kind.h"
 #include "viewer/import_preview.h"
+#include "viewer/window_words.h"
 #include "window/viewer_fixture.h"
 
 namespace relevo {
@@ -136,7 +137,7 @@ TEST_F(OpenedFiles, ADemWithoutACrsIsAskedForOne) {
     ASSERT_TRUE(changes_in(kSheet, [&] { choose(grid.string()); }));
     ASSERT_TRUE(settles());
     EXPECT_THAT(program_->title(), HasSubstr("jacksboro.tif"));
-    act({"mousemove", "420", "259", "click", "1"});
+    act({"mousemove", "420", "243", "click", "1"});
     act({"type", "--delay", "60", "EPSG:31287"});
     // The preview, then Open.
     constexpr glm::ivec4 kPreview{690, 250, 300, 150};
@@ -149,6 +150,51 @@ TEST_F(OpenedFiles, ADemWithoutACrsIsAskedForOne) {
     EXPECT_TRUE(shows("grid.asc"));
     ASSERT_TRUE(settles());
     EXPECT_EQ(scene()["dem"]["crs"], "EPSG:31287");
+}
+
+TEST_F(OpenedFiles, ADemOfTheCommandLineWithoutACrsIsAskedForOne) {
+    const auto grid = folder_ / "grid.asc";
+    std::ofstream(grid) << grid_text();
+    constexpr glm::ivec4 kSheet{270, 160, 740, 480};
+    const auto shows_sheet = [&] {
+        return wait([&] {
+            return count_near(display_.screen(), kSheet, {15, 15, 15}, 8) > 100'000;
+        });
+    };
+    // Without an answer it ends as other commands do.
+    start({grid.string(), "--only"});
+    ASSERT_TRUE(shows_sheet()) << program_->output();
+    act({"key", "Escape"});
+    EXPECT_EQ(program_->status(), 3);
+    EXPECT_THAT(program_->output(), HasSubstr("does not say its coordinate system; add --crs"));
+    start({grid.string(), "--only"});
+    ASSERT_TRUE(shows_sheet()) << program_->output();
+    act({"mousemove", "420", "243", "click", "1"});
+    act({"type", "--delay", "60", "31287"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    act({"key", "Return"});  // the first of those found
+    constexpr glm::ivec4 kPreview{690, 230, 300, 150};
+    ASSERT_TRUE(wait([&] {
+        return count_near(display_.screen(), kPreview, {110, 110, 110}, 60) > 3000;
+    }));
+    act({"mousemove", "329", "616"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    act({"click", "1"});
+    EXPECT_TRUE(shows("grid.asc"));
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene()["dem"]["crs"], "EPSG:31287");
+}
+
+TEST(WindowWords, NameFieldsInsteadOfOptions) {
+    using viewer::window_words;
+    EXPECT_EQ(window_words("does not say its coordinate system; add --crs, for example EPSG:1"),
+              "does not say its coordinate system; enter the CRS, for example EPSG:1");
+    EXPECT_EQ(window_words("a; --unit sets another; --band N selects another"),
+              "a; the field Unit sets another; the field Band selects another");
+    EXPECT_EQ(window_words("s.json: plugins of /p are not used; add --plugin-path /p, or --trust "
+                           "for all"),
+              "s.json: plugins of /p are not used; to use them start relevo --plugin-path /p");
+    EXPECT_EQ(window_words("--memory 9"), "--memory 9");
 }
 
 TEST_F(OpenedFiles, ASceneAJobAndAPictureOpenTheirScene) {

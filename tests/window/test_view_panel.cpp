@@ -114,5 +114,37 @@ TEST_F(Viewer, KeysReachMenusAndPanelsAndGoBackToTheScene) {
     EXPECT_TRUE(wait([&] { return !is_north(); }));
 }
 
+/// Esc closes the list, menu or calendar that is open, and nothing else.
+TEST_F(Viewer, EscClosesMenusListsAndTheCalendar) {
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    const auto press = [&](std::vector<std::string> keys) {
+        act(keys);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    };
+    const nlohmann::json before = scene();
+    const auto is_closed_again = [&](const glm::ivec4& area, const glm::ivec2& at,
+                                     const char* button) {
+        press({"mousemove", "700", "770"});
+        ASSERT_TRUE(settles());
+        const image::Image8 shown = display_.screen();
+        ASSERT_TRUE(changes_in(area, [&] {
+            press({"mousemove", std::to_string(at.x), std::to_string(at.y), "click", button});
+            press({"mousemove", "700", "770"});
+        }));
+        press({"key", "Escape"});
+        EXPECT_TRUE(wait([&] { return count_other(shown, display_.screen(), area) < 30; }));
+    };
+    is_closed_again({100, 120, 230, 160}, {88, 99}, "1");  // the calendar of the date
+    // A list of the export sheet: the sheet stays for the next Esc.
+    const glm::ivec4 sheet{850, 130, 300, 260};
+    const image::Image8 without = display_.screen();
+    press({"key", "ctrl+p"});
+    is_closed_again(sheet, {1000, 162}, "1");
+    EXPECT_GT(count_other(without, display_.screen(), sheet), 1000);
+    press({"key", "Escape"});
+    EXPECT_TRUE(wait([&] { return count_other(without, display_.screen(), sheet) < 30; }));
+    EXPECT_EQ(scene()["time"], before["time"]);
+}
+
 }  // namespace
 }  // namespace relevo

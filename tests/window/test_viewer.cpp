@@ -112,6 +112,16 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     resize("1280", "800");
     act({"key", "Home", "sleep", "0.5"});
     EXPECT_EQ(resting_scene()["camera"]["eye"], first["camera"]["eye"]);
+    // The camera at home stays there when the window is resized: the DEM fills it again.
+    resize("900", "700");
+    ASSERT_TRUE(settles());
+    const auto resized = resting_scene()["camera"];
+    EXPECT_NE(resized["eye"], first["camera"]["eye"]);
+    act({"key", "Home", "sleep", "0.5"});
+    EXPECT_EQ(resting_scene()["camera"], resized);
+    resize("1280", "800");
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(resting_scene()["camera"]["eye"], first["camera"]["eye"]);
     // Of the whole window where there are none.
     ASSERT_TRUE(changes([&] { act({"key", "Tab"}); }));
     ASSERT_TRUE(changes([&] { act({"key", "Home"}); }));
@@ -126,7 +136,7 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     EXPECT_LT(scene()["camera"]["eye"][2], 20000);
     // And a walk begins with a look ahead.
     ASSERT_TRUE(changes([&] { act({"key", "g"}); }));
-    EXPECT_EQ(scene()["camera"]["pitch"], -10);
+    EXPECT_EQ(scene()["camera"]["pitch"], 0);
 }
 
 TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {

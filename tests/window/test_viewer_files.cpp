@@ -276,9 +276,9 @@ TEST_F(Viewer, WalksAtTheClickedPointElseInTheMiddleOfThePicture) {
 
 TEST_F(Viewer, TheSheetExportsWhatItsCommandCaptures) {
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
-    constexpr glm::ivec4 kSheet{850, 130, 400, 370};
+    constexpr glm::ivec4 kSheet{850, 130, 400, 396};
     ASSERT_TRUE(changes_in(kSheet, [&] { act({"key", "ctrl+p"}); }));
-    act({"mousemove", "910", "492"});
+    act({"mousemove", "910", "518"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     act({"click", "1"});
     const auto file = folder_ / "jacksboro_20260621T1400.png";

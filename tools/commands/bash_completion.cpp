@@ -14,10 +14,12 @@ namespace {
 // ":" are words of their own, which what is proposed has to take into account.
 constexpr const char* kFunction = R"sh(
 _relevo_effects() {
-    local folder
+    local file id
     printf '%s\n' $_relevo_effect_ids
-    for folder in "${XDG_DATA_HOME:-$HOME/.local/share}"/relevo/plugins/*/; do
-        [[ -e $folder/plugin.json ]] && basename "$folder"
+    for file in "${XDG_DATA_HOME:-$HOME/.local/share}"/relevo/plugins/*/plugin.json; do
+        id=$(basename "$(dirname "$file")")
+        # compgen would execute what a name has of the shell's language.
+        [[ -e $file && $id =~ ^[a-z0-9_-]+$ ]] && printf '%s\n' "$id"
     done
 }
 
