@@ -30,9 +30,9 @@ bool is_of(const std::string& address, const std::string& of) {
 }
 
 /// Options of a verb, word by word.
-class Command {
+class CommandLine {
   public:
-    explicit Command(std::string verb) : text_(std::move(verb)) {}
+    explicit CommandLine(std::string verb) : text_(std::move(verb)) {}
     void word(const std::string& value) { text_ += " " + quoted(value); }
     void option(std::string_view name, const std::string& value) {
         // A value that begins with a dash would be taken for an option.
@@ -50,7 +50,7 @@ class Command {
     std::string text_;
 };
 
-void add_dem(Command& command, const scene::Scene& scene) {
+void add_dem(CommandLine& command, const scene::Scene& scene) {
     for (const std::string& dem : scene.dems)
         command.word(dem);
     const dem::LoadOptions& dem = scene.dem;
@@ -64,7 +64,7 @@ void add_dem(Command& command, const scene::Scene& scene) {
                                    dem.bounds->east_deg, dem.bounds->north_deg));
 }
 
-void add_view(Command& command, const scene::View& view) {
+void add_view(CommandLine& command, const scene::View& view) {
     const auto place = [](const scene::Standpoint& at) {
         // A millimetre, and a tenth of one on the Earth.
         return fmt::format("{:.9f},{:.9f},{:.3f}{}", degrees(at.place.lat_rad),
@@ -89,7 +89,7 @@ void add_view(Command& command, const scene::View& view) {
 }
 
 /// The options of the table that the scene has otherwise than by default.
-void add_options(Command& command, scene::Scene scene) {
+void add_options(CommandLine& command, scene::Scene scene) {
     // A title on the command line is shown, and so is an attribution.
     if (!scene.stamps.title) scene.stamps.title_text.clear();
     if (!scene.stamps.attribution) scene.stamps.attribution_text.clear();
@@ -104,7 +104,7 @@ void add_options(Command& command, scene::Scene scene) {
     }
 }
 
-void add_overlay(Command& command, const scene::Overlay& overlay) {
+void add_overlay(CommandLine& command, const scene::Overlay& overlay) {
     command.option("--overlay", overlay.file);
     if (!overlay.colours.empty()) command.option("--overlay-colours", overlay.colours);
     if (overlay.range)
@@ -112,7 +112,7 @@ void add_overlay(Command& command, const scene::Overlay& overlay) {
                        fmt::format("{},{}", overlay.range->first, overlay.range->second));
 }
 
-void add_stamps(Command& command, const scene::Stamps& stamps) {
+void add_stamps(CommandLine& command, const scene::Stamps& stamps) {
     std::vector<std::string> words;
     for (const auto& [word, member] : scene::stamp_words())
         if (member != &scene::Stamps::legend && stamps.*member) words.emplace_back(word);
@@ -202,7 +202,7 @@ scene::Effects without_values(scene::Effects effects, const std::string& of) {
 
 namespace {
 
-void add_effects(Command& command, const scene::Effects& effects) {
+void add_effects(CommandLine& command, const scene::Effects& effects) {
     if (effects.switches.only)
         command.option("--only", fmt::format("{}", fmt::join(*effects.switches.only, ",")));
     command.list("--enable", effects.switches.enable);
@@ -216,7 +216,7 @@ void add_effects(Command& command, const scene::Effects& effects) {
         command.option("--set", setting.address + "=" + setting.text);
 }
 
-void add_time(Command& command, const scene::TimeSpec& time) {
+void add_time(CommandLine& command, const scene::TimeSpec& time) {
     if (time.at.empty()) return;
     command.option("--time", time.at);
     if (!time.date.empty()) command.option("--date", time.date);
@@ -224,7 +224,7 @@ void add_time(Command& command, const scene::TimeSpec& time) {
 }
 
 /// The rest of a scene, for any verb that draws it.
-void add_scene(Command& command, const scene::Scene& scene) {
+void add_scene(CommandLine& command, const scene::Scene& scene) {
     if (!scene.ortho) add_view(command, scene.view);
     add_stamps(command, scene.stamps);
     add_options(command, scene);
@@ -235,7 +235,7 @@ void add_scene(Command& command, const scene::Scene& scene) {
 }
 
 /// What moves: --motion and its options.
-void add_motion(Command& command, const scene::FilmJob& film) {
+void add_motion(CommandLine& command, const scene::FilmJob& film) {
     std::vector<std::string> motions;
     if (film.day) motions.emplace_back("day");
     if (film.year) motions.emplace_back("year");
@@ -270,7 +270,7 @@ void add_motion(Command& command, const scene::FilmJob& film) {
 }  // namespace
 
 std::string capture_command(const scene::Scene& scene, const std::string& output) {
-    Command command("relevo capture");
+    CommandLine command("relevo capture");
     add_dem(command, scene);
     add_time(command, scene.time);
     add_scene(command, scene);
@@ -279,7 +279,7 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
 }
 
 std::string film_command(const scene::Scene& scene, const scene::FilmJob& film) {
-    Command command("relevo film");
+    CommandLine command("relevo film");
     add_dem(command, scene);
     if (film.day) {
         command.option("--date", film.day->date);
