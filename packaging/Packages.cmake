@@ -9,7 +9,8 @@ if(TARGET relevo_python)
 endif()
 set(exact "(= ${PROJECT_VERSION})")
 set(CPACK_PACKAGE_VENDOR "The Relevo authors")
-set(CPACK_PACKAGE_CONTACT "The Relevo authors <relevo@localhost>")
+set(RELEVO_MAINTAINER "The Relevo authors <relevo@example.org>" CACHE STRING "Who answers for the packages")
+set(CPACK_PACKAGE_CONTACT ${RELEVO_MAINTAINER})
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_COMPONENTS_ALL ${components})
 set(CPACK_COMPONENTS_GROUPING IGNORE)
@@ -25,8 +26,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 function(relevo_package component)
     cmake_parse_arguments(DEB "ALL" "SUMMARY;DEPENDS;RECOMMENDS;SECTION" "TEXT" ${ARGN})
     string(TOUPPER ${component} name)
-    list(JOIN DEB_TEXT "\n " text)
-    set(values PACKAGE_NAME ${component} DESCRIPTION "${DEB_SUMMARY}\n ${text}" PACKAGE_DEPENDS "${DEB_DEPENDS}"
+    list(JOIN DEB_TEXT "\n" text)
+    set(values PACKAGE_NAME ${component} DESCRIPTION "${DEB_SUMMARY}\n${text}" PACKAGE_DEPENDS "${DEB_DEPENDS}"
         PACKAGE_RECOMMENDS "${DEB_RECOMMENDS}")
     if(DEB_SECTION)
         list(APPEND values PACKAGE_SECTION ${DEB_SECTION})
@@ -36,11 +37,7 @@ function(relevo_package component)
     endif()
     while(values)
         list(POP_FRONT values key value)
-        if(key STREQUAL "DESCRIPTION")
-            set(CPACK_COMPONENT_${name}_${key} "${value}" PARENT_SCOPE)
-        else()
-            set(CPACK_DEBIAN_${name}_${key} "${value}" PARENT_SCOPE)
-        endif()
+        set(CPACK_DEBIAN_${name}_${key} "${value}" PARENT_SCOPE)
     endwhile()
 endfunction()
 
@@ -58,8 +55,8 @@ relevo_package(librelevo0
     DEPENDS "relevo-data ${exact}, fonts-liberation, tzdata" SECTION libs)
 relevo_package(librelevo-dev
     SUMMARY "terrain and sun: headers of the library and of plugins"
-    TEXT "For programs that use the library, and for native effect plugins: headers, CMake"
-         "package, pkg-config files and examples."
+    TEXT "For programs that use the library, and for native effect plugins: headers,"
+         "CMake package, pkg-config files and examples."
     DEPENDS "librelevo0 ${exact}" SECTION libdevel)
 relevo_package(relevo-data
     SUMMARY "terrain and sun: effects, shaders and data"

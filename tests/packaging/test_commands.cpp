@@ -25,11 +25,11 @@ bool is_there(const std::string& program) {
 
 /// What bash proposes for the last word.
 std::vector<std::string> by_bash(const std::vector<std::string>& words) {
-    // compopt works only while a person completes.
-    const std::string script =
-        "source " + (made() / "bash/relevo").string() +
-        "; compopt() { :; }; COMP_WORDS=(\"$@\"); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _relevo; "
-        "printf '%s\\n' \"${COMPREPLY[@]}\"";
+    // compopt works only while a person completes. bash-completion sources files in a function.
+    const std::string script = "load() { source " + (made() / "bash/relevo").string() +
+                               "; }; load; compopt() { :; }; COMP_WORDS=(\"$@\"); "
+                               "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _relevo; "
+                               "printf '%s\\n' \"${COMPREPLY[@]}\"";
     std::vector<std::string> arguments{"-c", script, "bash"};
     arguments.insert(arguments.end(), words.begin(), words.end());
     const Result done = run("/bin/bash", arguments, {"XDG_DATA_HOME=/nowhere"});

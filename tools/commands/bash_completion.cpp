@@ -148,8 +148,8 @@ std::string bash_completion(const Command& all, const Installed& values) {
     tables.add(all);
     return fmt::format(
                "# Completion of relevo for bash, made when it was built.\n"
-               "declare -A _relevo_options=(\n{})\ndeclare -A _relevo_commands=(\n{})\n"
-               "declare -A _relevo_values=(\n{})\ndeclare -A _relevo_free=(\n{})\n"
+               "declare -gA _relevo_options=(\n{})\ndeclare -gA _relevo_commands=(\n{})\n"
+               "declare -gA _relevo_values=(\n{})\ndeclare -gA _relevo_free=(\n{})\n"
                "_relevo_effect_ids=\"{}\"\n_relevo_presets=\"{}\"\n_relevo_zones=\"{}\"\n_relevo_"
                "parameters=\"{}\"\n",
                tables.options, tables.commands, tables.values, tables.free, keys(values.effects),
