@@ -30,10 +30,12 @@ namespace {
 struct Air {
     double terrestrial_refraction = session::kTerrestrialRefraction;
     std::string model = "standard";
+    std::optional<double> highest_m;  ///< terrain outside of the DEM
 
     void take_terrestrial(json::ObjectReader& reader) {
         terrestrial_refraction =
             reader.number("terrestrial_refraction", terrestrial_refraction, -1, 0.9, false);
+        if (reader.has("highest")) highest_m = reader.number("highest", 0, -500, 8850, false);
     }
     void take(json::ObjectReader& reader) {
         take_terrestrial(reader);
@@ -143,7 +145,8 @@ void shadow(RasterCall& call, const char* text) {
                                 .done = call.done()};
     light::SunPlan plan(posts, {wanted.refraction, wanted.air}, call.all(), soft);
     plan.add_suns(posts.grid().center(), {sun});
-    call.warn_of(light::terrain_beyond(posts, call.all(), {sun}, wanted), light::kHides);
+    call.warn_of(light::terrain_beyond(posts, call.all(), {sun}, wanted, air.highest_m),
+                 light::kHides);
     std::int64_t holes = 0;
     std::string definition;
     call.each_part([&](const dem::Window& part) {
@@ -240,9 +243,9 @@ void sun_hours(RasterCall& call, HoursWanted& wanted) {
                                      .soft = false,
                                      .part = {},
                                      .done = {}};
-    call.warn_of(
-        light::terrain_beyond(posts, call.all(), light::suns_of(posts.grid(), begin, end), sight),
-        light::kHides);
+    call.warn_of(light::terrain_beyond(posts, call.all(), light::suns_of(posts.grid(), begin, end),
+                                       sight, wanted.air.highest_m),
+                 light::kHides);
     const light::SunHoursPlan plan(posts, begin, end, wanted.options);
     std::int64_t holes = 0;
     std::string definition;
@@ -278,8 +281,9 @@ void sky_view(RasterCall& call, const char* text) {
     std::vector<double> azimuth_rad;
     for (int i = 0; i < wanted.directions; ++i)
         azimuth_rad.push_back(2 * kPi * i / wanted.directions);
-    call.warn_of(light::terrain_beyond(posts, call.all(), azimuth_rad, wanted.refraction),
-                 light::kStandsOver);
+    call.warn_of(
+        light::terrain_beyond(posts, call.all(), azimuth_rad, wanted.refraction, air.highest_m),
+        light::kStandsOver);
     light::SunPlan plan(posts, {wanted.refraction, {}}, call.all());
     light::add_sky_view_directions(plan, wanted.directions);
     std::int64_t holes = 0;

@@ -182,7 +182,8 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
 /* Rasters have a value for each post of the DEM: columns * rows elements, bands one after the
  * other. Values are those that the program writes, to the bit.
  *
- * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard").
+ * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard"), "highest" [m]: what
+ * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post).
  * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
  * "unit"}], "1" for plain numbers), and where ground beyond the DEM could change values
  * "beyond". `progress` may be null. */

@@ -77,6 +77,12 @@ TEST_F(Figures, HoursAndIrradiationAreThoseOfTheProgram) {
     EXPECT_EQ(json["holes"], 0);
     EXPECT_TRUE(std::string(json["definition"]).find("irradiation") != std::string::npos);
     EXPECT_TRUE(json.contains("beyond"));
+    expect_ok(relevo_shadow(dem_.get(), R"({"time": "2026-06-21T17:00Z", "highest": 300})",
+                            values_.data(), values_.size() / 3, nullptr, &about));
+    EXPECT_FALSE(nlohmann::json::parse(about).contains("beyond"));
+    EXPECT_EQ(relevo_sky_view(dem_.get(), R"({"highest": 9000})", values_.data(),
+                              values_.size() / 3, nullptr, nullptr),
+              RELEVO_RESULT_BAD_INPUT);
     ASSERT_EQ(json["bands"].size(), 3U);
     EXPECT_EQ(json["bands"][2]["name"], "global irradiation");
     EXPECT_EQ(json["bands"][2]["unit"], "kWh/m2");

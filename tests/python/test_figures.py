@@ -2,6 +2,7 @@
 
 import datetime
 import json
+import warnings
 
 import numpy
 import pytest
@@ -86,6 +87,19 @@ def test_sky_view(dem, written):
     view = dem.sun.sky_view(directions=16, level=True)
     numpy.testing.assert_array_equal(view, written("sun", "sky-view", dem.name, "--directions", 16, "--level")[0])
     assert (view.name, view.unit) == ("sky-view factor", "1")
+
+
+def test_terrain_outside_of_the_dem(dem):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for raster in (
+            dem.sun.shadow("2026-06-21T17:00Z", highest=300),
+            dem.sun.hours("2026-06-21", highest=-400),
+            dem.sun.sky_view(4, highest=-400),
+        ):
+            assert "beyond" not in raster.about
+    with pytest.raises(relevo.BadInput, match="highest"):
+        dem.sun.sky_view(highest=9000)
 
 
 def test_horizon(dem, program):

@@ -168,6 +168,8 @@ def test_xarray_of_cf(array, expected):
     with pytest.warns(relevo.Warning, match="WGS 84 is assumed"):
         opened = relevo.open(given)
     same(opened, expected)
+    with pytest.raises(relevo.BadInput, match="rows before columns"):
+        relevo.open(given.T)
     with pytest.raises(relevo.BadInput, match="the DataArray has none"):
         relevo.open(given.drop_vars(["lat", "lon"]), transform=(1, 0, 0, 0, -1, 0))
     with pytest.raises(relevo.BadInput, match="coordinates of lon are not regular"):

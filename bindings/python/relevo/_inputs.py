@@ -99,6 +99,8 @@ def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Optional[float], 
     array = array.squeeze(drop=False)
     if array.ndim != 2:
         raise BadInput(f"heights: expected two dimensions but got {array.dims}")
+    if _is_east(array, array.dims[0]):
+        raise BadInput(f"heights: expected rows before columns but got {array.dims}; array.T has them so")
     if unit is None and isinstance(array.attrs.get("units"), str):
         unit = _unit_of(array.attrs["units"])
     if nodata is None:
@@ -110,6 +112,15 @@ def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Optional[float], 
     if crs is None:
         raise BadInput("crs: the DataArray has none; give crs=")
     return Heights(plain_heights(array.values, nodata), read_transform(transform), crs_text(crs), unit)
+
+
+def _is_east(array: Any, dim: Any) -> bool:
+    """Whether a dimension goes to the east, by its name or by what CF says of its coordinates."""
+    attributes = array.coords[dim].attrs if dim in array.coords else {}
+    units = str(attributes.get("units", ""))
+    return str(dim).lower() in ("x", "lon", "longitude", "easting", "column") or (
+        attributes.get("axis") == "X" or units in ("degrees_east", "degree_east")
+    )
 
 
 def _unit_of(text: str) -> Optional[str]:

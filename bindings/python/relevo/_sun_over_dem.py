@@ -43,7 +43,8 @@ class SunOverDem:
 
     progress: a function that is called with the share that is done; False from it raises Cancelled
     terrestrial_refraction: curvature of a line of sight in units of the Earth's (0.13)
-    refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"
+    refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"; not of the sky view
+    highest: what no terrain outside of the DEM exceeds [m] (the DEM's highest post)
 
     and warn (relevo.Warning) where terrain outside of the DEM could change values.
     """
@@ -65,6 +66,7 @@ class SunOverDem:
         albedo: Optional[float] = None,
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
+        highest: Optional[float] = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Hours of direct sun, and what belongs to them.
@@ -94,6 +96,7 @@ class SunOverDem:
             albedo=albedo,
             terrestrial_refraction=terrestrial_refraction,
             refraction=refraction,
+            highest=highest,
         )
         return self._raster(self._dem._handle.sun_hours, options, tuple(names), alone, progress)
 
@@ -106,6 +109,7 @@ class SunOverDem:
         soft: bool = False,
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
+        highest: Optional[float] = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
@@ -121,6 +125,7 @@ class SunOverDem:
             soft=soft,
             terrestrial_refraction=terrestrial_refraction,
             refraction=refraction,
+            highest=highest,
         )
         return self._raster(self._dem._handle.shadow, options, ("shadow",), True, progress)
 
@@ -130,6 +135,7 @@ class SunOverDem:
         *,
         level: bool = False,
         terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """The sky-view factor, 0 to 1.
@@ -138,7 +144,11 @@ class SunOverDem:
         level: of a level plane instead of the ground as it is inclined
         """
         options = options_text(
-            "sky_view", directions=directions, level=level, terrestrial_refraction=terrestrial_refraction
+            "sky_view",
+            directions=directions,
+            level=level,
+            terrestrial_refraction=terrestrial_refraction,
+            highest=highest,
         )
         return self._raster(self._dem._handle.sky_view, options, ("sky_view",), True, progress)
 
