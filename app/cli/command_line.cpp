@@ -279,6 +279,7 @@ void add_verbs(CLI::App& app) {
     add_film(app);
     add_compare(app);
     add_info(app);
+    add_export(app);
     add_sun(app);
     add_plugins(app);
     add_doctor(app);

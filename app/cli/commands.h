@@ -13,6 +13,7 @@ void add_film(CLI::App& app);
 void add_view(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
+void add_export(CLI::App& app);
 void add_sun(CLI::App& app);
 void add_plugins(CLI::App& app);
 
