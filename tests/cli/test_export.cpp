@@ -154,7 +154,9 @@ TEST(ExportVerb, ResultsAppearTogetherOrNotAtAll) {
     const Result run = relevo({"export", "normals", dem, "--crs", "EPSG:4326", "--bounds",
                                "10,46,10.1,46.1", "-o", dem, "--overwrite"});
     EXPECT_EQ(run.status, 3);
-    EXPECT_NE(run.err.find("would replace the DEM"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("which would be overwritten; give the result another name"),
+              std::string::npos)
+        << run.err;
     EXPECT_EQ(bytes_of(dem), before);
 }
 
