@@ -2,20 +2,21 @@
 """Checks the words that users read against the table "Words" of docs/terms.md, and the line length of their pages.
 
 Read are the pages below, the texts of app/, bindings/ and core/ (string literals with a blank in them, so that keys and options
-stay free), and the names and descriptions of plugins, presets, parameters and schemas. Code in pages (`...`, fences) is not.
+stay free), those of the QGIS plugin, and the names and descriptions of plugins, presets, parameters and schemas. Code in pages (`...`, fences) is not.
 A word is refused by the pattern of its row; a row without a pattern needs a reader. New rows need an entry here.
 
 Usage: check_words.py ROOT. Prints every finding and exits with 1 if there is one.
 """
 
+import ast
 import json
 import pathlib
 import re
 import sys
 
 PAGES = ("README.md", "CHANGELOG.md", "docs/cli.md", "docs/dem-formats.md", "docs/gallery.md", "docs/jobs.md",
-         "docs/library.md",
-         "docs/plugin-guide.md", "docs/scene.md", "docs/terms.md", "docs/viewer.md")
+         "docs/library.md", "docs/plugin-guide.md", "docs/python.md", "docs/qgis.md", "docs/scene.md", "docs/terms.md",
+         "docs/translating.md", "docs/viewer.md")
 MOST_COLUMNS = 120
 
 # The left column of the table, and what finds it. None: only a reader can tell.
@@ -54,6 +55,7 @@ RULES = {
 ALLOWED = (
     ("app/cli/sun_hours.cpp", "last and spells", "the name of a band of --bands"),
     ("app/cli/sun_hours.cpp", "and spells (number of sunshine periods)", "the name of a band of --bands"),
+    ("bindings/qgis/relevo_provider/rasters.py", "and spells (number of sunshine periods)", "the name of a band of --bands"),
     ("core/render/terrain.cpp", "page table", "the label of a buffer, for debuggers of GL"),
     ("docs/plugin-guide.md", "cannot be a word that core uses", "the list of these words"),
     ("core/session/overlay.cpp", "share of the sun's disc", "the band's name in files of earlier versions"),
@@ -84,6 +86,15 @@ def literals(text):
         yield line, whole
 
 
+def python_literals(text):
+    """The (line, text) of every string of Python but docstrings, which are expressions of their own."""
+    tree = ast.parse(text)
+    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+            yield node.lineno, node.value
+
+
 def described(value):
     """Every "description" in a JSON value."""
     if isinstance(value, dict):
@@ -105,6 +116,10 @@ def sources(root):
                 for line, text in literals(path.read_text(encoding="utf-8")):
                     if " " in text or "::" in text:
                         yield path.relative_to(root), line, text
+    for path in sorted((root / "bindings/qgis").rglob("*.py")):
+        for line, text in python_literals(path.read_text(encoding="utf-8")):
+            if " " in text:
+                yield path.relative_to(root), line, text
     for path in sorted((root / "plugins").rglob("*.glsl")):
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             for text in ANNOTATED.findall(line):

@@ -16,6 +16,7 @@
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/effects.h"
@@ -37,7 +38,9 @@ Named named_verb(const CLI::App& app) {
 }
 
 bool is_global_flag(const std::string& word) {
-    return word == "-q" || word == "--quiet" || word == "-v" || word == "--verbose";
+    constexpr std::array<std::string_view, 5> kFlags = {"-q", "--quiet", "-v", "--verbose",
+                                                        "--progress"};
+    return contains(kFlags, word);
 }
 
 /// CLI11 would only say that a command is missing.
@@ -272,6 +275,9 @@ void add_verbs(CLI::App& app) {
     app.add_flag_callback(
         "-v,--verbose", [] { log::set_level(log::Level::Debug); },
         "More messages on standard error");
+    app.add_flag_callback(
+        "--progress", [] { ProgressBar::use_lines(true); },
+        "Progress of long work as lines for other programs: progress 0.342");
     app.fallthrough();
     add_view(app);
     add_capture(app);
@@ -282,6 +288,7 @@ void add_verbs(CLI::App& app) {
     add_export(app);
     add_sun(app);
     add_plugins(app);
+    add_thumbnail(app);
     add_doctor(app);
     check_values(app);
 }

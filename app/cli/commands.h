@@ -16,5 +16,6 @@ void add_info(CLI::App& app);
 void add_export(CLI::App& app);
 void add_sun(CLI::App& app);
 void add_plugins(CLI::App& app);
+void add_thumbnail(CLI::App& app);
 
 }  // namespace relevo::cli

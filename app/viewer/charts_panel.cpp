@@ -11,6 +11,7 @@
 
 #include "sun/position.h"
 #include "viewer/image_texture.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -152,16 +153,18 @@ void ChartsPanel::tabs(State& state) {
         else if (state.point && !state.point->error.empty())
             ImGui::TextWrapped("%s", state.point->error.c_str());
         else
-            ImGui::TextDisabled("computing its horizon ...");
+            ImGui::TextDisabled("%s", tr("computing its horizon ..."));
         ImGui::EndTabItem();
     };
-    tab("Horizon", horizon_.chart != nullptr, [&] { horizon(state); });
-    tab("Year", year_.chart != nullptr, [&] { year(state); });
+    tab(tr_label("Horizon"), horizon_.chart != nullptr, [&] { horizon(state); });
+    tab(tr_label("Year"), year_.chart != nullptr, [&] { year(state); });
     bool& is_docked = state.settings.charts_are_docked;
-    if (ImGui::TabItemButton(is_docked ? "Float" : "Dock", ImGuiTabItemFlags_Trailing))
+    if (ImGui::TabItemButton(is_docked ? tr_label("Float") : tr_label("Dock"),
+                             ImGuiTabItemFlags_Trailing))
         is_docked = !is_docked;
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(is_docked ? "Moves freely" : "Stays at the lower edge of the window");
+        ImGui::SetTooltip(
+            "%s", is_docked ? tr("Moves freely") : tr("Stays at the lower edge of the window"));
 }
 
 void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
@@ -180,7 +183,7 @@ void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
         place(state, size_px, static_cast<float>(px_a_unit));
     const ImGuiWindowFlags flags = is_docked ? ImGuiWindowFlags_NoMove : 0;
     const bool open =
-        ImGui::Begin("Horizon and year of the point", &state.settings.charts,
+        ImGui::Begin(tr_label("Horizon and year of the point"), &state.settings.charts,
                      flags | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
                          ImGuiWindowFlags_NoScrollWithMouse);
     const glm::vec2 extent_px(ImGui::GetWindowSize().x, ImGui::GetWindowSize().y);

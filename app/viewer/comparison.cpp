@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "viewer/translation.h"
+
 namespace relevo::viewer {
 
 Comparison::Comparison(const SceneDevice& device, Window& window, Messages& messages,
@@ -28,7 +30,7 @@ bool Comparison::poll() {
     } catch (const gl::DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        messages_.show(fmt::format("no comparison: {}", error.what()));
+        messages_.show(tr_format("no comparison: {}", error.what()));
         stop();
         return false;
     }

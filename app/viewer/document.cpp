@@ -11,13 +11,6 @@
 #include "scene/scene_words.h"
 
 namespace relevo::viewer {
-namespace {
-
-bool is_of(const std::string& address, const std::string& of) {
-    return address == of || address.starts_with(of + ".");
-}
-
-/// As one word of a POSIX shell.
 std::string quoted(const std::string& word) {
     const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
         return std::isalnum(c) ||
@@ -28,6 +21,12 @@ std::string quoted(const std::string& word) {
     for (const char c : word)
         text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
+}
+
+namespace {
+
+bool is_of(const std::string& address, const std::string& of) {
+    return address == of || address.starts_with(of + ".");
 }
 
 /// Options of a verb, word by word.

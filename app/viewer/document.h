@@ -96,6 +96,8 @@ bool has_values(const scene::Effects& effects, const std::string& of);
 /// @param of  an effect's id, or the address of one parameter
 scene::Effects without_values(scene::Effects effects, const std::string& of);
 
+/// As one word of a POSIX shell.
+std::string quoted(const std::string& word);
 /// The command line that renders a scene to the file `output`, quoted for a POSIX shell.
 std::string capture_command(const scene::Scene& scene, const std::string& output);
 /// The command line that makes a film which `relevo film` knows: without views.

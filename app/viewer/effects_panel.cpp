@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "shader/params.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -121,7 +122,7 @@ bool reset_button(bool is_default) {
     ImGui::BeginDisabled(is_default);
     const bool pressed = ImGui::SmallButton("x");
     ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("Reset to the default"));
     return pressed;
 }
 
@@ -130,8 +131,9 @@ void param_row(State& state, const Param& param, bool on) {
     ParamValue value = state.effects->values.value(param.address);
     row_label(param.label.empty() ? param.address : param.label);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
-                          param.is_static ? "\nEach value compiles another shader." : "");
+        ImGui::SetTooltip("%s\n%s%s%s", param.address.c_str(), param.description.c_str(),
+                          param.is_static ? "\n" : "",
+                          param.is_static ? tr("Each value compiles another shader.") : "");
     if (widget(param, value) && shader::is_valid(param, value))
         state.set_value(param, shader::format_value(param, value), on);
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
@@ -148,7 +150,7 @@ void text_row(State& state, const shader::TextParam& text) {
         ImGui::SetTooltip("%s\n%s", text.address.c_str(), text.description.c_str());
     std::string value = state.effects->values.text(text.address);
     if (ImGui::InputTextWithHint(
-            "##value", text.is_file ? "path, then Enter" : "then Enter", &value,
+            "##value", text.is_file ? tr("path, then Enter") : tr("then Enter"), &value,
             ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll)) {
         if (text.is_file && !value.empty()) value = std::filesystem::absolute(value).string();
         state.set_effects(with_value(state.document.scene.effects, text.address, value));
@@ -171,7 +173,7 @@ std::string lack_of(const State& state, const effect::Effect& effect) {
         if (!contains(*state.ground_words, word)) {
             std::string words = word;
             std::ranges::replace(words, '_', ' ');
-            return fmt::format("(the DEM has no {})", words);
+            return tr_format("(the DEM has no {})", words);
         }
     return {};
 }
@@ -195,7 +197,7 @@ void effect_row(State& state, const effect::Effect& effect) {
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);
         ImGui::BeginDisabled(!has_values(state.document.scene.effects, effect.id()));
-        if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))
+        if (!effect.params().empty() && ImGui::SmallButton(tr_label("Reset all values")))
             state.set_effects(without_values(state.document.scene.effects, effect.id()));
         ImGui::EndDisabled();
         ImGui::TreePop();
@@ -221,12 +223,12 @@ namespace {
 
 void preset_choice(State& state) {
     const std::vector<std::string>& chosen = state.document.scene.effects.presets;
-    const std::string shown = chosen.empty() ? "no preset" : chosen.back();
+    const std::string shown = chosen.empty() ? tr("no preset") : chosen.back();
     ImGui::SetNextItemWidth(-1);
     if (!ImGui::BeginCombo("##preset", shown.c_str())) return;
     scene::Effects effects = state.document.scene.effects;
     effects.presets.clear();
-    if (ImGui::Selectable("no preset", chosen.empty())) state.set_effects(effects);
+    if (ImGui::Selectable(tr_label("no preset"), chosen.empty())) state.set_effects(effects);
     for (const std::string& name : effect::preset_names()) {
         if (!ImGui::Selectable(name.c_str(), shown == name)) continue;
         effects.presets = {name};
@@ -239,11 +241,11 @@ void preset_choice(State& state) {
 
 void effects_panel(State& state) {
     preset_choice(state);
-    ImGui::Checkbox("Compare with the current settings", &state.compare_is_wanted);
+    ImGui::Checkbox(tr_label("Compare with the current settings"), &state.compare_is_wanted);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("The left side stays, the right side follows. Drag the line.");
+        ImGui::SetTooltip("%s", tr("The left side stays, the right side follows. Drag the line."));
     ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search,
+    ImGui::InputTextWithHint("##search", tr("search effects and parameters"), &state.search,
                              ImGuiInputTextFlags_AutoSelectAll);
     // A row may replace the model and its effects.
     const std::vector<effect::Effect>& effects = state.effects->registry.effects();

@@ -18,6 +18,7 @@
 #include "sun/position.h"
 #include "viewer/mark_overlay.h"
 #include "viewer/settings.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 
@@ -92,8 +93,8 @@ std::string trust_option(const scene::Scene& scene) {
 
 std::string save_scene(const scene::Scene& scene) {
     const std::string name = save_json(scene::scene_text(scene, ""));
-    return fmt::format("{0}: scene saved; relevo view --scene {0}{1} opens it", name,
-                       trust_option(scene));
+    return tr_format("{0}: scene saved; relevo view --scene {0}{1} opens it", name,
+                     trust_option(scene));
 }
 
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
@@ -107,14 +108,19 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
                                .step = "1h",
                                .output = "{dem}_{time:%Y%m%dT%H%M}.png"};
     const std::string name = save_json(scene::day_job_text(scene, of_day, ""));
-    return fmt::format("{}: every hour of this day{}; run it with relevo run {}{}", name,
-                       by_sun ? " from sunrise to sunset" : "", name, trust_option(scene));
+    const std::string trust = trust_option(scene);
+    return by_sun ? tr_format(
+                        "{0}: every hour of this day from sunrise to sunset; run it with relevo "
+                        "run {0}{1}",
+                        name, trust)
+                  : tr_format("{0}: every hour of this day; run it with relevo run {0}{1}", name,
+                              trust);
 }
 
 std::string save_film_job(const scene::Scene& scene, const scene::FilmJob& film) {
     const std::string name = save_json(scene::film_job_text(scene, film, ""));
-    return fmt::format("{0}: the job of the film; make it with relevo run {0}{1}", name,
-                       trust_option(scene));
+    return tr_format("{0}: the job of the film; make it with relevo run {0}{1}", name,
+                     trust_option(scene));
 }
 
 namespace {
@@ -138,9 +144,8 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
     scene.stamps.margin = false;
     const std::vector<std::uint8_t> rgba = picture.read_rgba();
     if (const int pixels = render::count_non_finite(rgba); pixels > 0)
-        failed(
-            "picture: " + session::non_finite_text(pixels, {picture.width_px, picture.height_px}) +
-            "; relevo capture names the effect");
+        failed(tr_format("picture: {}; relevo capture names the effect",
+                         session::non_finite_text(pixels, {picture.width_px, picture.height_px})));
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, rgba);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
@@ -164,7 +169,7 @@ std::string save_picture(const Picture& picture, scene::Scene scene, const Opene
         image::write(file, image, metadata);
         file.finish();
     });
-    std::string message = name + ": picture saved";
+    std::string message = tr_format("{}: picture saved", name);
     for (const std::string& note : notes)
         message += "; " + note;
     return message;

@@ -16,6 +16,7 @@
 #include "scene/stereo.h"
 #include "viewer/export.h"
 #include "viewer/sheet.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -28,23 +29,23 @@ struct Format {
     bool has_alpha = true;
 };
 constexpr std::array<Format, 7> kFormats = {{{"PNG", "png"},
-                                             {"PNG, 16 bits", "png", 16},
+                                             {tr_later("PNG, 16 bits"), "png", 16},
                                              {"JPEG", "jpg", 8, true, false},
                                              {"WebP", "webp", 8, true},
                                              {"AVIF", "avif", 8, true},
                                              {"TIFF", "tif"},
-                                             {"EXR, linear light", "exr"}}};
+                                             {tr_later("EXR, linear light"), "exr"}}};
 
 struct Size {
     const char* name;
     glm::ivec2 px;  ///< 0: the window's
 };
-constexpr std::array<Size, 6> kSizes = {{{"window", {0, 0}},
+constexpr std::array<Size, 6> kSizes = {{{tr_later("window"), {0, 0}},
                                          {"1920 x 1080", {1920, 1080}},
                                          {"3840 x 2160", {3840, 2160}},
-                                         {"square, 2048 x 2048", {2048, 2048}},
-                                         {"A4 at 300 dpi", {3508, 2480}},
-                                         {"A2 at 300 dpi", {7016, 4961}}}};
+                                         {tr_later("square, 2048 x 2048"), {2048, 2048}},
+                                         {tr_later("A4 at 300 dpi"), {3508, 2480}},
+                                         {tr_later("A2 at 300 dpi"), {7016, 4961}}}};
 
 constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
 
@@ -60,12 +61,12 @@ struct Kind {
     }
 };
 constexpr std::array<Kind, 6> kKinds = {
-    {{"picture", {1920, 1080}},
-     {"map of all of the DEM, with georeference", {2048, 2048}, true},
-     {"panorama", {8192, 1024}, false, scene::Panorama::Cylindrical},
-     {"sphere (equirectangular)", {4096, 2048}, false, scene::Panorama::Equirectangular},
-     {"stereo pair", {2560, 1024}, false, scene::Panorama::None, scene::Stereo::Parallel},
-     {"anaglyph", {1920, 1080}, false, scene::Panorama::None, scene::Stereo::Anaglyph}}};
+    {{tr_later("picture"), {1920, 1080}},
+     {tr_later("map of all of the DEM, with georeference"), {2048, 2048}, true},
+     {tr_later("panorama"), {8192, 1024}, false, scene::Panorama::Cylindrical},
+     {tr_later("sphere (equirectangular)"), {4096, 2048}, false, scene::Panorama::Equirectangular},
+     {tr_later("stereo pair"), {2560, 1024}, false, scene::Panorama::None, scene::Stereo::Parallel},
+     {tr_later("anaglyph"), {1920, 1080}, false, scene::Panorama::None, scene::Stereo::Anaglyph}}};
 
 /// Index of the kind of a scene.
 std::size_t kind_of(const scene::Scene& scene) {
@@ -85,54 +86,56 @@ void ExportSheet::take_scene(const scene::Scene& scene) {
 
 /// A kind sets a size that suits it.
 void ExportSheet::kind_field() {
-    if (!ImGui::BeginCombo("What", kKinds[what_].name)) return;
+    if (!ImGui::BeginCombo(tr_label("What"), tr(kKinds[what_].name))) return;
     for (std::size_t i = 0; i < kKinds.size(); ++i) {
-        if (!ImGui::Selectable(kKinds[i].name, i == what_)) continue;
+        if (!ImGui::Selectable(tr_label(kKinds[i].name), i == what_)) continue;
         what_ = i;
         size_px_ = kKinds[i].size_px;
     }
     ImGui::Separator();
-    if (ImGui::Selectable("film ...")) command_ = Command::Film;
-    if (ImGui::Selectable("figures of the overlay, as GeoTIFF")) command_ = Command::SaveOverlay;
+    if (ImGui::Selectable(tr_label("film ..."))) command_ = Command::Film;
+    if (ImGui::Selectable(tr_label("figures of the overlay, as GeoTIFF")))
+        command_ = Command::SaveOverlay;
     ImGui::EndCombo();
 }
 
 void ExportSheet::size_fields(glm::vec2 window_px) {
-    if (ImGui::BeginCombo("Size", fmt::format("{} x {}", size_px_.x, size_px_.y).c_str())) {
+    if (ImGui::BeginCombo(tr_label("Size"),
+                          fmt::format("{} x {}", size_px_.x, size_px_.y).c_str())) {
         for (const Size& size : kSizes)
-            if (ImGui::Selectable(size.name))
+            if (ImGui::Selectable(tr_label(size.name)))
                 size_px_ = size.px.x > 0 ? size.px : glm::ivec2(window_px);
         ImGui::EndCombo();
     }
-    if (ImGui::InputInt2("Pixels", &size_px_.x))
+    if (ImGui::InputInt2(tr_label("Pixels"), &size_px_.x))
         size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
     ImGui::BeginDisabled(kKinds[what_].is_ortho);
-    ImGui::Checkbox("Centred on what the panels leave free", &is_centred_);
+    ImGui::Checkbox(tr_label("Centred on what the panels leave free"), &is_centred_);
     ImGui::EndDisabled();
 }
 
 void ExportSheet::format_fields() {
     const auto name_of = [](void*, int i, const char** name) {
-        *name = kFormats[static_cast<std::size_t>(i)].name;
+        *name = tr(kFormats[static_cast<std::size_t>(i)].name);
         return true;
     };
-    ImGui::Combo("Format", &format_, name_of, nullptr, static_cast<int>(kFormats.size()));
+    ImGui::Combo(tr_label("Format"), &format_, name_of, nullptr, static_cast<int>(kFormats.size()));
     if (kFormats[static_cast<std::size_t>(format_)].has_quality)
-        ImGui::SliderInt("Quality", &quality_, 1, 100);
-    if (ImGui::BeginCombo("Samples", fmt::format("{} a pixel", samples_).c_str())) {
+        ImGui::SliderInt(tr_label("Quality"), &quality_, 1, 100);
+    if (ImGui::BeginCombo(tr_label("Samples"), tr_format("{} a pixel", samples_).c_str())) {
         for (const int samples : kSamples)
-            if (ImGui::Selectable(fmt::format("{} a pixel", samples).c_str())) samples_ = samples;
+            if (ImGui::Selectable(tr_format("{} a pixel", samples).c_str())) samples_ = samples;
         ImGui::EndCombo();
     }
     const bool has_alpha = kFormats[static_cast<std::size_t>(format_)].has_alpha;
     ImGui::BeginDisabled(!has_alpha);
-    ImGui::Checkbox("Transparent where there is no ground", &is_transparent_);
+    ImGui::Checkbox(tr_label("Transparent where there is no ground"), &is_transparent_);
     ImGui::EndDisabled();
 }
 
 void ExportSheet::stamp_fields(const scene::Scene& scene) {
     if (!stamps_) stamps_ = scene.stamps;
-    ImGui::TextUnformatted("On the picture:");
+    ImGui::TextUnformatted(tr("On the picture:"));
     int column = 0;
     for (const auto& [word, member] : scene::stamp_words()) {
         if (member == &scene::Stamps::attribution && stamps_->attribution_text.empty()) continue;
@@ -140,10 +143,11 @@ void ExportSheet::stamp_fields(const scene::Scene& scene) {
         ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
     }
     ImGui::BeginDisabled(!kKinds[what_].is_picture());
-    ImGui::Checkbox("Around the picture, so that nothing lies on it", &stamps_->margin);
+    ImGui::Checkbox(tr_label("Around the picture, so that nothing lies on it"), &stamps_->margin);
     ImGui::EndDisabled();
     if (stamps_->title)
-        ImGui::InputText("Title", &stamps_->title_text, ImGuiInputTextFlags_AutoSelectAll);
+        ImGui::InputText(tr_label("Title"), &stamps_->title_text,
+                         ImGuiInputTextFlags_AutoSelectAll);
 }
 
 PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
@@ -187,11 +191,13 @@ void ExportSheet::result(const scene::Scene& scene, sun::Instant utc, const sun:
     }
     ImGui::TextWrapped("%s", printable(wanted.path).c_str());
     if (is_busy) ImGui::BeginDisabled();
-    if (ImGui::Button(is_busy ? "drawing ..." : "Export", {8 * ImGui::GetFontSize(), 0}))
+    if (ImGui::Button(is_busy ? tr_label("drawing ...") : tr_label("Export"),
+                      {8 * ImGui::GetFontSize(), 0}))
         order_ = wanted;
     if (is_busy) ImGui::EndDisabled();
     ImGui::SameLine();
-    if (ImGui::Button("Copy the command")) ImGui::SetClipboardText(command_of(wanted).c_str());
+    if (ImGui::Button(tr_label("Copy the command")))
+        ImGui::SetClipboardText(command_of(wanted).c_str());
 }
 
 void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Instant utc,
@@ -200,15 +206,16 @@ void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Inst
     const float line = ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({window_px.x - line, 5.5f * line}, ImGuiCond_Appearing, {1, 0});
     ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
-    if (ImGui::Begin("Export a picture", &is_open_, ImGuiWindowFlags_NoCollapse)) {
-        ImGui::PushItemWidth(-4 * line);
+    if (ImGui::Begin(tr_label("Export a picture"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
+        ImGui::PushItemWidth(-widest({tr("What"), tr("Size"), tr("Pixels"), tr("Format"),
+                                      tr("Quality"), tr("Samples"), tr("Title"), tr("Name")}));
         kind_field();
         size_fields(window_px);
         format_fields();
         stamp_fields(scene);
-        ImGui::InputText("Name", &name_, ImGuiInputTextFlags_AutoSelectAll);
+        ImGui::InputText(tr_label("Name"), &name_, ImGuiInputTextFlags_AutoSelectAll);
         if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-            ImGui::SetTooltip("{dem}, and {time:...} with the conversions of strftime");
+            ImGui::SetTooltip("%s", tr("{dem}, and {time:...} with the conversions of strftime"));
         ImGui::PopItemWidth();
         ImGui::Separator();
         result(scene, utc, zone, is_busy);

@@ -12,6 +12,7 @@
 #include "scene/name_template.h"
 #include "session/film_day.h"
 #include "viewer/export.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -70,15 +71,15 @@ const std::vector<FilmPreset>& film_presets() {
     using Time = FilmChoice::Time;
     using Camera = FilmChoice::Camera;
     static const std::vector<FilmPreset> kPresets = {
-        {"A day in 10 s", {}},
-        {"A year in 12 s, at this hour", {.time = Time::Year, .duration_s = 12}},
-        {"Once around in 12 s",
+        {tr_later("A day in 10 s"), {}},
+        {tr_later("A year in 12 s, at this hour"), {.time = Time::Year, .duration_s = 12}},
+        {tr_later("Once around in 12 s"),
          {.time = Time::Still, .camera = Camera::AroundMiddle, .duration_s = 12}},
-        {"A day, half-way around",
+        {tr_later("A day, half-way around"),
          {.camera = Camera::AroundMiddle, .turns = 0.5, .duration_s = 15}},
-        {"Through the saved views in 15 s",
+        {tr_later("Through the saved views in 15 s"),
          {.time = Time::Still, .camera = Camera::Views, .ease = true, .duration_s = 15}},
-        {"Along a track in 30 s",
+        {tr_later("Along a track in 30 s"),
          {.time = Time::Still, .camera = Camera::Track, .ease = true, .duration_s = 30}}};
     return kPresets;
 }
@@ -96,15 +97,16 @@ std::string film_problem(const FilmChoice& choice, std::size_t saved_views) {
     using Camera = FilmChoice::Camera;
     if (choice.time == FilmChoice::Time::Still && choice.camera == Camera::Still &&
         choice.value.empty())
-        return "nothing moves: choose what the time, the camera or a parameter does";
+        return tr("nothing moves: choose what the time, the camera or a parameter does");
     if (choice.camera == Camera::Views && saved_views < 2)
-        return fmt::format(
-            "a flight needs two saved views or more, this DEM has {}; go to a view and press B",
-            saved_views == 0 ? "none" : "one");
+        return saved_views == 0 ? tr("a flight needs two saved views or more, this DEM has none; "
+                                     "go to a view and press B")
+                                : tr("a flight needs two saved views or more, this DEM has one; go "
+                                     "to a view and press B");
     if (choice.camera == Camera::Track && choice.track.empty())
-        return "a flight along a track needs its file: GPX, CSV or GeoJSON";
+        return tr("a flight along a track needs its file: GPX, CSV or GeoJSON");
     if (!choice.value.empty() && choice.from == choice.to)
-        return choice.value + ": does not change, its first and last value are equal";
+        return tr_format("{}: does not change, its first and last value are equal", choice.value);
     return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "viewer/export.h"
+#include "viewer/translation.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -83,8 +84,8 @@ bool FilmController::is_planned() const {
 
 std::string FilmController::progress() const {
     if (!film_) return {};
-    return fmt::format("drawing {}, {} of {} frames", printable(film_->file()), film_->drawn(),
-                       film_->frames());
+    return tr_format("drawing {}, {} of {} frames", printable(film_->file()), film_->drawn(),
+                     film_->frames());
 }
 
 FilmWish FilmController::wish() const {
@@ -118,7 +119,7 @@ bool FilmController::request(const Opened& opened, bool is_at_rest) {
     if (!is_requested_) return false;
     if (!preview_.is_on()) {
         const std::string missing = source_.missing_overlay();
-        missing_ = missing.empty() ? "" : "the film is" + missing.substr(1);
+        missing_ = missing.empty() ? "" : tr_format("the film is {}", missing);
         FilmWish now = wish();
         plans_again_ = plans_again_ || !requested_ || !(*requested_ == now);
         if (plans_again_) requested_ = std::move(now);
@@ -169,7 +170,7 @@ void FilmController::act(FilmAction action) {
                 [&] { messages_.report(save_film_job(plan_->scene, plan_->film)); });
         case FilmAction::CopyCommand:
             ImGui::SetClipboardText(film_command(plan_->scene, plan_->film).c_str());
-            return messages_.note("the command for this film is on the clipboard");
+            return messages_.note(tr("the command for this film is on the clipboard"));
         case FilmAction::ShowTrack:
             track_to_show_ = panel_.choice().track;
             return;
@@ -203,13 +204,13 @@ bool FilmController::poll() {
 bool FilmController::draw_question(glm::vec2 window_px) {
     if (!asks_to_quit_ || !film_) return false;
     ImGui::SetNextWindowPos({window_px.x / 2, window_px.y / 3}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin("Quit", nullptr,
+    ImGui::Begin(tr_label("Quit"), nullptr,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings);
     ImGui::TextUnformatted(progress().c_str());
-    const bool quits = ImGui::Button("Quit without the film");
+    const bool quits = ImGui::Button(tr_label("Quit without the film"));
     ImGui::SameLine();
-    if (ImGui::Button("Continue drawing")) asks_to_quit_ = false;
+    if (ImGui::Button(tr_label("Continue drawing"))) asks_to_quit_ = false;
     ImGui::End();
     return quits;
 }

@@ -13,6 +13,7 @@
 #include "session/batch.h"
 #include "session/film_batch.h"
 #include "session/scene_inputs.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -44,13 +45,13 @@ void FilmExport::run() {
     try {
         result_ = write();
     } catch (const Cancelled&) {
-        result_ = printable(file()) + ": cancelled, there is no film";
+        result_ = tr_format("{}: cancelled, there is no film", printable(file()));
     } catch (const Error&) {
         failure_ = std::current_exception();
     } catch (const std::exception& error) {
-        failure_ = std::make_exception_ptr(Error(
-            ErrorCode::Failed,
-            fmt::format("film: {}: {}; use a smaller size", printable(file()), error.what())));
+        failure_ = std::make_exception_ptr(
+            Error(ErrorCode::Failed,
+                  tr_format("film: {}: {}; use a smaller size", printable(file()), error.what())));
     }
     is_done_ = true;
     on_change_();
@@ -78,11 +79,12 @@ std::string FilmExport::write() {
     };
     if (is_cancelled_) throw Cancelled();
     const session::FilmReport report = session::draw_film(shots, options, times, files);
-    std::string text = fmt::format("{}: film saved, {} frames, {:.3g} s", printable(file()),
-                                   frames(), static_cast<double>(frames()) / plan_->film.film.fps);
+    std::string text = tr_format("{}: film saved, {} frames, {:.3g} s", printable(file()), frames(),
+                                 static_cast<double>(frames()) / plan_->film.film.fps);
     if (report.blank > 0)
-        text += fmt::format("; {} frames show only sky, the first is frame {}", report.blank,
-                            report.first_blank);
+        text += tr_format_plural("; {} frame shows only sky, it is frame {}",
+                                 "; {} frames show only sky, the first is frame {}", report.blank,
+                                 report.first_blank);
     for (const std::string& note : report.stamp_notes)
         text += "; " + note;
     return text;

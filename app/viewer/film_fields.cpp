@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "shader/params.h"
 #include "viewer/file_kind.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -45,9 +46,9 @@ template <typename Choice, std::size_t count>
 void combo(const char* id, Choice& choice,
            const std::array<std::pair<Choice, const char*>, count>& words) {
     const auto now = std::ranges::find(words, choice, &std::pair<Choice, const char*>::first);
-    if (!ImGui::BeginCombo(id, now->second)) return;
+    if (!ImGui::BeginCombo(id, tr(now->second))) return;
     for (const auto& [value, word] : words)
-        if (ImGui::Selectable(word, value == choice)) choice = value;
+        if (ImGui::Selectable(tr_label(word), value == choice)) choice = value;
     ImGui::EndCombo();
 }
 
@@ -62,10 +63,12 @@ std::string shown_lines(const State& state) {
 void preset(FilmChoice& choice) {
     const std::vector<FilmPreset>& presets = film_presets();
     const auto now = std::ranges::find(presets, choice, &FilmPreset::choice);
-    if (!ImGui::BeginCombo("##preset", now == presets.end() ? "as chosen below" : now->name))
+    if (!ImGui::BeginCombo("##preset",
+                           now == presets.end() ? tr("as chosen below") : tr(now->name)))
         return;
     for (const FilmPreset& one : presets) {
-        if (!ImGui::Selectable(one.name, now != presets.end() && one.name == now->name)) continue;
+        if (!ImGui::Selectable(tr_label(one.name), now != presets.end() && one.name == now->name))
+            continue;
         const std::string track = choice.track;
         choice = one.choice;
         if (choice.camera == Camera::Track) choice.track = track;
@@ -74,32 +77,34 @@ void preset(FilmChoice& choice) {
 }
 
 void track_fields(FilmChoice& choice, WidgetRows& rows) {
-    rows.next("Track", 14);
+    rows.next(tr("Track"), 14);
     std::string track = choice.track;  // not read before all of it is typed
     if (ImGui::InputTextWithHint(
-            "##track", "GPX, CSV, GeoJSON; then Enter", &track,
+            "##track", tr("GPX, CSV, GeoJSON; then Enter"), &track,
             ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
         choice.track = track.empty() ? "" : std::filesystem::absolute(track).string();
     if (!choice.track.empty()) tooltip(printable(choice.track).c_str());
-    rows.next("Above ground", 5);
+    rows.next(tr("Above ground"), 5);
     number("##above", choice.height_m, 0.1, 1e6, "%.0f m");
-    rows.next("Look ahead", 5);
+    rows.next(tr("Look ahead"), 5);
     number("##ahead", choice.look_ahead_m, 0, 1e6,
-           choice.look_ahead_m > 0 ? "%.0f m" : "automatic");
-    tooltip("How far ahead the camera looks; bends narrower than it are cut. 0: automatic");
+           choice.look_ahead_m > 0 ? "%.0f m" : slider_format(tr("automatic"), "").c_str());
+    tooltip(tr("How far ahead the camera looks; bends narrower than it are cut. 0: automatic"));
     const DisabledIf disabled(!choice.can_have_speed());
-    rows.next("Speed", 5);
-    number("##speed", choice.speed_m_s, 0, 1e6, choice.speed_m_s > 0 ? "%.0f m/s" : "by length");
+    rows.next(tr("Speed"), 5);
+    number("##speed", choice.speed_m_s, 0, 1e6,
+           choice.speed_m_s > 0 ? "%.0f m/s" : slider_format(tr("by length"), "").c_str());
     tooltip(
-        "Highest speed of the flight; 0: by the length of the film. If something else moves, "
-        "the length counts.");
+        tr("Highest speed of the flight; 0: by the length of the film. If something else moves, "
+           "the length counts."));
 }
 
 /// The scalar parameters of effects that are on, which need no other program.
 void parameter_combo(FilmChoice& choice, const State& state) {
-    if (!ImGui::BeginCombo("##value", choice.value.empty() ? "none" : choice.value.c_str())) return;
-    if (ImGui::Selectable("none", choice.value.empty())) choice.value.clear();
-    if (ImGui::Selectable("seconds, of effects that move", choice.value == kSeconds)) {
+    if (!ImGui::BeginCombo("##value", choice.value.empty() ? tr("none") : choice.value.c_str()))
+        return;
+    if (ImGui::Selectable(tr_label("none"), choice.value.empty())) choice.value.clear();
+    if (ImGui::Selectable(tr_label("seconds, of effects that move"), choice.value == kSeconds)) {
         choice.value = kSeconds;
         choice.from = 0;
         choice.to = choice.duration_s;
@@ -140,31 +145,32 @@ void WidgetRows::next(const char* label, float width_em) {
 
 void film_choice_fields(FilmChoice& choice, const State& state) {
     WidgetRows rows;
-    rows.next("Film", 13);
+    rows.next(tr("Film"), 13);
     preset(choice);
-    rows.next("Time", 9);
-    combo<Time, 3>(
-        "##time", choice.time,
-        {{{Time::Still, "stands still"}, {Time::Day, "this day"}, {Time::Year, "this year"}}});
+    rows.next(tr("Time"), 9);
+    combo<Time, 3>("##time", choice.time,
+                   {{{Time::Still, tr_later("stands still")},
+                     {Time::Day, tr_later("this day")},
+                     {Time::Year, tr_later("this year")}}});
     tooltip(
-        "From half an hour before sunrise to half an hour after sunset; or the whole year at "
-        "this hour of mean solar time");
-    rows.next("Camera", 11);
+        tr("From half an hour before sunrise to half an hour after sunset; or the whole year at "
+           "this hour of mean solar time"));
+    rows.next(tr("Camera"), 11);
     const Camera before = choice.camera;
     combo<Camera, 5>("##camera", choice.camera,
-                     {{{Camera::Still, "stands still"},
-                       {Camera::AroundMiddle, "around the middle"},
-                       {Camera::AroundDem, "around the DEM"},
-                       {Camera::Views, "through the views"},
-                       {Camera::Track, "along a track"}}});
+                     {{{Camera::Still, tr_later("stands still")},
+                       {Camera::AroundMiddle, tr_later("around the middle")},
+                       {Camera::AroundDem, tr_later("around the DEM")},
+                       {Camera::Views, tr_later("through the views")},
+                       {Camera::Track, tr_later("along a track")}}});
     tooltip(
-        "Around the ground in the middle of the view, or around all of the DEM; through the "
-        "saved views (B) in their order; above the line of a file");
+        tr("Around the ground in the middle of the view, or around all of the DEM; through the "
+           "saved views (B) in their order; above the line of a file"));
     if (choice.camera != before) choice.ease = choice.is_flight();
     if (choice.is_orbit()) {
-        rows.next("Turns", 4);
+        rows.next(tr("Turns"), 4);
         number("##turns", choice.turns, -1000, 1000, "%g");
-        tooltip("Clockwise from above; negative: the other way");
+        tooltip(tr("Clockwise from above; negative: the other way"));
     }
     if (choice.camera == Camera::Track) {
         if (choice.camera != before && choice.track.empty()) choice.track = shown_lines(state);
@@ -172,47 +178,48 @@ void film_choice_fields(FilmChoice& choice, const State& state) {
     }
     {
         const DisabledIf disabled(!choice.is_orbit() && !choice.is_flight());
-        rows.next("Ease", ImGui::GetFrameHeight() / ImGui::GetFontSize());
+        rows.next(tr("Ease"), ImGui::GetFrameHeight() / ImGui::GetFontSize());
         ImGui::Checkbox("##ease", &choice.ease);
-        tooltip("The camera begins and ends at rest");
+        tooltip(tr("The camera begins and ends at rest"));
     }
-    rows.next("Parameter", 11);
+    rows.next(tr("Parameter"), 11);
     parameter_combo(choice, state);
     if (!choice.value.empty()) {
-        rows.next("from", 5);
+        rows.next(tr("from"), 5);
         number("##from", choice.from, -1e9, 1e9, "%g");
-        rows.next("to", 5);
+        rows.next(tr("to"), 5);
         number("##to", choice.to, -1e9, 1e9, "%g");
     }
     {
         const DisabledIf disabled(choice.can_have_speed() && choice.speed_m_s > 0);
-        rows.next("Length", 4);
+        rows.next(tr("Length"), 4);
         number("##length", choice.duration_s, 0.1, kLongestFilm_s, "%g s");
     }
-    rows.next("Frames a second", 4);
+    rows.next(tr("Frames a second"), 4);
     number("##fps", choice.fps, 1, film::kMaxFps, "%g");
 }
 
 void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
     WidgetRows rows;
-    rows.next("Size", 7);
+    rows.next(tr("Size"), 7);
     if (ImGui::BeginCombo("##size",
                           fmt::format("{} x {}", file.size_px.x, file.size_px.y).c_str())) {
         const glm::ivec2 window = 2 * (glm::ivec2(window_px) / 2);
         for (const glm::ivec2 size :
              {glm::ivec2(1280, 720), glm::ivec2(1920, 1080), glm::ivec2(3840, 2160),
               glm::ivec2(1080, 1080), glm::ivec2(1080, 1920), glm::ivec2(640, 360), window})
-            if (ImGui::Selectable(fmt::format("{} x {}{}", size.x, size.y,
-                                              size == window ? ", as the window" : "")
-                                      .c_str(),
-                                  size == file.size_px))
+            if (ImGui::Selectable(
+                    (size == window ? tr_format("{} x {}, as the window", size.x, size.y)
+                                    : fmt::format("{} x {}", size.x, size.y))
+                        .c_str(),
+                    size == file.size_px))
                 file.size_px = size;
         ImGui::EndCombo();
     }
-    rows.next("Pixels", 8);
+    rows.next(tr("Pixels"), 8);
     if (ImGui::InputInt2("##pixels", &file.size_px.x))
         file.size_px = glm::clamp(file.size_px, glm::ivec2(16), glm::ivec2(16384));
-    rows.next("Format", 5);
+    rows.next(tr("Format"), 5);
     if (ImGui::BeginCombo("##format", file.ending.c_str())) {
         for (const char* const ending : {"mp4", "webm", "webp", "gif"})
             if (ImGui::Selectable(ending, file.ending == ending)) file.ending = ending;
@@ -220,26 +227,26 @@ void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
     }
     {
         const DisabledIf disabled(!file.has_quality());
-        rows.next("Quality", 5);
+        rows.next(tr("Quality"), 5);
         ImGui::SliderInt("##quality", &file.quality, 0, 100);
     }
-    rows.next("Samples", 4);
+    rows.next(tr("Samples"), 4);
     if (ImGui::BeginCombo("##samples", fmt::format("{}", file.samples).c_str())) {
         for (const int samples : {1, 4, 8, 16})
             if (ImGui::Selectable(fmt::format("{}", samples).c_str(), samples == file.samples))
                 file.samples = samples;
         ImGui::EndCombo();
     }
-    tooltip("Samples a pixel: smoother edges, as many times the work");
-    rows.next("Name", 9);
+    tooltip(tr("Samples a pixel: smoother edges, as many times the work"));
+    rows.next(tr("Name"), 9);
     ImGui::InputText("##name", &file.name, ImGuiInputTextFlags_AutoSelectAll);
-    tooltip("{dem}, and {time:...} with the conversions of strftime");
-    rows.next("Date", ImGui::GetFrameHeight() / ImGui::GetFontSize());
+    tooltip(tr("{dem}, and {time:...} with the conversions of strftime"));
+    rows.next(tr("Date"), ImGui::GetFrameHeight() / ImGui::GetFontSize());
     ImGui::Checkbox("##date", &file.has_date);
-    tooltip("Stamps date and time on every frame");
-    rows.next("Centred", ImGui::GetFrameHeight() / ImGui::GetFontSize());
+    tooltip(tr("Stamps date and time on every frame"));
+    rows.next(tr("Centred"), ImGui::GetFrameHeight() / ImGui::GetFontSize());
     ImGui::Checkbox("##centred", &is_centred);
-    tooltip("Centres the film on what the side panel leaves free of the window");
+    tooltip(tr("Centres the film on what the side panel leaves free of the window"));
 }
 
 }  // namespace relevo::viewer

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "viewer/film_fields.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -29,8 +30,8 @@ std::string time_of(const Document& document) {
 std::string camera_of(const State& state) {
     const Pose& pose = state.document.pose;
     const double eye_m = state.land.frame->to_geodetic(pose.eye_m).height_m;
-    return fmt::format("camera at {:.0f} m facing {:.0f}°", eye_m / state.land.exaggeration,
-                       std::fmod(pose.heading_deg + 360, 360.0));
+    return tr_format("camera at {:.0f} m facing {:.0f}°", eye_m / state.land.exaggeration,
+                     std::fmod(pose.heading_deg + 360, 360.0));
 }
 
 /// The first of some texts, each shorter than the one before, that has room on a line.
@@ -60,7 +61,7 @@ bool has_frames(const FilmStatus& status) {
 void FilmPanel::time_line(FilmClock& clock, const FilmStatus& status) {
     const float em = ImGui::GetFontSize();
     ImGui::BeginDisabled(!has_frames(status));
-    if (ImGui::Button(clock.is_playing() ? "Pause" : "Play", {4.5f * em, 0})) {
+    if (ImGui::Button(clock.is_playing() ? tr_label("Pause") : tr_label("Play"), {4.5f * em, 0})) {
         if (clock.is_playing())
             clock.pause();
         else
@@ -70,12 +71,13 @@ void FilmPanel::time_line(FilmClock& clock, const FilmStatus& status) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!status.shows_frame);
-    if (ImGui::Button("Back", {4.5f * em, 0})) action_ = FilmAction::EndPreview;
+    if (ImGui::Button(tr_label("Back"), {4.5f * em, 0})) action_ = FilmAction::EndPreview;
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!has_frames(status));
     int frame = clock.frame() + 1;
-    const std::string format = fmt::format("frame %d of {}", clock.frames());
+    const std::string format =
+        slider_format(tr_format("frame {} of {}", kSliderValue, clock.frames()), "%d");
     ImGui::SetNextItemWidth(-1);
     if (ImGui::SliderInt("##frame", &frame, 1, clock.frames(), format.c_str(),
                          ImGuiSliderFlags_AlwaysClamp)) {
@@ -90,7 +92,7 @@ void FilmPanel::buttons(const FilmStatus& status) {
     const float em = ImGui::GetFontSize();
     WidgetRows rows;
     const auto button = [&](const char* name, bool enabled, FilmAction action, const char* tip) {
-        const float width = ImGui::CalcTextSize(name).x + 2 * em;
+        const float width = ImGui::CalcTextSize(name, nullptr, true).x + 2 * em;
         rows.next(width);
         ImGui::BeginDisabled(!enabled);
         if (ImGui::Button(name, {width, 0})) action_ = action;
@@ -98,28 +100,29 @@ void FilmPanel::buttons(const FilmStatus& status) {
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
     };
     const bool is_ready = has_frames(status) && status.is_planned;
-    button("Save film", is_ready && !status.drawing, FilmAction::SaveFilm,
-           "Draws the film in the background, into the working folder");
-    button("Save job", is_ready, FilmAction::SaveJob, "The film as a file for relevo run");
+    button(tr_label("Save film"), is_ready && !status.drawing, FilmAction::SaveFilm,
+           tr("Draws the film in the background, into the working folder"));
+    button(tr_label("Save job"), is_ready, FilmAction::SaveJob,
+           tr("The film as a file for relevo run"));
     const bool has_command = choice_.camera != FilmChoice::Camera::Views;
-    button("Copy command", is_ready && has_command, FilmAction::CopyCommand,
-           has_command ? "The relevo film command that makes this film"
-                       : "relevo film knows no saved views; save the job, for relevo run");
+    button(tr_label("Copy command"), is_ready && has_command, FilmAction::CopyCommand,
+           has_command ? tr("The relevo film command that makes this film")
+                       : tr("relevo film knows no saved views; save the job, for relevo run"));
     if (choice_.camera == FilmChoice::Camera::Track)
-        button("Show track", !choice_.track.empty(), FilmAction::ShowTrack,
-               "Shows the line on the ground by an effect");
+        button(tr_label("Show track"), !choice_.track.empty(), FilmAction::ShowTrack,
+               tr("Shows the line on the ground by an effect"));
     if (!status.drawing) return;
     const FilmExport& film = *status.drawing;
-    const float cancel = ImGui::CalcTextSize("Cancel").x + 2 * em;
+    const float cancel = ImGui::CalcTextSize(tr("Cancel")).x + 2 * em;
     rows.next(std::min(16 * em, ImGui::GetWindowContentRegionMax().x - 2 * em - cancel) + cancel);
     ImGui::ProgressBar(
         static_cast<float>(film.drawn()) / static_cast<float>(film.frames()),
         {std::max(8 * em, std::min(16 * em, ImGui::GetContentRegionAvail().x - cancel - em)), 0},
-        fmt::format("{} of {} frames", film.drawn(), film.frames()).c_str());
+        tr_format("{} of {} frames", film.drawn(), film.frames()).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(film.file()).c_str());
     ImGui::SameLine();
     ImGui::BeginDisabled(film.is_cancelled());
-    if (ImGui::Button("Cancel", {cancel, 0})) action_ = FilmAction::Cancel;
+    if (ImGui::Button(tr_label("Cancel"), {cancel, 0})) action_ = FilmAction::Cancel;
     ImGui::EndDisabled();
 }
 
@@ -130,14 +133,16 @@ void FilmPanel::stamp(const State& state, const FilmClock& clock, const FilmStat
         ImGui::TextUnformatted(fitting({time + "   " + camera_of(state), time}).c_str());
     } else if (has_frames(status)) {
         const std::string length =
-            fmt::format("{} frames, {:.3g} s", clock.frames(), clock.length_s());
-        const std::string drag = length + "   Space plays, dragging shows a frame";
+            tr_format("{} frames, {:.3g} s", clock.frames(), clock.length_s());
+        const std::string drag = length + "   " + tr("Space plays, dragging shows a frame");
         ImGui::TextDisabled(
-            "%s", fitting({drag + ", Ctrl and a click takes its number", drag, length}).c_str());
+            "%s",
+            fitting({drag + tr(", Ctrl and a click takes its number"), drag, length}).c_str());
     } else {
-        ImGui::TextDisabled("%s", state.is_preview    ? "when all posts are read a film can be made"
-                                  : status.is_planned ? "no frames"
-                                                      : "planning ...");
+        ImGui::TextDisabled("%s", state.is_preview
+                                      ? tr("when all posts are read a film can be made")
+                                  : status.is_planned ? tr("no frames")
+                                                      : tr("planning ..."));
     }
 }
 
@@ -151,7 +156,7 @@ std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, window_px.y - below - menu});
     ImGui::SetNextWindowSize({width, 0}, ImGuiCond_Always);
     const bool shows = ImGui::Begin(
-        "Film", &is_open_,
+        tr_label("Film"), &is_open_,
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
             ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
     if (shows) {

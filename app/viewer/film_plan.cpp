@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -22,9 +23,9 @@ std::string text_of(const Error& error) {
 void check_frames(double frames) {
     if (frames > kMostFilmFrames)
         bad_input(
-            fmt::format("film: expected at most {} frames but got {:.0f}; a shorter film, a higher "
-                        "speed, or relevo film makes it",
-                        kMostFilmFrames, frames));
+            tr_format("film: expected at most {} frames but got {:.0f}; a shorter film, a higher "
+                      "speed, or relevo film makes it",
+                      kMostFilmFrames, frames));
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ FilmPlan plan_film(const FilmWanted& wanted, session::SceneTimes& times) {
         plan.error = text_of(error);
     } catch (const std::exception& error) {
         plan.frames = {};
-        plan.error = fmt::format("film: {}; choose a shorter one", error.what());
+        plan.error = tr_format("film: {}; choose a shorter one", error.what());
     }
     return plan;
 }

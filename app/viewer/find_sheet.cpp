@@ -11,6 +11,7 @@
 #include "dem/places.h"
 #include "geo/format.h"
 #include "viewer/sheet.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -54,11 +55,11 @@ void FindSheet::draw(glm::vec2 size_px, const EffectsModel* effects) {
     const float line = ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({size_px.x / 2, 4 * line}, ImGuiCond_Appearing, {0.5f, 0});
     ImGui::SetNextWindowSize({std::min(size_px.x - 20, 20 * line), 0}, ImGuiCond_Always);
-    if (ImGui::Begin("Go to a place", &is_open_, ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(tr_label("Go to a place"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
         if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-1);
         const bool enter = ImGui::InputTextWithHint(
-            "##place", "coordinates, or a name that is shown", &text_,
+            "##place", tr("coordinates, or a name that is shown"), &text_,
             ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
         if (searched_ != text_) {
             searched_ = text_;
@@ -71,9 +72,9 @@ void FindSheet::draw(glm::vec2 size_px, const EffectsModel* effects) {
         for (const FoundPlace& place : found_)
             if (ImGui::Selectable(printable(place.name).c_str())) choose(place.place);
         if (found_.empty())
-            ImGui::TextDisabled("%s", text_.empty() ? "47.4395, 11.8935; 32N 683473 5255234; "
-                                                      "32TPT8347355234"
-                                                    : "nothing found");
+            ImGui::TextDisabled("%s", text_.empty() ? tr("47.4395, 11.8935; 32N 683473 5255234; "
+                                                         "32TPT8347355234")
+                                                    : tr("nothing found"));
         if (enter && !found_.empty()) choose(found_.front().place);
         if (closes_sheet()) close();
     }

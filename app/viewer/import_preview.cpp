@@ -12,6 +12,7 @@
 #include "dem/heightfield.h"
 #include "dem/load.h"
 #include "viewer/settings.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -64,10 +65,10 @@ std::string words_of(const dem::Source& source, const dem::Heightfield& field) {
     const glm::dvec2 extent_m = grid.extent_m();
     const geo::Geodetic middle = grid.place((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
     std::string text =
-        fmt::format("{} x {} posts, {:.3g} x {:.3g} km\n{}\naround {}\nheights {:.0f} to {:.0f} m",
-                    grid.columns(), grid.rows(), extent_m.x / 1000, extent_m.y / 1000,
-                    grid.crs().name(), coordinates_text(middle, Coordinates::Degrees),
-                    field.about.statistics.min_m, field.about.statistics.max_m);
+        tr_format("{} x {} posts, {:.3g} x {:.3g} km\n{}\naround {}\nheights {:.0f} to {:.0f} m",
+                  grid.columns(), grid.rows(), extent_m.x / 1000, extent_m.y / 1000,
+                  grid.crs().name(), coordinates_text(middle, Coordinates::Degrees),
+                  field.about.statistics.min_m, field.about.statistics.max_m);
     for (const std::string& assumption : source.description().assumptions)
         text += "\n" + assumption;
     return text;
@@ -78,7 +79,7 @@ dem::Heightfield coarse_field(const dem::Source& source, int side_px) {
     const int side = std::max(grid.columns(), grid.rows());
     const double reduction = std::max(1.0, static_cast<double>(side) / side_px);
     if (source.cells_for_means(static_cast<int>(reduction)) > kMostCells)
-        bad_input("no preview: the file is large and has no overviews; it can be opened");
+        bad_input(tr("no preview: the file is large and has no overviews; it can be opened"));
     const auto part = [&](int posts) {
         return std::max(1, static_cast<int>(std::lround(posts / reduction)));
     };
@@ -88,7 +89,7 @@ dem::Heightfield coarse_field(const dem::Source& source, int side_px) {
                            .grid = grid.part(window, columns, rows),
                            .about = source.description()};
     field.about.statistics = dem::statistics(field.height_m);
-    if (field.about.statistics.valid == 0) bad_input("not one post has a height");
+    if (field.about.statistics.valid == 0) bad_input(tr("not one post has a height"));
     return field;
 }
 

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "viewer/image_texture.h"
 #include "viewer/sheet.h"
+#include "viewer/translation.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -21,9 +22,9 @@ namespace {
 constexpr int kPreview_px = 320;
 constexpr std::size_t kMostFound = 40;
 constexpr std::array<const char*, 8> kUnits = {
-    "as the file says", "m", "ft", "us-ft", "cm", "mm", "dm", "km"};
-constexpr std::array<const char*, 3> kEncodings = {"none: a band has heights", "terrain-rgb",
-                                                   "terrarium"};
+    tr_later("as the file says"), "m", "ft", "us-ft", "cm", "mm", "dm", "km"};
+constexpr std::array<const char*, 3> kEncodings = {tr_later("none: a band has heights"),
+                                                   "terrain-rgb", "terrarium"};
 
 }  // namespace
 
@@ -56,7 +57,7 @@ dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) cons
     if (!value.empty() && !options.no_nodata) {
         options.nodata = parse_number(value);
         if (!options.nodata)
-            bad_usage("nodata: expected a number or none, but got " + printable(value));
+            bad_usage(tr_format("nodata: expected a number or none, but got {}", printable(value)));
     }
     options.crop = std::string(trimmed(crop));
     if (!options.crop.empty()) dem::parse_bounds(options.crop, "crop");
@@ -89,11 +90,12 @@ void ImportSheet::want_preview() {
 }
 
 void ImportSheet::crs_field() {
-    ImGui::InputTextWithHint("CRS", "as the file says; or search", &fields_.crs,
+    ImGui::InputTextWithHint(tr_label("CRS"), tr("as the file says; or search"), &fields_.crs,
                              ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip(
-            "A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place");
+            "%s",
+            tr("A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place"));
     found_crs();
 }
 
@@ -121,19 +123,21 @@ void ImportSheet::found_crs() {
 }
 
 void ImportSheet::other_fields() {
-    ImGui::InputTextWithHint("Edges", "W,S,E,N in degrees; of a file without them",
+    ImGui::InputTextWithHint(tr_label("Edges"), tr("W,S,E,N in degrees; of a file without them"),
                              &fields_.bounds);
-    ImGui::InputTextWithHint("Crop", "W,S,E,N in degrees; only what is in there", &fields_.crop);
+    ImGui::InputTextWithHint(tr_label("Crop"), tr("W,S,E,N in degrees; only what is in there"),
+                             &fields_.crop);
     int unit = 0;
     for (std::size_t i = 1; i < kUnits.size(); ++i)
         if (fields_.unit == kUnits[i]) unit = static_cast<int>(i);
-    if (ImGui::Combo("Unit", &unit, kUnits.data(), static_cast<int>(kUnits.size())))
+    if (ImGui::Combo(tr_label("Unit"), &unit, tr_all(kUnits).data(),
+                     static_cast<int>(kUnits.size())))
         fields_.unit = unit == 0 ? "" : kUnits[static_cast<std::size_t>(unit)];
-    ImGui::InputTextWithHint("Nodata", "as the file says; a number, or none", &fields_.nodata,
-                             ImGuiInputTextFlags_AutoSelectAll);
+    ImGui::InputTextWithHint(tr_label("Nodata"), tr("as the file says; a number, or none"),
+                             &fields_.nodata, ImGuiInputTextFlags_AutoSelectAll);
     int band = std::max(1, fields_.band);
-    if (ImGui::InputInt("Band", &band)) fields_.band = std::max(1, band);
-    ImGui::Combo("Encoding", &fields_.encoding, kEncodings.data(),
+    if (ImGui::InputInt(tr_label("Band"), &band)) fields_.band = std::max(1, band);
+    ImGui::Combo(tr_label("Encoding"), &fields_.encoding, tr_all(kEncodings).data(),
                  static_cast<int>(kEncodings.size()));
 }
 
@@ -144,7 +148,7 @@ void ImportSheet::preview(float width_px) {
         texture_ = has_picture ? texture_of(shown_->picture) : gl::Texture();
     }
     if (!error_.empty()) return ImGui::TextWrapped("%s", error_.c_str());
-    if (!shown_) return ImGui::TextDisabled("reading ...");
+    if (!shown_) return ImGui::TextDisabled("%s", tr("reading ..."));
     if (shown_->error == reason_) return;
     if (!shown_->error.empty()) return ImGui::TextWrapped("%s", shown_->error.c_str());
     const gl::Extent extent = texture_.extent();
@@ -164,14 +168,15 @@ void ImportSheet::draw(glm::vec2 size_px) {
     ImGui::SetNextWindowSize(
         {std::min(size_px.x - 20, 34 * line), std::min(size_px.y - 2 * line, 22 * line)},
         ImGuiCond_Appearing);
-    if (ImGui::Begin("How the DEM is read", &is_open_, ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(tr_label("How the DEM is read"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::TextUnformatted(printable(short_name(dem_.files)).c_str());
         if (!reason_.empty()) ImGui::TextWrapped("%s", reason_.c_str());
         ImGui::Separator();
         const float fields_px = 0.55f * ImGui::GetContentRegionAvail().x;
         const float height_px = ImGui::GetContentRegionAvail().y - 1.5f * line;
         if (ImGui::BeginChild("fields", {fields_px, height_px})) {
-            ImGui::PushItemWidth(-5 * line);
+            ImGui::PushItemWidth(-widest({tr("CRS"), tr("Edges"), tr("Crop"), tr("Unit"),
+                                          tr("Nodata"), tr("Band"), tr("Encoding")}));
             crs_field();
             other_fields();
             ImGui::PopItemWidth();
@@ -182,14 +187,14 @@ void ImportSheet::draw(glm::vec2 size_px) {
         ImGui::EndChild();
         const bool can_open = error_.empty() && shown_ && shown_->error.empty();
         if (!can_open) ImGui::BeginDisabled();
-        if (ImGui::Button("Open", {5 * line, 0})) {
+        if (ImGui::Button(tr_label("Open"), {5 * line, 0})) {
             chosen_ = dem_;
             chosen_->options = fields_.options(dem_.options);
             is_open_ = false;
         }
         if (!can_open) ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button("Cancel", {5 * line, 0}) || closes_sheet()) is_open_ = false;
+        if (ImGui::Button(tr_label("Cancel"), {5 * line, 0}) || closes_sheet()) is_open_ = false;
     }
     ImGui::End();
 }

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/overlay.h"
+#include "viewer/translation.h"
+
 namespace relevo::viewer {
 namespace {
 
@@ -72,20 +75,17 @@ void swatches(const std::vector<chart::Legend::Class>& classes) {
 std::vector<chart::Legend::Class> classes_of(const chart::Legend& legend) {
     std::vector<chart::Legend::Class> classes;
     for (std::size_t k = 0; k + 1 < legend.edges.size(); ++k)
-        classes.push_back({fmt::format("{:.6g} to {:.6g}{}", legend.edges[k], legend.edges[k + 1],
-                                       unit_of(legend)),
-                           legend.ramp.at(legend.edges[k])});
+        classes.push_back(
+            {tr_format("{:.6g} to {:.6g}{}", legend.edges[k], legend.edges[k + 1], unit_of(legend)),
+             legend.ramp.at(legend.edges[k])});
     return classes;
 }
 
 /// The directions of a ring.
 std::vector<chart::Legend::Class> directions_of(const chart::Legend& legend) {
     std::vector<chart::Legend::Class> classes;
-    double azimuth_deg = 0;
-    for (const char* name : {"N", "NE", "E", "SE", "S", "SW", "W", "NW"}) {
-        classes.push_back({name, legend.ramp.at(azimuth_deg)});
-        azimuth_deg += 45;
-    }
+    for (double azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45)
+        classes.push_back({compass_text(azimuth_deg), legend.ramp.at(azimuth_deg)});
     return classes;
 }
 

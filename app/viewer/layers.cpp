@@ -6,6 +6,7 @@
 
 #include "base/contains.h"
 #include "base/text.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -73,7 +74,7 @@ Layer overlay_layer(const Document& document) {
     const OverlayChoice& choice = document.overlay;
     Layer layer{.group = choice.lit ? Layer::Group::Lit : Layer::Group::Flat};
     layer.id = effect::kOverlay;
-    layer.name = "Overlay";
+    layer.name = tr("Overlay");
     if (choice.kind == OverlayKind::File && document.scene.overlay)
         layer.source = short_name(document.scene.overlay->file);
     layer.is_on = choice.visible;

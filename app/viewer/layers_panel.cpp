@@ -9,20 +9,22 @@
 #include "viewer/layer_legend.h"
 #include "viewer/layers.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
 
-constexpr const char* kLit = "lit";
+constexpr const char* kLit = tr_later("lit");
 
 /// @param has_light  a checkbox follows on the same line
 void slider(State& state, double& share, bool has_light) {
     auto percent = static_cast<int>(std::lround(100 * share));
-    const float light_px = ImGui::GetFrameHeight() + ImGui::CalcTextSize(kLit).x +
+    const float light_px = ImGui::GetFrameHeight() + ImGui::CalcTextSize(tr(kLit)).x +
                            2 * ImGui::GetStyle().ItemInnerSpacing.x +
                            ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(has_light ? -light_px : -1);
-    if (ImGui::SliderInt("##opacity", &percent, 0, 100, "opacity %d %%",
+    if (ImGui::SliderInt("##opacity", &percent, 0, 100,
+                         slider_format(tr_format("opacity {} %", kSliderValue), "%d").c_str(),
                          ImGuiSliderFlags_AlwaysClamp))
         share = percent / 100.0;
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
@@ -46,9 +48,9 @@ void effect_opacity(State& state, const Layer& layer) {
 void light(State& state, const Layer& layer) {
     const bool is_overlay = layer.is_overlay();
     bool lit = is_overlay ? state.document.overlay.lit : is_lit(*state.effects, layer.light);
-    const bool is_changed = ImGui::Checkbox(kLit, &lit);
+    const bool is_changed = ImGui::Checkbox(tr_label(kLit), &lit);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("Lit by the sun and the sky; else in its own colours");
+        ImGui::SetTooltip("%s", tr("Lit by the sun and the sky; else in its own colours"));
     if (!is_changed) return;
     state.step = true;
     if (is_overlay)
@@ -65,10 +67,11 @@ void overlay_time(State& state) {
     const std::string clock =
         session::clock_text(*overlay.time, state.document.zone.name(), state.centre);
     if (!clock.empty()) ImGui::TextDisabled("%s", clock.c_str());
-    state.step |=
-        ImGui::Checkbox("cast shadows of the displayed time", &state.document.overlay.shadows);
+    state.step |= ImGui::Checkbox(tr_label("cast shadows of the displayed time"),
+                                  &state.document.overlay.shadows);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("The overlay shows sunlight of its own time: shadows on it are off.");
+        ImGui::SetTooltip("%s",
+                          tr("The overlay shows sunlight of its own time: shadows on it are off."));
 }
 
 void legends(const State& state, const Layer& layer) {
@@ -136,10 +139,10 @@ void buttons(State& state, const std::vector<Layer>& layers, std::size_t i, floa
         ImGui::SameLine(0, 2);
     };
     ImGui::SameLine(left);
-    arrow("up", ImGuiDir_Up, -1, "Over the layer above. Lit layers lie under the others.");
-    arrow("down", ImGuiDir_Down, 1, "Under the layer below. Names lie over all layers.");
+    arrow("up", ImGuiDir_Up, -1, tr("Over the layer above. Lit layers lie under the others."));
+    arrow("down", ImGuiDir_Down, 1, tr("Under the layer below. Names lie over all layers."));
     if (ImGui::Button("x", {ImGui::GetFrameHeight(), 0})) remove(state, layers[i]);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove the layer");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("Remove the layer"));
 }
 
 /// As much of a text as fits into a width.
@@ -182,13 +185,14 @@ void row(State& state, const std::vector<Layer>& layers, std::size_t i) {
 }
 
 void add(State& state, const std::vector<Layer>& layers) {
-    if (ImGui::Button("Add a file...")) state.commands.push_back(Command::Open);
+    if (ImGui::Button(tr_label("Add a file..."))) state.commands.push_back(Command::Open);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
-            "A photograph, figures of the sun, tracks or places. Files can be dropped, too.");
+            "%s",
+            tr("A photograph, figures of the sun, tracks or places. Files can be dropped, too."));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
-    if (!ImGui::BeginCombo("##add", "Add an effect")) return;
+    if (!ImGui::BeginCombo("##add", tr("Add an effect"))) return;
     for (const std::string& id : further_layers(*state.effects, layers)) {
         const effect::Manifest& manifest = state.effects->registry.effect(id, "layers").manifest;
         if (ImGui::Selectable(fmt::format("{}##{}", manifest.name, id).c_str()))

@@ -8,6 +8,7 @@
 
 #include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -174,7 +175,7 @@ void MainWindow::draw_panels() {
     }
     if (const auto to = std::exchange(gives_keys_, std::nullopt))
         window_->give_keys_to(*to == Command::MenuKeys ? nullptr
-                              : film_->is_open()       ? "Film"
+                              : film_->is_open()       ? tr_label("Film")
                                                        : "Relevo");
     if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
@@ -191,9 +192,9 @@ void MainWindow::draw_panels() {
 
 std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
-        return "opening " + short_name(opening_->next_scene().dems) + " ...   Esc cancels";
+        return tr_format("opening {} ...   Esc cancels", short_name(opening_->next_scene().dems));
     if (const std::string film = film_->progress(); !film.empty()) return film;
-    return is_drawing() ? "drawing ..." : "";
+    return is_drawing() ? tr("drawing ...") : "";
 }
 
 void MainWindow::draw_over_image() {

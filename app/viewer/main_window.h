@@ -149,6 +149,8 @@ class MainWindow {
     void show_zone(const std::string& name);
     /// The scene for export.
     scene::Scene whole_scene() const;
+    /// A message of what was saved, with a note if the overlay is not part of it.
+    std::string with_overlay_note(const std::string& text) const;
     void copy_command();
     /// Saves the image as soon as it is complete.
     void take_picture();

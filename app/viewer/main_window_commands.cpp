@@ -9,9 +9,9 @@
 
 #include "sun/zone_of_place.h"
 #include "viewer/export.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
-
 void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
@@ -132,11 +132,11 @@ void MainWindow::run_scene_command(Command command) {
             return copy_command();
         case Command::SaveScene:
             return messages_.try_to(
-                [&] { messages_.report(save_scene(whole_scene()) + overlay_->missing_note()); });
+                [&] { messages_.report(with_overlay_note(save_scene(whole_scene()))); });
         case Command::SaveJob:
             return messages_.try_to([&] {
-                messages_.report(save_job(whole_scene(), state_.day, state_.document.zone) +
-                                 overlay_->missing_note());
+                messages_.report(
+                    with_overlay_note(save_job(whole_scene(), state_.day, state_.document.zone)));
             });
         case Command::SaveView:
             return save_view();
@@ -164,10 +164,10 @@ void MainWindow::run_scene_command(Command command) {
         case Command::Undo:
             history_.end_step(state_.document);
             return history_.can_undo() ? restore(history_.undo())
-                                       : messages_.note("nothing to undo");
+                                       : messages_.note(tr("nothing to undo"));
         case Command::Redo:
             return history_.can_redo() ? restore(history_.redo())
-                                       : messages_.note("nothing to redo");
+                                       : messages_.note(tr("nothing to redo"));
         default:
             move(command);
     }
@@ -192,7 +192,7 @@ void MainWindow::open_neighbour(int step) {
     if (const std::string next = neighbour_in_folder(file, step); !next.empty())
         state_.files_to_open = {next};
     else
-        messages_.show("no other DEM in this folder");
+        messages_.show(tr("no other DEM in this folder"));
 }
 
 void MainWindow::toggle_overlay() {
@@ -219,19 +219,19 @@ void MainWindow::move(Command command) {
         move_to_point(command);
     else if (!hand_->move(command, [this] { return whole_views(); })) {
         if (command == Command::Walk)
-            messages_.note("no ground to walk on here; click a point, then press G");
+            messages_.note(tr("no ground to walk on here; click a point, then press G"));
         return;
     }
     if (command == Command::Walk || command == Command::StandHere)
         messages_.note(hand_->is_walking()
-                           ? "walking at eye height: W A S D, faster with Shift; G flies again"
-                           : "flying: W A S D, Q down and E up, faster with Shift");
+                           ? tr("walking at eye height: W A S D, faster with Shift; G flies again")
+                           : tr("flying: W A S D, Q down and E up, faster with Shift"));
     pacing_.moved();
     state_.step = true;
 }
 
 void MainWindow::move_to_point(Command command) {
-    if (!state_.chosen) return messages_.note("click a point on the ground first");
+    if (!state_.chosen) return messages_.note(tr("click a point on the ground first"));
     geo::Geodetic drawn = *state_.chosen;
     drawn.height_m = state_.land.ground_under(state_.land.frame->to_local(drawn));
     if (std::isnan(drawn.height_m)) return;
@@ -259,7 +259,7 @@ void MainWindow::save_profile() {
             file.write(text);
             file.finish();
         });
-        messages_.report(name + ": profile saved");
+        messages_.report(tr_format("{}: profile saved", name));
     });
 }
 
@@ -281,12 +281,11 @@ Whole MainWindow::whole_views() const {
 
 void MainWindow::save_view() {
     const SavedView view =
-        saved_view(state_.document, state_.land, fmt::format("View {}", state_.views.size() + 1));
+        saved_view(state_.document, state_.land, tr_format("View {}", state_.views.size() + 1));
     state_.views.push_back(view);
-    messages_.note(
-        state_.views.size() < 10
-            ? fmt::format("saved as {}; key {} goes to it", view.name, state_.views.size())
-            : fmt::format("saved as {}, in the menu View", view.name));
+    messages_.note(state_.views.size() < 10
+                       ? tr_format("saved as {}; key {} goes to it", view.name, state_.views.size())
+                       : tr_format("saved as {}, in the menu View", view.name));
     remember_views();
 }
 
@@ -299,7 +298,7 @@ void MainWindow::remember_views() {
 
 void MainWindow::go_to_view(std::size_t i) {
     if (i >= state_.views.size()) {
-        messages_.note(fmt::format("this DEM has no saved view {}; B saves one", i + 1));
+        messages_.note(tr_format("this DEM has no saved view {}; B saves one", i + 1));
         return;
     }
     const SavedView& view = state_.views[i];
@@ -322,8 +321,8 @@ void MainWindow::show_zone(const std::string& name) {
 void MainWindow::go_to_place(geo::Geodetic place) {
     place.height_m = state_.land.height_m(place);
     if (std::isnan(place.height_m))
-        return messages_.note("the DEM has no ground at " +
-                              coordinates_text(place, Coordinates::Degrees));
+        return messages_.note(tr_format("the DEM has no ground at {}",
+                                        coordinates_text(place, Coordinates::Degrees)));
     history_.end_step(state_.document);
     hand_->rest();
     geo::Geodetic drawn = place;
@@ -345,9 +344,14 @@ scene::Scene MainWindow::whole_scene() const {
     return scene;
 }
 
+std::string MainWindow::with_overlay_note(const std::string& text) const {
+    const std::string note = overlay_->missing_note();
+    return note.empty() ? text : text + ", " + note;
+}
+
 void MainWindow::copy_command() {
     window_->copy(capture_command(whole_scene(), free_picture_name()));
-    messages_.note("the command for this picture is on the clipboard" + overlay_->missing_note());
+    messages_.note(with_overlay_note(tr("the command for this picture is on the clipboard")));
 }
 
 void MainWindow::take_picture() {
@@ -356,7 +360,7 @@ void MainWindow::take_picture() {
     pacing_.need_frames(2);  // for the message
     messages_.try_to([&] {
         std::string note = overlay_->missing_note();
-        if (!note.empty()) note = "; its scene is" + note.substr(1);
+        if (!note.empty()) note = tr_format("; its scene is {}", note);
         messages_.report(save_picture(*picture_, whole_scene(), *opening_->opened(),
                                       overlay_->coloured(*picture_)) +
                          note);
@@ -380,9 +384,9 @@ void MainWindow::start_picture_export() {
     std::optional<PictureOrder> order = export_sheet_.take();
     if (!order || picture_export_) return;
     if (opening_->is_preview())
-        return messages_.show("the picture can be exported when all posts are read");
+        return messages_.show(tr("the picture can be exported when all posts are read"));
     if (const std::string note = overlay_->missing_note(); !note.empty())
-        messages_.note("the picture is" + note.substr(1));
+        messages_.note(tr_format("the picture is {}", note));
     picture_export_ = std::make_unique<PictureExport>(std::move(*order), device_name_,
                                                       opening_->opened()->dem, &Window::wake);
 }

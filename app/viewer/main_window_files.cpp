@@ -14,6 +14,7 @@
 #include "session/trust.h"
 #include "viewer/file_kind.h"
 #include "viewer/main_window.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -26,7 +27,7 @@ std::string name_of(const std::string& path) {
 scene::Scene scene_in_picture(const std::string& path) {
     const image::Metadata metadata = session::read_record(path);
     const auto text = metadata.find(session::kSceneKeyword);
-    if (text == metadata.end()) bad_input(printable(path) + ": contains no scene");
+    if (text == metadata.end()) bad_input(tr_format("{}: contains no scene", printable(path)));
     return scene::read_scene_text(text->second, path, std::filesystem::path(path).parent_path());
 }
 
@@ -104,8 +105,8 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
         case FileKind::Job:
             open_named_scene(scene_of_job(path), path, session::NamedBy::File);
             if (!state_.message.empty()) return;  // a warning
-            return messages_.note("the scene of " + name_of(path) +
-                                  "; relevo run draws its pictures");
+            return messages_.note(
+                tr_format("the scene of {}; relevo run draws its pictures", name_of(path)));
         case FileKind::Picture:
             return open_named_scene(scene_in_picture(path), path, session::NamedBy::Picture);
         case FileKind::Photograph:
@@ -139,14 +140,14 @@ void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
 
 void MainWindow::show_features(FileKind kind, const std::string& path) {
     const std::string address = file_text_for(kind, state_.effects->registry);
-    if (address.empty()) bad_input("no installed effect shows " + name_of(path));
+    if (address.empty()) bad_input(tr_format("no installed effect shows {}", name_of(path)));
     const std::string id = address.substr(0, address.find('.'));
     state_.set_effects(
         switched(with_value(state_.document.scene.effects, address, path), id, true));
     state_.message.clear();
     state_.take_effects(/*is_step=*/true);
     if (!state_.message.empty()) return;  // why the effect is not on
-    messages_.note(name_of(path) + ": shown by the effect " + id);
+    messages_.note(tr_format("{}: shown by the effect {}", name_of(path), id));
 }
 
 void MainWindow::lay_over(const std::string& path) {
@@ -161,8 +162,8 @@ void MainWindow::stand_where_taken(const std::string& path) {
     const geo::Geodetic place{photo.place->lat_rad, photo.place->lon_rad, 0};
     const double ground_m = state_.land.aim_m(place);
     if (std::isnan(ground_m))
-        bad_input(fmt::format("{}: taken at {}, where the DEM has no ground", name_of(path),
-                              coordinates_text(place, Coordinates::Degrees)));
+        bad_input(tr_format("{}: taken at {}, where the DEM has no ground", name_of(path),
+                            coordinates_text(place, Coordinates::Degrees)));
     // Heights of a GPS are off by tens of metres: from higher up it was taken in the air.
     constexpr double kInTheAir_m = 100;
     const bool flies = photo.place->height_m > ground_m + kInTheAir_m;
@@ -186,11 +187,12 @@ void MainWindow::stand_where_taken(const std::string& path) {
     if (taken) state_.set_utc(*taken);
     pacing_.moved();
     state_.step = true;
-    messages_.note(fmt::format("{}: {}{}{}{}", name_of(path),
-                               flies ? "from the air" : "from eye height at its place",
-                               photo.heading_deg ? "" : ", which way it looks is not known",
-                               photo.is_magnetic ? ", by the magnetic heading, not corrected" : "",
-                               taken ? "" : ", without a time"));
+    messages_.note(
+        fmt::format("{}: {}{}{}{}", name_of(path),
+                    flies ? tr("from the air") : tr("from eye height at its place"),
+                    photo.heading_deg ? "" : tr(", which way it looks is not known"),
+                    photo.is_magnetic ? tr(", by the magnetic heading, not corrected") : "",
+                    taken ? "" : tr(", without a time")));
 }
 
 void MainWindow::ask_how_to_read() {

@@ -5,6 +5,7 @@
 
 #include "sun/zone_of_place.h"
 #include "viewer/main_window.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -193,7 +194,7 @@ void MainWindow::restart_scene(const Opened& before) {
     const geo::Geodetic now = opening_->opened()->ground.frame.origin();
     if (now.lat_rad == centre.lat_rad && now.lon_rad == centre.lon_rad)
         history_ = std::move(history);
-    messages_.note("the DEM changed and was reloaded");
+    messages_.note(tr("the DEM changed and was reloaded"));
 }
 
 sun::Instant MainWindow::time_from(const sun::Zone& zone_before) {
@@ -208,7 +209,7 @@ sun::Instant MainWindow::time_from(const sun::Zone& zone_before) {
         const int minute = DayMinute::of(utc, document.zone).minute;
         return fmt::format("{:02}:{:02}", minute / 60, minute % 60);
     };
-    messages_.note(fmt::format("it is night here at {}; shown at {}", clock(same), clock(lit)));
+    messages_.note(tr_format("it is night here at {}; shown at {}", clock(same), clock(lit)));
     return lit;
 }
 

@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "geo/format.h"
 #include "viewer/overlay.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -155,11 +156,11 @@ void show_point(Measurement& measurement, ImDrawList& list, const Plot& plot) {
     measurement.marked = static_cast<std::size_t>(&point - points.data());
     const std::string there = length_text(point.distance_m);
     if (std::isnan(point.place.height_m)) {
-        ImGui::SetTooltip("after %s: no height", there.c_str());
+        ImGui::SetTooltip("%s", tr_format("after {}: no height", there).c_str());
         return;
     }
     list.AddCircleFilled(plot.place(point.distance_m, point.place.height_m), 4, kLine);
-    ImGui::SetTooltip("after %s: %.1f m", there.c_str(), point.place.height_m);
+    ImGui::SetTooltip("%s", tr_format("after {}: {:.1f} m", there, point.place.height_m).c_str());
 }
 
 void plot_profile(Measurement& measurement) {
@@ -184,12 +185,12 @@ void plot_profile(Measurement& measurement) {
 }
 
 std::string height_text(double height_m) {
-    return std::isnan(height_m) ? "no height" : fmt::format("{:.1f} m", height_m);
+    return std::isnan(height_m) ? tr("no height") : fmt::format("{:.1f} m", height_m);
 }
 
 std::string bearing_text(double azimuth_rad) {
     const double azimuth_deg = std::fmod(degrees(azimuth_rad) + 360, 360);
-    return fmt::format("{:.1f}° ({})", azimuth_deg, geo::compass_point(azimuth_deg));
+    return fmt::format("{:.1f}° ({})", azimuth_deg, compass_text(azimuth_deg));
 }
 
 std::string area_text(double area_m2) {
@@ -209,14 +210,16 @@ void lengths(const Profile& profile, bool is_straight) {
     const double last_m = profile.points.back().place.height_m;
     std::string text = length_text(profile.level_m);
     if (is_straight)
-        text += fmt::format(", azimuth {}, back {}", bearing_text(profile.azimuth_rad),
-                            bearing_text(profile.back_rad));
-    text += fmt::format("\n{} over the ground{}", length_text(profile.surface_m),
-                        profile.has_voids ? " without voids" : "");
-    text += fmt::format("\nfrom {} to {}", height_text(first_m), height_text(last_m));
+        text += tr_format(", azimuth {}, back {}", bearing_text(profile.azimuth_rad),
+                          bearing_text(profile.back_rad));
+    text += "\n";
+    text += profile.has_voids
+                ? tr_format("{} over the ground without voids", length_text(profile.surface_m))
+                : tr_format("{} over the ground", length_text(profile.surface_m));
+    text += "\n" + tr_format("from {} to {}", height_text(first_m), height_text(last_m));
     if (!std::isnan(last_m - first_m)) text += fmt::format(" ({:+.1f} m)", last_m - first_m);
-    text += fmt::format("\n{:.0f} m up, {:.0f} m down\nlowest {:.0f} m, highest {:.0f} m",
-                        profile.up_m, profile.down_m, profile.lowest_m, profile.highest_m);
+    text += "\n" + tr_format("{:.0f} m up, {:.0f} m down\nlowest {:.0f} m, highest {:.0f} m",
+                             profile.up_m, profile.down_m, profile.lowest_m, profile.highest_m);
     wrapped(text);
 }
 
@@ -226,19 +229,19 @@ void height_field(const char* label, float& height_m) {
 }
 
 void line_of_sight_of(Measurement& measurement) {
-    height_field("eye", measurement.eye_m);
+    height_field(tr_label("eye"), measurement.eye_m);
     ImGui::SameLine();
-    height_field("end, above ground", measurement.target_m);
+    height_field(tr_label("end, above ground"), measurement.target_m);
     const auto sight = line_of_sight(*measurement.profile, measurement.eye_m, measurement.target_m);
-    if (!sight) return wrapped("line of sight: an end has no height");
+    if (!sight) return wrapped(tr("line of sight: an end has no height"));
     if (sight->missing_m <= 0)
         return wrapped(
-            fmt::format("the end is visible, {:.1f} m above the line of sight over the "
-                        "ground after {}",
-                        -sight->missing_m, length_text(sight->highest.distance_m)));
+            tr_format("the end is visible, {:.1f} m above the line of sight over the "
+                      "ground after {}",
+                      -sight->missing_m, length_text(sight->highest.distance_m)));
     wrapped(
-        fmt::format("the end is hidden by the ground after {}; a target {:.1f} m higher is visible",
-                    length_text(sight->highest.distance_m), sight->missing_m));
+        tr_format("the end is hidden by the ground after {}; a target {:.1f} m higher is visible",
+                  length_text(sight->highest.distance_m), sight->missing_m));
 }
 
 }  // namespace
@@ -247,19 +250,19 @@ void measurement_panel(State& state) {
     Measurement& measurement = state.measurement;
     const Profile& profile = *measurement.profile;
     if (std::isnan(profile.lowest_m)) {
-        ImGui::TextWrapped("No heights along this line.");
+        ImGui::TextWrapped("%s", tr("No heights along this line."));
         return;
     }
     const bool is_straight = measurement.corners_m.size() == 2;
     plot_profile(measurement);
     lengths(profile, is_straight);
     if (measurement.area_m2)
-        ImGui::Text("area %s, closed by a straight line", area_text(*measurement.area_m2).c_str());
-    if (measurement.crosses_itself) ImGui::Text("no area: the outline crosses itself");
+        wrapped(tr_format("area {}, closed by a straight line", area_text(*measurement.area_m2)));
+    if (measurement.crosses_itself) wrapped(tr("no area: the outline crosses itself"));
     if (is_straight) line_of_sight_of(measurement);
-    if (ImGui::SmallButton("Save as CSV")) state.commands.push_back(Command::SaveProfile);
+    if (ImGui::SmallButton(tr_label("Save as CSV"))) state.commands.push_back(Command::SaveProfile);
     if (!measurement.follows_cursor) return;
-    ImGui::TextDisabled("Click sets a corner, Backspace removes the last, M ends");
+    wrapped(tr("Click sets a corner, Backspace removes the last, M ends"));
 }
 
 }  // namespace relevo::viewer

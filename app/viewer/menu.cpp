@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -67,7 +68,7 @@ void item(State& state, const char* label, const char* keys, Command command, bo
 
 /// The file name of a DEM, and the number of its other files.
 void recent_files(State& state) {
-    if (!ImGui::BeginMenu("Open recent", !state.recent.empty())) return;
+    if (!ImGui::BeginMenu(tr_label("Open recent"), !state.recent.empty())) return;
     for (std::size_t i = 0; i < state.recent.size(); ++i) {
         const std::vector<std::string>& dems = state.recent[i].files;
         if (ImGui::MenuItem(fmt::format("{}##{}", short_name(dems), i).c_str()))
@@ -78,24 +79,24 @@ void recent_files(State& state) {
 }
 
 void file_menu(State& state) {
-    if (!ImGui::BeginMenu("File")) return;
-    item(state, "Open...", "Ctrl+O", Command::Open);
+    if (!ImGui::BeginMenu(tr_label("File"))) return;
+    item(state, tr_label("Open..."), tr("Ctrl+O"), Command::Open);
     recent_files(state);
-    item(state, "How this DEM is read...", nullptr, Command::HowToRead);
-    item(state, "Next DEM in the folder", "Ctrl+Page down", Command::NextFile);
-    item(state, "Previous DEM in the folder", "Ctrl+Page up", Command::PreviousFile);
-    item(state, "Reload effects", "F5", Command::ReadAgain);
+    item(state, tr_label("How this DEM is read..."), nullptr, Command::HowToRead);
+    item(state, tr_label("Next DEM in the folder"), tr("Ctrl+Page down"), Command::NextFile);
+    item(state, tr_label("Previous DEM in the folder"), tr("Ctrl+Page up"), Command::PreviousFile);
+    item(state, tr_label("Reload effects"), "F5", Command::ReadAgain);
     ImGui::Separator();
-    item(state, "Save picture", "F12", Command::TakePicture);
-    item(state, "Export a picture...", "Ctrl+P", Command::ExportPicture);
-    item(state, "Copy command", "Ctrl+C", Command::CopyCommand);
-    item(state, "Save scene", "Ctrl+S", Command::SaveScene);
-    item(state, "Export overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
+    item(state, tr_label("Save picture"), "F12", Command::TakePicture);
+    item(state, tr_label("Export a picture..."), tr("Ctrl+P"), Command::ExportPicture);
+    item(state, tr_label("Copy command"), tr("Ctrl+C"), Command::CopyCommand);
+    item(state, tr_label("Save scene"), tr("Ctrl+S"), Command::SaveScene);
+    item(state, tr_label("Export overlay as GeoTIFF"), tr("Ctrl+E"), Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
-    item(state, "Save the day as a job", "Ctrl+J", Command::SaveJob);
-    item(state, "Film...", "F", Command::Film);
+    item(state, tr_label("Save the day as a job"), tr("Ctrl+J"), Command::SaveJob);
+    item(state, tr_label("Film..."), "F", Command::Film);
     ImGui::Separator();
-    item(state, "Quit", "Ctrl+Q", Command::Quit);
+    item(state, tr_label("Quit"), tr("Ctrl+Q"), Command::Quit);
     ImGui::EndMenu();
 }
 
@@ -105,7 +106,7 @@ void saved_views(State& state) {
     std::optional<std::size_t> gone;
     for (std::size_t i = 0; i < state.views.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::SmallButton("go")) {
+        if (ImGui::SmallButton(tr_label("go"))) {
             state.view_to_go_to = i;
             ImGui::CloseCurrentPopup();
         }
@@ -115,7 +116,7 @@ void saved_views(State& state) {
         state.views_changed = state.views_changed || ImGui::IsItemDeactivatedAfterEdit();
         ImGui::SameLine();
         if (ImGui::SmallButton("x")) gone = i;
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("Delete this view");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tr("Delete this view"));
         if (i < 9) {
             ImGui::SameLine();
             ImGui::TextDisabled("%d", static_cast<int>(i) + 1);
@@ -128,43 +129,44 @@ void saved_views(State& state) {
 }
 
 void view_menu(State& state) {
-    if (!ImGui::BeginMenu("View")) return;
-    item(state, "Whole DEM", "Home", Command::Whole);
-    item(state, "North up", "N", Command::NorthUp);
-    item(state, "Top view", "T", Command::FromAbove);
-    item(state, "Walk at eye height", "G", Command::Walk);
-    item(state, "Go to a place...", "Ctrl+F", Command::Find);
+    if (!ImGui::BeginMenu(tr_label("View"))) return;
+    item(state, tr_label("Whole DEM"), tr("Home"), Command::Whole);
+    item(state, tr_label("North up"), "N", Command::NorthUp);
+    item(state, tr_label("Top view"), "T", Command::FromAbove);
+    item(state, tr_label("Walk at eye height"), "G", Command::Walk);
+    item(state, tr_label("Go to a place..."), tr("Ctrl+F"), Command::Find);
     ImGui::Separator();
-    item(state, "Undo", "Ctrl+Z", Command::Undo, false, state.can_undo);
-    item(state, "Redo", "Ctrl+Y", Command::Redo, false, state.can_redo);
+    item(state, tr_label("Undo"), tr("Ctrl+Z"), Command::Undo, false, state.can_undo);
+    item(state, tr_label("Redo"), tr("Ctrl+Y"), Command::Redo, false, state.can_redo);
     ImGui::Separator();
-    item(state, "Save view", "B", Command::SaveView);
+    item(state, tr_label("Save view"), "B", Command::SaveView);
     saved_views(state);
     ImGui::EndMenu();
 }
 
 void show_menu(State& state) {
-    if (!ImGui::BeginMenu("Show")) return;
+    if (!ImGui::BeginMenu(tr_label("Show"))) return;
     Settings& settings = state.settings;
-    item(state, "Panels", "Tab", Command::Panels, settings.panels);
-    item(state, "Keyboard in the panels", "F6", Command::PanelKeys);
-    item(state, "Horizon and year of the point", "P", Command::Charts, settings.charts);
-    item(state, "Sun hours of the day", "O", Command::Overlay, state.document.overlay.shows_day());
-    item(state, "Comparison", "C", Command::Compare, state.compare_is_wanted);
+    item(state, tr_label("Panels"), tr("Tab"), Command::Panels, settings.panels);
+    item(state, tr_label("Keyboard in the panels"), "F6", Command::PanelKeys);
+    item(state, tr_label("Horizon and year of the point"), "P", Command::Charts, settings.charts);
+    item(state, tr_label("Sun hours of the day"), "O", Command::Overlay,
+         state.document.overlay.shows_day());
+    item(state, tr_label("Comparison"), "C", Command::Compare, state.compare_is_wanted);
     ImGui::Separator();
-    if (ImGui::MenuItem("Light theme", nullptr, settings.light_style))
+    if (ImGui::MenuItem(tr_label("Light theme"), nullptr, settings.light_style))
         settings.light_style = !settings.light_style;
-    if (ImGui::BeginMenu("Font size")) {
+    if (ImGui::BeginMenu(tr_label("Font size"))) {
         for (const int px : {13, 16, 20, 24, 28})
             if (ImGui::MenuItem(fmt::format("{}", px).c_str(), nullptr, settings.text_px == px))
                 settings.text_px = px;
         ImGui::EndMenu();
     }
-    if (ImGui::BeginMenu("Coordinates")) {
+    if (ImGui::BeginMenu(tr_label("Coordinates"))) {
         for (const auto& [name, kind] :
              {std::pair("UTM", Coordinates::Utm), std::pair("MGRS", Coordinates::Mgrs),
-              std::pair("Degrees", Coordinates::Degrees)})
-            if (ImGui::MenuItem(name, nullptr, settings.coordinates == kind))
+              std::pair(tr_later("Degrees"), Coordinates::Degrees)})
+            if (ImGui::MenuItem(tr_label(name), nullptr, settings.coordinates == kind))
                 settings.coordinates = kind;
         ImGui::EndMenu();
     }
@@ -186,12 +188,12 @@ std::optional<Command> command_of(const KeyPress& press) {
 
 void menu_bar(State& state) {
     if (!ImGui::BeginMainMenuBar()) return;
-    if (std::exchange(state.opens_menu, false)) ImGui::OpenPopup("File");
+    if (std::exchange(state.opens_menu, false)) ImGui::OpenPopup(tr_label("File"));
     file_menu(state);
     view_menu(state);
     show_menu(state);
-    if (ImGui::BeginMenu("Help")) {
-        item(state, "Keys", "H", Command::Keys);
+    if (ImGui::BeginMenu(tr_label("Help"))) {
+        item(state, tr_label("Keys"), "H", Command::Keys);
         ImGui::EndMenu();
     }
     ImGui::EndMainMenuBar();

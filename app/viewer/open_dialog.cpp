@@ -12,8 +12,10 @@
 #include <imgui_stdlib.h>
 
 #include "base/text.h"
+#include "viewer/document.h"
 #include "viewer/settings.h"
 #include "viewer/sheet.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -40,9 +42,9 @@ bool is_installed(const std::string& program) {
     });
 }
 
-std::vector<std::string> lines_of(const char* command) {
+std::vector<std::string> lines_of(const std::string& command) {
     std::vector<std::string> lines;
-    std::FILE* const pipe = popen(command, "r");
+    std::FILE* const pipe = popen(command.c_str(), "r");
     if (!pipe) return lines;
     std::string text;
     std::array<char, 4096> piece{};
@@ -57,14 +59,14 @@ std::vector<std::string> lines_of(const char* command) {
 /// Opens the dialog of the desktop; its files, if any, come from another thread.
 /// @returns none: neither zenity nor kdialog is installed
 std::optional<std::future<std::vector<std::string>>> ask_desktop() {
-    const char* command = nullptr;
+    std::string command;
     if (is_installed("zenity"))
-        command =
-            "zenity --file-selection --multiple --separator='\n' --title='Open a DEM' "
-            "2>/dev/null";
+        command = fmt::format(
+            "zenity --file-selection --multiple --separator='\n' --title={} 2>/dev/null",
+            quoted(tr("Open a DEM")));
     else if (is_installed("kdialog"))
         command = "kdialog --getopenfilename . --multiple --separate-output 2>/dev/null";
-    if (!command) return std::nullopt;
+    if (command.empty()) return std::nullopt;
     return std::async(std::launch::async, [command] { return lines_of(command); });
 }
 
@@ -121,7 +123,7 @@ void OpenDialog::list() {
         if (ImGui::Selectable((printable(name) + "/").c_str())) return go_to(folder_ / name);
     for (const std::string& name : dems_)
         if (ImGui::Selectable(printable(name).c_str())) return choose(folder_ / name);
-    if (dems_.empty()) ImGui::TextDisabled("no DEM in this folder");
+    if (dems_.empty()) ImGui::TextDisabled("%s", tr("no DEM in this folder"));
 }
 
 void OpenDialog::draw(glm::vec2 size_px) {
@@ -131,7 +133,7 @@ void OpenDialog::draw(glm::vec2 size_px) {
     ImGui::SetNextWindowSize(
         {std::min(size_px.x - 20, 26 * line), std::min(size_px.y - 20, 20 * line)},
         ImGuiCond_Appearing);
-    if (ImGui::Begin("Open a DEM", &is_open_, ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(tr_label("Open a DEM"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
         if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-4 * line);
         ImGui::PushID(visits_);
@@ -140,7 +142,7 @@ void OpenDialog::draw(glm::vec2 size_px) {
             ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
         ImGui::PopID();
         ImGui::SameLine();
-        if (ImGui::Button("Open", {-1, 0}) || is_done) enter();
+        if (ImGui::Button(tr_label("Open"), {-1, 0}) || is_done) enter();
         if (ImGui::BeginChild("files", {0, 0}, /*border=*/true)) list();
         ImGui::EndChild();
         if (closes_sheet()) close();

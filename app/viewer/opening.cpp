@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "effect/search_path.h"
+#include "viewer/translation.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -36,7 +37,7 @@ void Opening::go_back(const Wanted& first) {
 }
 
 void Opening::cancel() {
-    messages_.note("opening " + printable(next_->scene.dems.front()) + " was cancelled");
+    messages_.note(tr_format("opening {} was cancelled", printable(next_->scene.dems.front())));
     discard_.take(std::move(next_->thread));
     next_.reset();
 }

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "geo/format.h"
 #include "geo/geodetic.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -45,8 +46,8 @@ void draw_sides(float line_px, float top_px) {
                            4);
         list.AddText(at, kInk, words);
     };
-    label("as it was", true);
-    label("as it is now", false);
+    label(tr("as it was"), true);
+    label(tr("as it is now"), false);
 }
 
 namespace {
@@ -83,8 +84,8 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     list.AddCircleFilled(middle, kNorthRadius_px, kShade);
     list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
     list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
-    const ImVec2 letter = tip(north, 26);
-    list.AddText({letter.x - 5, letter.y - 8}, kInk, "N");
+    const ImVec2 letter = tip(north, 26), letter_px = ImGui::CalcTextSize(compass_text(0));
+    list.AddText({letter.x - letter_px.x / 2, letter.y - letter_px.y / 2}, kInk, compass_text(0));
     if (!middle_m) return;
     // A scale bar across the view, at the depth of the ground in the centre.
     const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);
@@ -92,7 +93,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     constexpr double kBar_px = 160;
     const double length_m = round_length(kBar_px * m_a_px);
     const auto width = static_cast<float>(length_m / m_a_px);
-    const std::string text = length_text(length_m) + " here";
+    const std::string text = tr_format("{} here", length_text(length_m));
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const ImVec2 end{size_px.x - 24, size_px.y - 24};
     const float wide = std::max(width, extent.x), tall = extent.y + 10;
@@ -103,61 +104,74 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, kInk, text.c_str());
 }
 
+const char* compass_text(double azimuth_deg) {
+    static constexpr std::array<const char*, 16> kPoints = {
+        tr_later("N"), tr_later("NNE"), tr_later("NE"), tr_later("ENE"),
+        tr_later("E"), tr_later("ESE"), tr_later("SE"), tr_later("SSE"),
+        tr_later("S"), tr_later("SSW"), tr_later("SW"), tr_later("WSW"),
+        tr_later("W"), tr_later("WNW"), tr_later("NW"), tr_later("NNW")};
+    const double turn = std::fmod(azimuth_deg + 360, 360) / 360;
+    return tr(kPoints[static_cast<std::size_t>(16 * turn + 0.5) % 16]);
+}
+
 std::string slope_text(double slope_deg, double aspect_deg) {
     if (std::isnan(slope_deg)) return "";
-    if (std::isnan(aspect_deg)) return fmt::format("{:.1f} degrees", slope_deg);
-    return fmt::format("{:.1f} degrees, facing {}", slope_deg,
-                       geo::compass_point(std::fmod(aspect_deg + 360, 360)));
+    if (std::isnan(aspect_deg)) return tr_format("{:.1f} degrees", slope_deg);
+    return tr_format("{:.1f} degrees, facing {}", slope_deg, compass_text(aspect_deg));
 }
 
 void key_sheet() {
     static constexpr std::array<std::array<const char*, 2>, 36> kKeys = {{
-        {"Left drag", "move the ground"},
-        {"Right drag, Shift + drag", "turn about the ground under the cursor"},
-        {"Middle drag", "look around"},
-        {"Wheel, two fingers", "zoom to the ground under the cursor"},
-        {"Shift + wheel", "move the ground"},
-        {"Drag the sun", "along its path of the day"},
-        {"Arrows", "turn about the centre"},
-        {"Page up, Page down", "zoom in, zoom out"},
-        {"W A S D, Q E", "fly, down and up; faster with Shift"},
-        {"G", "walk at the clicked point or in the middle, and fly again"},
-        {"Ctrl + F", "go to coordinates or a name"},
-        {"Home, N, T", "whole DEM, north up, top view"},
-        {"[ ]", "half an hour earlier, later; with Shift a day"},
-        {"Space", "play and pause the time"},
-        {"Click", "direct sun of the day at a point, its horizon and year"},
-        {"Right click", "stand there, look there, measure from there, copy its coordinates"},
-        {"P", "horizon and year on and off"},
-        {"M", "measure from the point: clicks set corners, Backspace goes back, M ends"},
-        {"C", "compare: the left side stays, the right side follows; drag the line"},
-        {"O", "sun hours of the day on the ground, on and off"},
-        {"F12", "save the image as a picture"},
-        {"Ctrl + P", "export a picture: size, format, samples, stamps"},
-        {"Ctrl + C", "copy the command for this picture"},
-        {"Ctrl + S", "save the scene"},
-        {"Ctrl + E", "export the sun overlay as GeoTIFF"},
-        {"Ctrl + J", "save the day's hours as a job"},
-        {"F", "film: a day, a year, orbits and flights, on a time line"},
-        {"Ctrl + O", "open a DEM, scene, photograph, track ...; files can be dropped too"},
-        {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
-        {"B, then 1 to 9", "save the view; go to a saved view"},
-        {"F5", "reload effects (automatic if their files change)"},
-        {"Ctrl + Z, Ctrl + Y", "undo, redo"},
-        {"Tab", "panels and menu on and off"},
-        {"F6, F10, Esc", "keyboard to the panels, to the menu, back to the scene"},
-        {"H, Esc", "this sheet; Esc also cancels opening a DEM"},
-        {"Ctrl + Q", "quit"},
+        {tr_later("Left drag"), tr_later("move the ground")},
+        {tr_later("Right drag, Shift + drag"), tr_later("turn about the ground under the cursor")},
+        {tr_later("Middle drag"), tr_later("look around")},
+        {tr_later("Wheel, two fingers"), tr_later("zoom to the ground under the cursor")},
+        {tr_later("Shift + wheel"), tr_later("move the ground")},
+        {tr_later("Drag the sun"), tr_later("along its path of the day")},
+        {tr_later("Arrows"), tr_later("turn about the centre")},
+        {tr_later("Page up, Page down"), tr_later("zoom in, zoom out")},
+        {"W A S D, Q E", tr_later("fly, down and up; faster with Shift")},
+        {"G", tr_later("walk at the clicked point or in the middle, and fly again")},
+        {tr_later("Ctrl + F"), tr_later("go to coordinates or a name")},
+        {tr_later("Home, N, T"), tr_later("whole DEM, north up, top view")},
+        {"[ ]", tr_later("half an hour earlier, later; with Shift a day")},
+        {tr_later("Space"), tr_later("play and pause the time")},
+        {tr_later("Click"), tr_later("direct sun of the day at a point, its horizon and year")},
+        {tr_later("Right click"),
+         tr_later("stand there, look there, measure from there, copy its coordinates")},
+        {"P", tr_later("horizon and year on and off")},
+        {"M", tr_later("measure from the point: clicks set corners, Backspace goes back, M ends")},
+        {"C", tr_later("compare: the left side stays, the right side follows; drag the line")},
+        {"O", tr_later("sun hours of the day on the ground, on and off")},
+        {"F12", tr_later("save the image as a picture")},
+        {tr_later("Ctrl + P"), tr_later("export a picture: size, format, samples, stamps")},
+        {tr_later("Ctrl + C"), tr_later("copy the command for this picture")},
+        {tr_later("Ctrl + S"), tr_later("save the scene")},
+        {tr_later("Ctrl + E"), tr_later("export the sun overlay as GeoTIFF")},
+        {tr_later("Ctrl + J"), tr_later("save the day's hours as a job")},
+        {"F", tr_later("film: a day, a year, orbits and flights, on a time line")},
+        {tr_later("Ctrl + O"),
+         tr_later("open a DEM, scene, photograph, track ...; files can be dropped too")},
+        {tr_later("Ctrl + Page down, Page up"), tr_later("next, previous DEM of the folder")},
+        {tr_later("B, then 1 to 9"), tr_later("save the view; go to a saved view")},
+        {"F5", tr_later("reload effects (automatic if their files change)")},
+        {tr_later("Ctrl + Z, Ctrl + Y"), tr_later("undo, redo")},
+        {tr_later("Tab"), tr_later("panels and menu on and off")},
+        {tr_later("F6, F10, Esc"),
+         tr_later("keyboard to the panels, to the menu, back to the scene")},
+        {tr_later("H, Esc"), tr_later("this sheet; Esc also cancels opening a DEM")},
+        {tr_later("Ctrl + Q"), tr_later("quit")},
     }};
     ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2},
                             ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
+    ImGui::Begin(tr_label("Keys"), nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
     if (ImGui::BeginTable("keys", 2)) {
         for (const auto& [key, what] : kKeys) {
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(key);
+            ImGui::TextUnformatted(tr(key));
             ImGui::TableNextColumn();
-            ImGui::TextDisabled("%s", what);
+            ImGui::TextDisabled("%s", tr(what));
         }
         ImGui::EndTable();
     }

@@ -19,6 +19,9 @@ std::string length_text(double length_m);
 /// The largest 1, 2 or 5 times a power of ten that is not above `length`.
 double round_length(double length);
 
+/// "SSW", in the user's language.
+const char* compass_text(double azimuth_deg);
+
 /// "2.9 degrees, facing S".
 /// @param slope_deg   NaN: the text is empty
 /// @param aspect_deg  downhill, from true north; NaN on level ground

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "viewer/translation.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -149,8 +150,8 @@ void OverlayController::start_export() {
     exports_when_complete_ = waits_for_posts();
     if (exports_when_complete_) return;
     if (!requested_ || requested_->file)
-        return messages_.show("there is no sun overlay to export; O shows the day's sun hours");
-    if (export_) return messages_.show("an export is running already");
+        return messages_.show(tr("there is no sun overlay to export; O shows the day's sun hours"));
+    if (export_) return messages_.show(tr("an export is running already"));
     const bool is_in_memory = requested_->dem->field.reduction == 1;
     exports_when_complete_ = is_in_memory && !(is_complete() && is_displayed());
     if (exports_when_complete_) return;
@@ -160,7 +161,7 @@ void OverlayController::start_export() {
 
 void OverlayController::cancel_export() {
     exports_when_complete_ = false;
-    if (export_) messages_.note("export cancelled; no file was written");
+    if (export_) messages_.note(tr("export cancelled; no file was written"));
     discard_.take(std::move(export_));
 }
 
@@ -182,8 +183,8 @@ bool OverlayController::poll_export() {
         const OverlayWanted& of = export_->wanted();
         exported_.push_back({of, file, name});
         messages_.report(
-            fmt::format("{}: {}, as written by relevo {}; scenes and commands include it", file,
-                        of.title, verb_of(of.raster.figure)));
+            tr_format("{}: {}, as written by relevo {}; scenes and commands include it", file,
+                      of.title, verb_of(of.raster.figure)));
     });
     export_.reset();
     return true;
@@ -208,7 +209,7 @@ void OverlayController::copy_choice_to(scene::Overlay& overlay) const {
 
 std::string OverlayController::missing_note() const {
     const bool is_missing = waits_for_posts() || (requested_ && !requested_->file && !exported());
-    return is_missing ? ", without the overlay: Ctrl+E exports it to a file first" : "";
+    return is_missing ? tr("without the overlay: Ctrl+E exports it to a file first") : "";
 }
 
 Coloured OverlayController::coloured(const Picture& image) const {

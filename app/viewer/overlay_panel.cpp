@@ -13,27 +13,29 @@
 #include "base/text.h"
 #include "chart/legend.h"
 #include "viewer/image_texture.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
 
-constexpr std::array<const char*, 8> kNames = {"no overlay",
-                                               "from the scene",
-                                               "sun hours",
-                                               "first light of the day",
-                                               "last light of the day",
-                                               "irradiation",
-                                               "direct sun at this time",
-                                               "sky view"};
-constexpr std::array<const char*, 4> kPeriods = {"of the day", "of the week", "of the year",
-                                                 "from ... to ..."};
+constexpr std::array<const char*, 8> kNames = {tr_later("no overlay"),
+                                               tr_later("from the scene"),
+                                               tr_later("sun hours"),
+                                               tr_later("first light of the day"),
+                                               tr_later("last light of the day"),
+                                               tr_later("irradiation"),
+                                               tr_later("direct sun at this time"),
+                                               tr_later("sky view")};
+constexpr std::array<const char*, 4> kPeriods = {tr_later("of the day"), tr_later("of the week"),
+                                                 tr_later("of the year"),
+                                                 tr_later("from ... to ...")};
 
 /// Name of an overlay kind; that of the scene is its file's name.
 std::string name_of(const State& state, OverlayKind kind) {
     const std::optional<scene::Overlay>& of_scene = state.document.scene.overlay;
     if (kind == OverlayKind::File && of_scene)
         return printable(std::filesystem::path(of_scene->file).filename().string());
-    return kNames[static_cast<std::size_t>(kind)];
+    return tr(kNames[static_cast<std::size_t>(kind)]);
 }
 
 void choice(State& state) {
@@ -64,7 +66,7 @@ void date_field(State& state, const char* label, sun::Date& date) {
         try {
             const sun::Date wanted = sun::parse_date(text);
             if (wanted.year < 1900 || wanted.year > 2100)
-                bad_input(text + ": expected a year from 1900 to 2100");
+                bad_input(tr_format("{}: expected a year from 1900 to 2100", text));
             date = wanted;
             state.step = true;
         } catch (const Error& error) {
@@ -77,9 +79,9 @@ void period(State& state) {
     OverlayChoice& chosen = state.document.overlay;
     ImGui::SetNextItemWidth(-1);
     const auto now = static_cast<std::size_t>(chosen.period);
-    if (ImGui::BeginCombo("##period", kPeriods[now])) {
+    if (ImGui::BeginCombo("##period", tr(kPeriods[now]))) {
         for (std::size_t i = 0; i < kPeriods.size(); ++i) {
-            if (!ImGui::Selectable(kPeriods[i], i == now)) continue;
+            if (!ImGui::Selectable(tr_label(kPeriods[i]), i == now)) continue;
             chosen.period = static_cast<OverlayPeriod>(i);
             state.step = true;
             const sun::Date shown = state.document.zone.local(state.document.utc).wall.date;
@@ -88,40 +90,42 @@ void period(State& state) {
         ImGui::EndCombo();
     }
     if (chosen.period != OverlayPeriod::Range) return;
-    date_field(state, "from", chosen.first);
+    date_field(state, tr("from"), chosen.first);
     ImGui::SameLine();
-    date_field(state, "to", chosen.last);
+    date_field(state, tr("to"), chosen.last);
     if (sun::days_between(chosen.first, chosen.last) < 0)
-        ImGui::TextDisabled("the last day is before the first: one day");
+        ImGui::TextDisabled("%s", tr("the last day is before the first: one day"));
 }
 
 /// Resolution of the overlay, and progress.
 void work(const State& state) {
     const ImVec2 size{-1, ImGui::GetTextLineHeight()};
     if (state.is_preview)
-        ImGui::TextDisabled("waiting until all posts are read ...");
+        ImGui::TextDisabled("%s", tr("waiting until all posts are read ..."));
     else if (state.overlay_progress)
-        ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "refining ...");
+        ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, tr("refining ..."));
     else if (state.overlay && state.overlay->raster && !state.overlay->is_whole())
-        ImGui::TextWrapped(
-            "Every %.1f-th post in each direction, limited by --memory. The exported GeoTIFF has "
-            "all posts.",
-            state.overlay->every);
+        ImGui::TextWrapped("%s", tr_format("Every {:.1f}-th post in each direction, limited by "
+                                           "--memory. The exported GeoTIFF has all posts.",
+                                           state.overlay->every)
+                                     .c_str());
 }
 
 void save(State& state) {
     if (state.saving_progress) {
         ImGui::ProgressBar(static_cast<float>(*state.saving_progress),
-                           {-90, ImGui::GetTextLineHeight()}, "writing ...");
+                           {-90, ImGui::GetTextLineHeight()}, tr("writing ..."));
         ImGui::SameLine();
-        if (ImGui::SmallButton("Cancel")) state.commands.push_back(Command::GiveUpSaving);
+        if (ImGui::SmallButton(tr_label("Cancel"))) state.commands.push_back(Command::GiveUpSaving);
         return;
     }
-    if (ImGui::Button("Export as GeoTIFF (Ctrl+E)")) state.commands.push_back(Command::SaveOverlay);
+    if (ImGui::Button(tr_label("Export as GeoTIFF (Ctrl+E)")))
+        state.commands.push_back(Command::SaveOverlay);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
-            "The same file as relevo sun writes. Scenes and commands include it then.");
-    if (!state.saved_overlay.empty()) ImGui::TextDisabled("in %s", state.saved_overlay.c_str());
+            "%s", tr("The same file as relevo sun writes. Scenes and commands include it then."));
+    if (!state.saved_overlay.empty())
+        ImGui::TextDisabled("%s", tr_format("in {}", state.saved_overlay).c_str());
 }
 
 }  // namespace
@@ -146,21 +150,22 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
     const bool is_first = of.figure == session::SunFigure::FirstLight;
     if (is_first || of.figure == session::SunFigure::LastLight) {
         if (!overlay.raster) return "";
-        if (std::isnan(value)) return "no direct sun here";
+        if (std::isnan(value)) return tr("no direct sun here");
         constexpr double kMinute_s = 60;
         const sun::CivilTime at = of.zone.local(of.begin + kMinute_s * value).wall;
-        return fmt::format("{} light {:02}:{:02}", is_first ? "first" : "last", at.hour, at.minute);
+        return is_first ? tr_format("first light {:02}:{:02}", at.hour, at.minute)
+                        : tr_format("last light {:02}:{:02}", at.hour, at.minute);
     }
-    if (std::isnan(value)) return overlay.raster ? "no overlay value here" : "";
+    if (std::isnan(value)) return overlay.raster ? tr("no overlay value here") : "";
     switch (of.figure) {
         case session::SunFigure::Shadow:
-            return value > 0 ? "in the sun" : "in shade";
+            return value > 0 ? tr("in the sun") : tr("in shade");
         case session::SunFigure::SkyView:
-            return fmt::format("sky view {:.3f}", value);
+            return tr_format("sky view {:.3f}", value);
         case session::SunFigure::Irradiation:
-            return fmt::format("irradiation {:.2f} kWh/m2", value);
+            return tr_format("irradiation {:.2f} kWh/m2", value);
         default:
-            return fmt::format("sun hours {:.2f} h", value);
+            return tr_format("sun hours {:.2f} h", value);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -18,18 +19,20 @@ void export_panel(State& state) {
     const auto button = [&](const char* name, Command command) {
         if (ImGui::Button(name)) state.commands.push_back(command);
     };
-    button("Picture (F12)", Command::TakePicture);
+    button(tr_label("Picture (F12)"), Command::TakePicture);
     ImGui::SameLine();
-    button("Export...", Command::ExportPicture);
-    button("Copy command", Command::CopyCommand);
+    button(tr_label("Export..."), Command::ExportPicture);
+    button(tr_label("Copy command"), Command::CopyCommand);
     ImGui::SameLine();
-    button("Save scene", Command::SaveScene);
+    button(tr_label("Save scene"), Command::SaveScene);
 }
 
 /// Keeps a constant height for the panel's text, so that panels below do not move.
 void roomy_point_panel(State& state) {
     const float top = ImGui::GetCursorPosY();
+    ImGui::PushTextWrapPos();
     point_panel(state);
+    ImGui::PopTextWrapPos();
     const float used = ImGui::GetCursorPosY() - top;
     state.point_room_px = state.chosen ? std::max(state.point_room_px, used) : 0;
     ImGui::SetCursorPosY(top + std::max(state.point_room_px, used));
@@ -60,14 +63,14 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     const float left = ImGui::GetWindowPos().x;
     state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
     state.measurement.marked.reset();
-    if (state.measurement.profile && ImGui::CollapsingHeader("Measured line", kOpen))
+    if (state.measurement.profile && ImGui::CollapsingHeader(tr_label("Measured line"), kOpen))
         measurement_panel(state);
-    if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
-    if (ImGui::CollapsingHeader("View")) view_panel(state, double{size_px.x} / size_px.y);
-    if (ImGui::CollapsingHeader("Layers", kOpen)) layers_panel(state);
-    if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
-    if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
-    if (ImGui::CollapsingHeader("Export", kOpen)) export_panel(state);
+    if (ImGui::CollapsingHeader(tr_label("Sun"), kOpen)) sun_panel(state);
+    if (ImGui::CollapsingHeader(tr_label("View"))) view_panel(state, double{size_px.x} / size_px.y);
+    if (ImGui::CollapsingHeader(tr_label("Layers"), kOpen)) layers_panel(state);
+    if (ImGui::CollapsingHeader(tr_label("Point"), kOpen)) roomy_point_panel(state);
+    if (ImGui::CollapsingHeader(tr_label("Effects"), kOpen)) effects_panel(state);
+    if (ImGui::CollapsingHeader(tr_label("Export"), kOpen)) export_panel(state);
     ImGui::End();
 }
 
@@ -88,7 +91,7 @@ void status_line(const State& state, const std::string& work) {
     if (state.cursor) {
         const Cursor& at = *state.cursor;
         text = coordinates_text(at.place, state.settings.coordinates) + "   " +
-               (std::isnan(at.place.height_m) ? "no height"
+               (std::isnan(at.place.height_m) ? tr("no height")
                                               : fmt::format("{:.1f} m", at.place.height_m));
         if (const std::string slope = slope_text(at.slope_deg, at.aspect_deg); !slope.empty())
             text += "   " + slope;
@@ -96,9 +99,11 @@ void status_line(const State& state, const std::string& work) {
             if (const std::string words = overlay_words(*state.overlay, at.place); !words.empty())
                 text += "   " + words;
     } else {
-        text = "H: keys";
+        text = tr("H: keys");
     }
-    if (state.is_preview) text += "   reading all posts; terrain and shadows are coarse until then";
+    if (state.is_preview)
+        text +=
+            std::string("   ") + tr("reading all posts; terrain and shadows are coarse until then");
     if (!work.empty()) text += "   " + work;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
@@ -115,7 +120,7 @@ void waiting_text(const scene::Scene& scene) {
     ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 20, size.y});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::Text("opening %s ...", printable(scene.dems.front()).c_str());
+    ImGui::TextUnformatted(tr_format("opening {} ...", printable(scene.dems.front())).c_str());
     ImGui::End();
 }
 

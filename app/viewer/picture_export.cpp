@@ -14,6 +14,7 @@
 #include "session/picture_file.h"
 #include "session/record.h"
 #include "viewer/document.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 
@@ -49,8 +50,8 @@ void PictureExport::run() {
         failure_ = std::current_exception();
     } catch (const std::exception& error) {
         failure_ = std::make_exception_ptr(Error(
-            ErrorCode::Failed, fmt::format("export: {}: {}; use a smaller size or fewer samples",
-                                           printable(order_.path), error.what())));
+            ErrorCode::Failed, tr_format("export: {}: {}; use a smaller size or fewer samples",
+                                         printable(order_.path), error.what())));
     }
     is_done_ = true;
     on_change_();
@@ -91,8 +92,8 @@ std::string PictureExport::write() {
     if (const auto where = session::georeference_of(session)) session::write_beside(beside, *where);
     if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
     files.finish_outputs();
-    std::string text = fmt::format("{}: picture saved, {} x {}", printable(order_.path),
-                                   scene.width_px, scene.height_px);
+    std::string text = tr_format("{}: picture saved, {} x {}", printable(order_.path),
+                                 scene.width_px, scene.height_px);
     for (const std::string& note : session.stamp_notes())
         text += "; " + note;
     return text;

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -16,7 +17,7 @@ std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
 
 std::string duration_text(double seconds) {
     const auto minutes = static_cast<int>(std::lround(seconds / 60));
-    return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+    return tr_format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
 void go_to_edge(State& state, const char* name, sun::Instant utc) {
@@ -36,13 +37,14 @@ ImVec4 colour_of(bool lit, bool on_light) {
 std::string light_words(const PointLight& point, sun::Instant now, const sun::Zone& zone) {
     const auto next = point.next_change(now);
     if (point.is_lit(now))
-        return next ? "in the sun until " + clock_text(*next, zone) : "in the sun until midnight";
-    if (next) return "in shade until " + clock_text(*next, zone);
-    std::string text = point.lit.empty() ? "no sun today" : "no more sun today";
+        return next ? tr_format("in the sun until {}", clock_text(*next, zone))
+                    : tr("in the sun until midnight");
+    if (next) return tr_format("in shade until {}", clock_text(*next, zone));
+    std::string text = point.lit.empty() ? tr("no sun today") : tr("no more sun today");
     if (point.tomorrow)
-        text += ", tomorrow from " + clock_text(*point.tomorrow, zone);
+        text += tr_format(", tomorrow from {}", clock_text(*point.tomorrow, zone));
     else if (point.tomorrow_is_known)
-        text += ", nor tomorrow";
+        text += tr(", nor tomorrow");
     return text;
 }
 
@@ -55,27 +57,29 @@ std::string span_text(const LitSpan& span) {
 
 /// "no sun at all on 34 days, 30 of them from 8 Dec to 6 Jan"
 std::string dark_text(const YearPicture& year) {
-    if (year.dark_days == 0) return "direct sun on every day of the year";
-    std::string text =
-        fmt::format("no direct sun on {} day{}", year.dark_days, year.dark_days == 1 ? "" : "s");
-    if (year.dark_row < year.dark_days) text += fmt::format(", {} of them", year.dark_row);
+    if (year.dark_days == 0) return tr("direct sun on every day of the year");
+    std::string text = tr_format_plural("no direct sun on {} day", "no direct sun on {} days",
+                                        static_cast<std::size_t>(year.dark_days));
+    if (year.dark_row < year.dark_days) text += tr_format(", {} of them", year.dark_row);
     const auto& [first, last] = year.dark;
     return text + (first == last ? ", " + day_label(first)
-                                 : fmt::format(", {} to {}", day_label(first), day_label(last)));
+                                 : tr_format(", {} to {}", day_label(first), day_label(last)));
 }
 
 /// Warns of voids and unmodelled terrain.
 void doubts(const PointLight& point) {
     if (point.not_known_s > 0)
-        ImGui::TextWrapped("%s of it are uncertain because of voids in the DEM.",
-                           duration_text(point.not_known_s).c_str());
+        ImGui::TextWrapped("%s", tr_format("{} of it are uncertain because of voids in the DEM.",
+                                           duration_text(point.not_known_s))
+                                     .c_str());
     if (point.open_deg.empty()) return;
     std::string where;
     for (const glm::dvec2& open : point.open_deg) {
         where += fmt::format("{}{:.0f}°", where.empty() ? "" : ", ", open.x);
-        if (std::lround(open.x) != std::lround(open.y)) where += fmt::format(" to {:.0f}°", open.y);
+        if (std::lround(open.x) != std::lround(open.y)) where += tr_format(" to {:.0f}°", open.y);
     }
-    ImGui::TextWrapped("Mountains outside the DEM may hide more: azimuth %s.", where.c_str());
+    ImGui::TextWrapped(
+        "%s", tr_format("Mountains outside the DEM may hide more: azimuth {}.", where).c_str());
 }
 
 void light_of(State& state, const PointLight& point) {
@@ -83,21 +87,26 @@ void light_of(State& state, const PointLight& point) {
     const bool lit = point.is_lit(state.document.utc);
     ImGui::TextColored(colour_of(lit, state.settings.light_style), "%s",
                        light_words(point, state.document.utc, zone).c_str());
-    for (const LitSpan& span : point.lit)
-        ImGui::Text("%s to %s%s",
-                    span.from_midnight ? "midnight" : clock_text(span.begin, zone).c_str(),
-                    span.to_midnight ? "midnight" : clock_text(span.end, zone).c_str(),
-                    point.lit.size() > 1 ? span_text(span).c_str() : "");
+    for (const LitSpan& span : point.lit) {
+        const std::string from = span.from_midnight ? tr("midnight") : clock_text(span.begin, zone);
+        const std::string to = span.to_midnight ? tr("midnight") : clock_text(span.end, zone);
+        ImGui::TextUnformatted(
+            (tr_format("{} to {}", from, to) + (point.lit.size() > 1 ? span_text(span) : ""))
+                .c_str());
+    }
     const bool has_first = !point.lit.empty() && !point.lit.front().from_midnight;
     const bool has_last = !point.lit.empty() && !point.lit.back().to_midnight;
-    if (has_first) go_to_edge(state, "First light", point.lit.front().begin);
-    if (has_last) go_to_edge(state, "Last light", point.lit.back().end);
+    if (has_first) go_to_edge(state, tr_label("First light"), point.lit.front().begin);
+    if (has_last) go_to_edge(state, tr_label("Last light"), point.lit.back().end);
     if (has_first || has_last) ImGui::NewLine();
-    ImGui::Text("%s of sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
-                duration_text(point.flat_s).c_str());
+    ImGui::TextUnformatted(tr_format("{} of sun, {} over a level horizon",
+                                     duration_text(point.lit_s), duration_text(point.flat_s))
+                               .c_str());
     if (point.year)
-        ImGui::Text("%.0f h in %d, %.0f h over a level horizon", point.year->lit_s / 3600,
-                    point.of.date.year, point.year->level_s / 3600);
+        ImGui::TextUnformatted(tr_format("{:.0f} h in {}, {:.0f} h over a level horizon",
+                                         point.year->lit_s / 3600, point.of.date.year,
+                                         point.year->level_s / 3600)
+                                   .c_str());
     if (point.year) ImGui::Text("%s", dark_text(*point.year).c_str());
     doubts(point);
 }
@@ -107,10 +116,11 @@ void light_of(State& state, const PointLight& point) {
 void point_menu(State& state, bool opens) {
     if (opens) ImGui::OpenPopup("point");
     if (!ImGui::BeginPopup("point")) return;
-    if (ImGui::MenuItem("Stand here")) state.commands.push_back(Command::StandHere);
-    if (ImGui::MenuItem("Look there")) state.commands.push_back(Command::LookThere);
-    if (ImGui::MenuItem("Measure from here", "M")) state.commands.push_back(Command::Measure);
-    if (state.chosen && ImGui::MenuItem("Copy coordinates"))
+    if (ImGui::MenuItem(tr_label("Stand here"))) state.commands.push_back(Command::StandHere);
+    if (ImGui::MenuItem(tr_label("Look there"))) state.commands.push_back(Command::LookThere);
+    if (ImGui::MenuItem(tr_label("Measure from here"), "M"))
+        state.commands.push_back(Command::Measure);
+    if (state.chosen && ImGui::MenuItem(tr_label("Copy coordinates")))
         ImGui::SetClipboardText(
             coordinates_text(*state.chosen, state.settings.coordinates).c_str());
     ImGui::EndPopup();
@@ -118,26 +128,26 @@ void point_menu(State& state, bool opens) {
 
 void point_panel(State& state) {
     if (!state.chosen) {
-        ImGui::TextDisabled("Click the ground to see its direct sun of the day.");
+        ImGui::TextDisabled("%s", tr("Click the ground to see its direct sun of the day."));
         return;
     }
     const geo::Geodetic& place = *state.chosen;
     for (const Coordinates kind : {Coordinates::Degrees, Coordinates::Utm, Coordinates::Mgrs})
         ImGui::Text("%s%s", kind == Coordinates::Mgrs ? "MGRS " : "",
                     coordinates_text(place, kind).c_str());
-    ImGui::Text("height %.1f m", place.height_m);
-    if (ImGui::SmallButton("Stand here")) state.commands.push_back(Command::StandHere);
+    ImGui::TextUnformatted(tr_format("height {:.1f} m", place.height_m).c_str());
+    if (ImGui::SmallButton(tr_label("Stand here"))) state.commands.push_back(Command::StandHere);
     ImGui::SameLine();
-    if (ImGui::SmallButton("Look there")) state.commands.push_back(Command::LookThere);
+    if (ImGui::SmallButton(tr_label("Look there"))) state.commands.push_back(Command::LookThere);
     if (state.point && !state.point->error.empty())
         ImGui::TextWrapped("%s", state.point->error.c_str());
     else if (state.is_preview)
-        ImGui::TextDisabled("waiting until all posts are read ...");
+        ImGui::TextDisabled("%s", tr("waiting until all posts are read ..."));
     else if (!state.point || state.point->of.date != state.day.date)
-        ImGui::TextDisabled("computing its horizon ...");
+        ImGui::TextDisabled("%s", tr("computing its horizon ..."));
     else
         light_of(state, *state.point);
-    ImGui::Checkbox("Horizon and year (P)", &state.settings.charts);
+    ImGui::Checkbox(tr_label("Horizon and year (P)"), &state.settings.charts);
 }
 
 }  // namespace relevo::viewer

@@ -20,6 +20,7 @@
 #include "viewer/frame_exchange.h"
 #include "viewer/navigation.h"
 #include "viewer/picture_queue.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -50,7 +51,7 @@ double milliseconds_since(Clock::time_point began) {
 std::string text_of(const std::exception& error) {
     if (dynamic_cast<const std::bad_alloc*>(&error) ||
         dynamic_cast<const std::length_error*>(&error))
-        return "out of memory; use a smaller window, a smaller --memory or fewer effects";
+        return tr("out of memory; use a smaller window, a smaller --memory or fewer effects");
     return error.what();
 }
 

@@ -18,6 +18,7 @@
 #include "geo/format.h"
 #include "scene/options.h"
 #include "sun/zone.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -267,7 +268,8 @@ std::vector<std::string> absolute_names(std::vector<std::string> dems) {
 std::string short_name(const std::vector<std::string>& dems) {
     std::string name = printable(std::filesystem::path(dems.front()).filename().string());
     if (name.empty()) name = printable(dems.front());
-    if (dems.size() > 1) name += fmt::format(" and {} more", dems.size() - 1);
+    if (dems.size() > 1)
+        name = tr_format_plural("{1} and {0} more", "{1} and {0} more", dems.size() - 1, name);
     return name;
 }
 

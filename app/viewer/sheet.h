@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
+
 #include <imgui.h>
 
 namespace relevo::viewer {
@@ -9,6 +12,14 @@ namespace relevo::viewer {
 inline bool closes_sheet() {
     return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
            ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+}
+
+/// Room that labels take on the right of their fields [px].
+inline float widest(std::initializer_list<const char*> labels) {
+    float width = 0;
+    for (const char* label : labels)
+        width = std::max(width, ImGui::CalcTextSize(label).x);
+    return width + ImGui::GetFontSize() / 2;
 }
 
 }  // namespace relevo::viewer

@@ -8,8 +8,17 @@
 
 #include "base/units.h"
 #include "sun/position.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
+namespace {
+
+constexpr const char* kMonths[] = {tr_later("Jan"), tr_later("Feb"), tr_later("Mar"),
+                                   tr_later("Apr"), tr_later("May"), tr_later("Jun"),
+                                   tr_later("Jul"), tr_later("Aug"), tr_later("Sep"),
+                                   tr_later("Oct"), tr_later("Nov"), tr_later("Dec")};
+
+}  // namespace
 
 SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place, const sun::Refraction& air) {
     const sun::Position position = sun::position(utc, place);
@@ -64,10 +73,12 @@ int days_in_month(int year, int month) {
         first, month == 12 ? sun::Date{year + 1, 1, 1} : sun::Date{year, month + 1, 1});
 }
 
-std::string day_label(sun::Date date) {
-    constexpr const char* kMonths[] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
-                                       "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+std::string english_day(sun::Date date) {
     return fmt::format("{} {}", date.day, kMonths[date.month - 1]);
+}
+
+std::string day_label(sun::Date date) {
+    return fmt::format("{} {}", date.day, tr(kMonths[date.month - 1]));
 }
 
 sun::Date in_year(sun::Date date, int year) {

@@ -55,7 +55,9 @@ sun::Date in_year(sun::Date date, int year);
 int day_of_year(sun::Date date);
 sun::Date date_of(int year, int day_of_year);
 int days_in_month(int year, int month);
-/// "22 Sep".
+/// "22 Sep"; for files.
+std::string english_day(sun::Date date);
+/// The same in the user's language.
 std::string day_label(sun::Date date);
 
 }  // namespace relevo::viewer

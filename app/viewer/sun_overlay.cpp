@@ -10,6 +10,7 @@
 
 #include "viewer/export.h"
 #include "viewer/sun_model.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -119,12 +120,13 @@ session::SunFigure figure_of(OverlayKind kind) {
 
 /// "21 Dec 2026", "21 Dec to 27 Dec 2026", "2026".
 std::string words_of(const sun::Date& first, const sun::Date& last) {
-    if (first == last) return fmt::format("{} {}", day_label(first), first.year);
+    if (first == last) return fmt::format("{} {}", english_day(first), first.year);
     const bool one_year = first.year == last.year;
     if (one_year && first == sun::Date{first.year, 1, 1} && last == sun::Date{last.year, 12, 31})
         return std::to_string(first.year);
-    return fmt::format("{}{} to {} {}", day_label(first),
-                       one_year ? "" : fmt::format(" {}", first.year), day_label(last), last.year);
+    return fmt::format("{}{} to {} {}", english_day(first),
+                       one_year ? "" : fmt::format(" {}", first.year), english_day(last),
+                       last.year);
 }
 
 }  // namespace

@@ -7,13 +7,15 @@
 
 #include "base/units.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
 
-constexpr std::array<const char*, 12> kMonths = {"January",   "February", "March",    "April",
-                                                 "May",       "June",     "July",     "August",
-                                                 "September", "October",  "November", "December"};
+constexpr std::array<const char*, 12> kMonths = {
+    tr_later("January"),   tr_later("February"), tr_later("March"),    tr_later("April"),
+    tr_later("May"),       tr_later("June"),     tr_later("July"),     tr_later("August"),
+    tr_later("September"), tr_later("October"),  tr_later("November"), tr_later("December")};
 constexpr int kFirstYear = 1900, kLastYear = 2100;
 
 /// What a strip has where the sun stands so high.
@@ -50,16 +52,17 @@ void set_date(State& state, sun::Date date) {
 
 void calendar(State& state, sun::Date date) {
     // As wide for any date, so that what stands beside it stays where it is.
-    const float width = ImGui::CalcTextSize("30 September 2000").x + ImGui::GetFontSize();
+    // Translators: the widest date.
+    const float width = ImGui::CalcTextSize(tr("30 September 2000")).x + ImGui::GetFontSize();
     if (ImGui::Button(fmt::format("{} {} {}###date", date.day,
-                                  kMonths[static_cast<std::size_t>(date.month - 1)], date.year)
+                                  tr(kMonths[static_cast<std::size_t>(date.month - 1)]), date.year)
                           .c_str(),
                       {width, 0}))
         ImGui::OpenPopup("calendar");
     if (!ImGui::BeginPopup("calendar")) return;
     int year = date.year, month = date.month - 1;
     ImGui::SetNextItemWidth(140);
-    if (ImGui::Combo("##month", &month, kMonths.data(), 12))
+    if (ImGui::Combo("##month", &month, tr_all(kMonths).data(), 12))
         set_date(state, in_year({date.year, month + 1,
                                  std::min(date.day, days_in_month(date.year, month + 1))},
                                 date.year));
@@ -69,8 +72,9 @@ void calendar(State& state, sun::Date date) {
         set_date(state, in_year(date, std::clamp(year, kFirstYear, kLastYear)));
     // Weeks begin on Monday; 1 January 1900 was one.
     const int offset = ((sun::days_between({1900, 1, 1}, {date.year, date.month, 1}) % 7) + 7) % 7;
-    for (const char* name : {"Mo", "Tu", "We", "Th", "Fr", "Sa", "Su"}) {
-        ImGui::TextDisabled("%s", name);
+    for (const char* name : {tr_later("Mo"), tr_later("Tu"), tr_later("We"), tr_later("Th"),
+                             tr_later("Fr"), tr_later("Sa"), tr_later("Su")}) {
+        ImGui::TextDisabled("%s", tr(name));
         ImGui::SameLine(0, 14);
     }
     ImGui::NewLine();
@@ -111,10 +115,10 @@ void jump(State& state, const char* name, std::optional<sun::Instant> to, const 
 
 void jumps(State& state) {
     const sun::Day& day = state.day.events;
-    constexpr const char* kNone = "does not happen on this day";
-    jump(state, "Sunrise", day.first(sun::EventKind::Sunrise), kNone);
-    jump(state, "Noon", day.first(sun::EventKind::Transit), kNone);
-    jump(state, "Sunset", day.first(sun::EventKind::Sunset), kNone);
+    const char* const kNone = tr("does not happen on this day");
+    jump(state, tr_label("Sunrise"), day.first(sun::EventKind::Sunrise), kNone);
+    jump(state, tr_label("Noon"), day.first(sun::EventKind::Transit), kNone);
+    jump(state, tr_label("Sunset"), day.first(sun::EventKind::Sunset), kNone);
     const sun::Seasons& seasons = state.day.seasons;
     ImGui::NewLine();
     for (const sun::Instant of : {seasons.march_equinox, seasons.june_solstice,
@@ -129,22 +133,23 @@ void jumps(State& state) {
 }
 
 void play(State& state) {
-    if (ImGui::Button(state.playing ? "Pause##play" : "Play##play", {80, 0}))
+    if (ImGui::Button(state.playing ? tr_label("Pause") : tr_label("Play"), {80, 0}))
         state.playing = !state.playing;
     ImGui::SameLine();
     static constexpr std::array<double, 5> kSpeeds = {1.0 / 6, 0.5, 1, 3, 24};
     static constexpr std::array<const char*, 5> kNames = {"10 min/s", "30 min/s", "1 h/s", "3 h/s",
-                                                          "1 day/s"};
+                                                          tr_later("1 day/s")};
     int speed = 0;
     for (std::size_t i = 0; i < kSpeeds.size(); ++i)
         if (kSpeeds[i] <= state.hours_a_second + 1e-9) speed = static_cast<int>(i);
     ImGui::SetNextItemWidth(110);
-    if (ImGui::Combo("##speed", &speed, kNames.data(), static_cast<int>(kNames.size())))
+    if (ImGui::Combo("##speed", &speed, tr_all(kNames).data(), static_cast<int>(kNames.size())))
         state.hours_a_second = kSpeeds[static_cast<std::size_t>(speed)];
     ImGui::SameLine();
-    ImGui::Checkbox("Pin", &state.time_is_pinned);
+    ImGui::Checkbox(tr_label("Pin"), &state.time_is_pinned);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("Shows the next DEM at this time of day, even if it is night there");
+        ImGui::SetTooltip("%s",
+                          tr("Shows the next DEM at this time of day, even if it is night there"));
 }
 
 }  // namespace
@@ -153,7 +158,7 @@ std::string sun_figures(const State& state) {
     const SunPoint sun = sun_at(state.document.utc, state.centre, state.air);
     double azimuth_deg = degrees(std::atan2(sun.direction.x, sun.direction.y));
     if (azimuth_deg < 0) azimuth_deg += 360;
-    return fmt::format("azimuth {:.2f}°, elevation {:.2f}°", azimuth_deg, sun.elevation_deg);
+    return tr_format("azimuth {:.2f}°, elevation {:.2f}°", azimuth_deg, sun.elevation_deg);
 }
 
 void sun_panel(State& state) {
@@ -161,14 +166,14 @@ void sun_panel(State& state) {
     ImGui::PushItemWidth(-1);
     calendar(state, now.date);
     ImGui::SameLine();
-    if (ImGui::SmallButton("-1 d")) set_date(state, sun::add_days(now.date, -1));
+    if (ImGui::SmallButton(tr_label("-1 d"))) set_date(state, sun::add_days(now.date, -1));
     ImGui::SameLine();
-    if (ImGui::SmallButton("+1 d")) set_date(state, sun::add_days(now.date, 1));
+    if (ImGui::SmallButton(tr_label("+1 d"))) set_date(state, sun::add_days(now.date, 1));
 
     int day = day_of_year(now.date);
     const int days = sun::days_between({now.date.year, 1, 1}, {now.date.year + 1, 1, 1});
-    if (ImGui::SliderInt("##day", &day, 0, days - 1,
-                         kMonths[static_cast<std::size_t>(now.date.month - 1)]))
+    const char* const month = tr(kMonths[static_cast<std::size_t>(now.date.month - 1)]);
+    if (ImGui::SliderInt("##day", &day, 0, days - 1, slider_format(month, "").c_str()))
         set_date(state, date_of(now.date.year, std::clamp(day, 0, days - 1)));
     state.sun_moves = state.sun_moves || ImGui::IsItemActive();
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
@@ -190,7 +195,8 @@ void sun_panel(State& state) {
                         sun::offset_text(local.utc_offset_s).c_str());
     ImGui::TextUnformatted(sun_figures(state).c_str());
     const int length_min = static_cast<int>(std::lround(state.day.events.day_length_s / 60));
-    ImGui::Text("day length %d h %02d min", length_min / 60, length_min % 60);
+    ImGui::TextUnformatted(
+        tr_format("day length {} h {:02} min", length_min / 60, length_min % 60).c_str());
 }
 
 }  // namespace relevo::viewer

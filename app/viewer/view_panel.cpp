@@ -8,7 +8,9 @@
 
 #include "base/units.h"
 #include "scene/options.h"
+#include "viewer/sheet.h"
 #include "viewer/state.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -18,12 +20,12 @@ struct Sensor {
     const char* name;
     double side_mm;
 };
-constexpr std::array<Sensor, 6> kSensors = {{{"full frame, 36 mm", 36},
-                                             {"APS-C, 23.5 mm", 23.5},
-                                             {"APS-C of Canon, 22.3 mm", 22.3},
-                                             {"four thirds, 17.3 mm", 17.3},
-                                             {"1 inch, 13.2 mm", 13.2},
-                                             {"telephone, 9.8 mm", 9.8}}};
+constexpr std::array<Sensor, 6> kSensors = {{{tr_later("full frame, 36 mm"), 36},
+                                             {tr_later("APS-C, 23.5 mm"), 23.5},
+                                             {tr_later("APS-C of Canon, 22.3 mm"), 22.3},
+                                             {tr_later("four thirds, 17.3 mm"), 17.3},
+                                             {tr_later("1 inch, 13.2 mm"), 13.2},
+                                             {tr_later("telephone, 9.8 mm"), 9.8}}};
 
 /// Ends a step of undo with the widget before it.
 void end_step(State& state) {
@@ -37,13 +39,16 @@ void lens(State& state, double aspect) {
     const double height_mm = aspect >= 1 ? side_mm / aspect : side_mm;
     auto focal_mm = static_cast<float>(height_mm / 2 / std::tan(fov_y_rad / 2));
     const std::string text =
-        fmt::format("{} mm, {:.0f}° high", focal_mm < 10 ? "%.1f" : "%.0f", degrees(fov_y_rad));
-    if (ImGui::SliderFloat("Lens", &focal_mm, 4, 600, text.c_str(), ImGuiSliderFlags_Logarithmic))
+        slider_format(tr_format("{} mm, {:.0f}° high", kSliderValue, degrees(fov_y_rad)),
+                      focal_mm < 10 ? "%.1f" : "%.0f");
+    if (ImGui::SliderFloat(tr_label("Lens"), &focal_mm, 4, 600, text.c_str(),
+                           ImGuiSliderFlags_Logarithmic))
         fov_y_rad = 2 * std::atan(height_mm / 2 / std::max(1.0, double{focal_mm}));
     end_step(state);
-    if (ImGui::BeginCombo("Sensor", kSensors[static_cast<std::size_t>(state.sensor)].name)) {
+    if (ImGui::BeginCombo(tr_label("Sensor"),
+                          tr(kSensors[static_cast<std::size_t>(state.sensor)].name))) {
         for (std::size_t i = 0; i < kSensors.size(); ++i)
-            if (ImGui::Selectable(kSensors[i].name, static_cast<int>(i) == state.sensor))
+            if (ImGui::Selectable(tr_label(kSensors[i].name), static_cast<int>(i) == state.sensor))
                 state.sensor = static_cast<int>(i);
         ImGui::EndCombo();
     }
@@ -52,7 +57,7 @@ void lens(State& state, double aspect) {
 void exposure(State& state) {
     const scene::Option& option = scene::option("--exposure");
     auto stops = static_cast<float>(state.document.scene.exposure_ev);
-    if (ImGui::SliderFloat("Exposure", &stops, -5, 5, "%+.1f EV"))
+    if (ImGui::SliderFloat(tr_label("Exposure"), &stops, -5, 5, "%+.1f EV"))
         state.document.scene.exposure_ev =
             std::clamp(std::round(10.0 * stops) / 10, option.min, option.max);
     end_step(state);
@@ -63,7 +68,8 @@ void exaggeration(State& state) {
     double& taken = state.document.scene.exaggeration;
     float& times = state.dragged_exaggeration;
     if (!state.drags_exaggeration) times = static_cast<float>(taken);
-    ImGui::SliderFloat("Heights", &times, 0.5f, 10, "x %.2f", ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat(tr_label("Heights"), &times, 0.5f, 10, "x %.2f",
+                       ImGuiSliderFlags_Logarithmic);
     state.drags_exaggeration = ImGui::IsItemActive();
     if (!ImGui::IsItemDeactivatedAfterEdit()) return;
     const scene::Option& option = scene::option("--exaggerate");
@@ -74,10 +80,10 @@ void exaggeration(State& state) {
 /// Of displayed times. "auto" is that of the place.
 void zone(State& state) {
     ImGui::InputTextWithHint(
-        "Zone", state.document.zone.name().c_str(), &state.zone_text,
+        tr_label("Zone"), state.document.zone.name().c_str(), &state.zone_text,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("Europe/Zurich, +05:30, solar, or auto: that of the place");
+        ImGui::SetTooltip("%s", tr("Europe/Zurich, +05:30, solar, or auto: that of the place"));
     if (!ImGui::IsItemDeactivatedAfterEdit()) return;
     state.zone_to_show = state.zone_text;
     state.zone_text.clear();
@@ -86,7 +92,8 @@ void zone(State& state) {
 }  // namespace
 
 void view_panel(State& state, double aspect) {
-    ImGui::PushItemWidth(-ImGui::CalcTextSize("Exposure  ").x);
+    ImGui::PushItemWidth(
+        -widest({tr("Lens"), tr("Sensor"), tr("Exposure"), tr("Heights"), tr("Zone")}));
     lens(state, aspect);
     exposure(state);
     exaggeration(state);

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "base/paths.h"
 #include "viewer/main_window.h"
+#include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -17,6 +19,7 @@ constexpr auto kLostAgain = std::chrono::seconds(5);
 }  // namespace
 
 void run(const scene::Scene& scene, const std::string& device) {
+    use_language(share_dir() / "locale");
     scene::Scene current = scene;
     while (true) {
         MainWindow window(current, device);

@@ -164,6 +164,9 @@ struct Window::Impl {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+        // By it desktops find the entry of the program, with its icon.
+        glfwWindowHintString(GLFW_X11_CLASS_NAME, "relevo");
+        glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "relevo");
         // Some drivers cannot report the loss of a device.
         for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
             glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);

@@ -1,5 +1,7 @@
 #include "viewer/window_style.h"
 
+#include "viewer/translation.h"
+
 namespace relevo::viewer {
 
 WindowStyle::WindowStyle(Window& window, const Settings& settings)
@@ -20,6 +22,7 @@ bool WindowStyle::update(const State& state) {
 
 bool WindowStyle::needs_glyphs(const State& state) {
     bool any = window_.want_letters(state.message);
+    any = window_.want_letters(take_new_translations()) || any;
     const auto want = [&](const std::string& text) { any = window_.want_letters(text) || any; };
     for (const std::string& dem : state.document.scene.dems)
         want(dem);

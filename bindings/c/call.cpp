@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/host_program.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "dem/gdal_support.h"
 
 namespace relevo::c {
 namespace {
@@ -89,7 +89,7 @@ void prepare_library() {
     static std::once_flag once;
     std::call_once(once, [] {
         log::set_sink(warn_on_standard_error);
-        dem::share_gdal();
+        set_hosted();
     });
 }
 

@@ -53,12 +53,31 @@ T& need(T* argument, const char* name) {
 /// @throws BadCall unless `count` is what an array needs
 void check_count(const char* name, std::size_t count, std::size_t needed);
 
+/// Sizes that structs had in version 0.1: no caller has smaller ones.
+template <typename T>
+constexpr std::size_t kFirstSize = 0;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_progress> = 24;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_raster> = 88;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_grid> = 96;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_place> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_event> = 40;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_open_options> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<relevo_picture> = 96;
+
 /// A struct of the caller's version as one of ours; what it lacks is 0.
 /// @throws BadCall for null, and for a size that no version has
 template <typename T>
 T read_struct(const T* given, const char* name) {
+    static_assert(kFirstSize<T> > 0 && kFirstSize<T> <= sizeof(T));
     const std::size_t size = need(given, name).size;
-    if (size < sizeof(std::size_t) || size > 16 * sizeof(T))
+    if (size < kFirstSize<T> || size > 16 * sizeof(T))
         throw BadCall{std::string(name) + ".size: expected " + std::to_string(sizeof(T)) +
                       " but got " + std::to_string(size)};
     T ours{};
@@ -66,11 +85,15 @@ T read_struct(const T* given, const char* name) {
     return ours;
 }
 
-/// Fills a struct of the caller's version.
+/// Fills a struct of the caller's version. @param size  of it
 template <typename T>
-void write_struct(T ours, T* to) {
-    ours.size = to->size;
-    std::memcpy(to, &ours, std::min(ours.size, sizeof(T)));
+void write_struct(T ours, std::size_t size, void* to) {
+    ours.size = size;
+    std::memcpy(to, &ours, std::min(size, sizeof(T)));
+}
+template <typename T>
+void write_struct(const T& ours, T* to) {
+    write_struct(ours, to->size, to);
 }
 
 /// Progress of work that is told in shares.

@@ -64,8 +64,8 @@ std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
     const geo::Crs crs = geo::Crs::parse(&need(heights.crs, "heights.crs"), "crs");
     dem::MemoryRaster held(heights.heights_m, heights.columns, heights.rows,
                            affine_of(heights.transform));
-    scene::Scene named;
-    named.dems = {held.name()};
+    scene::Scene named = read_dem({held.name()}, heights.options);
+    if (!named.dem.crs.empty()) throw BadCall{"heights.options: crs: expected none"};
     named.dem.crs = crs.text();
     return std::make_shared<Dem>(std::move(named), std::move(held));
 }
@@ -124,6 +124,13 @@ relevo_result relevo_dem_crs(relevo_dem* dem, const char** crs) {
     return c::guarded("relevo_dem_crs", [&] {
         c::need(crs, "crs") = nullptr;
         *crs = c::returned_text(c::dems().get(dem, "dem")->grid().crs().text());
+    });
+}
+
+relevo_result relevo_dem_wkt(relevo_dem* dem, const char** wkt) {
+    return c::guarded("relevo_dem_wkt", [&] {
+        c::need(wkt, "wkt") = nullptr;
+        *wkt = c::returned_text(c::dems().get(dem, "dem")->grid().crs().wkt());
     });
 }
 

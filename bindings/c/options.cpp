@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scene/scene_reader.h"
+#include "session/scene_times.h"
 
 namespace relevo::c {
 namespace {
@@ -15,6 +16,7 @@ void take(scene::Scene& scene, const json::Value& value, const std::filesystem::
     object.number("format", 1, 1, 1, true);
     reader.take(object, "", scene);
     object.finish();
+    scene = scene::with_absolute_paths(std::move(scene));
 }
 
 }  // namespace
@@ -43,6 +45,12 @@ scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
     scene::Scene scene;
     take(scene, whole, {});
     return scene;
+}
+
+bool same_dem(scene::Scene a, scene::Scene b) {
+    b.holes = a.holes;
+    a.overlay = b.overlay = {};  // part of what a session opens, not of the DEM
+    return session::dem_key(a) == session::dem_key(b);
 }
 
 }  // namespace relevo::c

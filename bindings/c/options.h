@@ -27,6 +27,7 @@ class Options {
 };
 
 /// Changes a scene by a JSON text, as a shot of a job does. "format" may be there.
+/// Relative names become absolute ones.
 /// @param text    null: no change
 /// @param folder  from which relative paths count
 /// @throws Error (BadInput)
@@ -36,5 +37,9 @@ void change_scene(scene::Scene& scene, const char* text, const std::filesystem::
 /// @param text  members of `dem` without `files`; null: none
 /// @throws Error (BadInput)
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
+
+/// Whether two scenes with absolute names show one DEM, read in the same way. How its voids are
+/// drawn may differ.
+bool same_dem(scene::Scene a, scene::Scene b);
 
 }  // namespace relevo::c

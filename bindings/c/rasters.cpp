@@ -102,9 +102,12 @@ class RasterCall {
         log::warning(beyond->advice());
     }
 
-    void finish(const std::string& definition, std::int64_t holes) {
+    void finish(const std::string& definition, std::int64_t holes,
+                const std::vector<output::RasterBand>& bands) {
         if (!about_) return;
         nlohmann::ordered_json json{{"definition", definition}, {"holes", holes}};
+        for (const output::RasterBand& band : bands)
+            json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (!beyond_.empty()) json["beyond"] = beyond_;
         *about_ = returned_text(json.dump());
     }
@@ -150,7 +153,7 @@ void shadow(RasterCall& call, const char* text) {
         holes += shadows.holes;
         definition = shadows.definition;
     });
-    call.finish(definition, holes);
+    call.finish(definition, holes, {session::shadow_band(soft)});
 }
 
 /// What relevo_sun_hours() is asked for.
@@ -252,7 +255,10 @@ void sun_hours(RasterCall& call, HoursWanted& wanted) {
     });
     if (wanted.options.irradiation)
         definition += "; " + session::definition_of(*wanted.options.irradiation);
-    call.finish(definition, holes);
+    std::vector<output::RasterBand> bands;
+    for (const std::string& word : wanted.bands)
+        bands.push_back(session::hours_band(word));
+    call.finish(definition, holes, bands);
 }
 
 void sky_view(RasterCall& call, const char* text) {
@@ -285,7 +291,7 @@ void sky_view(RasterCall& call, const char* text) {
         holes += view.holes;
         definition = view.definition;
     });
-    call.finish(definition, holes);
+    call.finish(definition, holes, {session::sky_view_band()});
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ void SceneDrawer::take(scene::Scene scene) {
 void SceneDrawer::change(const char* text) {
     scene::Scene changed = given_;
     change_scene(changed, text, folder_);
-    if (changed.dems != given_.dems)
+    if (!same_dem(changed, given_))
         bad_input("scene: dem: a session keeps its DEM; open another session");
     take(std::move(changed));
 }
@@ -89,15 +89,19 @@ const image::Image8& SceneDrawer::picture() {
     return *drawn_;
 }
 
-DrawnData SceneDrawer::data() {
+void SceneDrawer::check_has_data() const {
     const scene::Scene& scene = shot_.scene;
     if (scene.stamps.margin || scene.view.stereo != scene::Stereo::None ||
         scene.view.panorama != scene::Panorama::None)
         bad_input(
             "depth, positions and normals: not of stereo pairs, panoramas and pictures with "
             "--margin");
+}
+
+DrawnData SceneDrawer::data() {
+    check_has_data();
     session::Session& session = data_.of(shot_);
-    session.show(scene, shot_.utc);
+    session.show(shot_.scene, shot_.utc);
     return {session.make_picture().layers, session.ground().frame.origin()};
 }
 

@@ -39,8 +39,10 @@ class SceneDrawer {
     glm::ivec2 picture_px();
     /// As it is drawn, kept until the scene changes. @throws Error as session::Session
     const image::Image8& picture();
-    /// @throws Error the same, and for what has no data: pictures with margins, of two eyes, all
-    ///     around
+    /// @throws Error (BadInput) for what has no data: pictures with margins, of two eyes, all
+    /// around
+    void check_has_data() const;
+    /// @throws Error as picture() and check_has_data()
     DrawnData data();
 
   private:

@@ -58,19 +58,29 @@ std::shared_ptr<SceneOnThread> open(const char* text, const relevo_open_options*
         scene = dem->named();
     }
     change_scene(scene, text, folder);
-    if (dem && scene.dems != dem->named().dems)
-        bad_input("scene: dem: expected none, as options.dem is given");
+    if (dem && !same_dem(scene, dem->named()))
+        bad_input("scene: dem: expected the DEM of options.dem, read as it is");
     return std::make_shared<SceneOnThread>(std::move(scene), std::move(dem),
                                            options.device ? options.device : "auto", folder);
 }
 
-std::size_t pixels_of(const image::Image8& image) {
-    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+/// Before anything is written.
+void check_counts(const glm::ivec2& size_px, const relevo_picture& picture) {
+    const std::size_t pixels =
+        static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
+    const auto check = [&](const void* array, const char* name, std::size_t count,
+                           std::size_t components) {
+        if (array) check_count(name, count, components * pixels);
+    };
+    check(picture.rgba, "picture.rgba_count", picture.rgba_count, 4);
+    check(picture.depth_m, "picture.depth_count", picture.depth_count, 1);
+    check(picture.position_m, "picture.position_count", picture.position_count, 3);
+    check(picture.normal, "picture.normal_count", picture.normal_count, 3);
 }
 
 void fill_colours(const image::Image8& image, const relevo_picture& picture) {
-    const std::size_t pixels = pixels_of(image);
-    check_count("picture.rgba_count", picture.rgba_count, 4 * pixels);
+    const std::size_t pixels =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     const auto channels = static_cast<std::size_t>(image.channels);
     const bool grey = channels < 3, alpha = channels % 2 == 0;
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -83,13 +93,11 @@ void fill_colours(const image::Image8& image, const relevo_picture& picture) {
 }
 
 /// A layer of one channel or of three, as pixels.
-void fill_layer(const DrawnData& data, const std::string& name, std::size_t components, float* to,
-                std::size_t count, const char* count_name) {
+void fill_layer(const DrawnData& data, const std::string& name, std::size_t components, float* to) {
     if (!to) return;
     std::size_t component = 0;
     for (const image::Channel& channel : data.channels) {
         if (!channel.name.starts_with(name + ".")) continue;
-        check_count(count_name, count, components * channel.values.size());
         for (std::size_t i = 0; i < channel.values.size(); ++i)
             to[i * components + component] = channel.values[i];
         ++component;
@@ -97,10 +105,9 @@ void fill_layer(const DrawnData& data, const std::string& name, std::size_t comp
 }
 
 void fill_data(const DrawnData& data, relevo_picture& picture) {
-    fill_layer(data, "depth", 1, picture.depth_m, picture.depth_count, "picture.depth_count");
-    fill_layer(data, "position", 3, picture.position_m, picture.position_count,
-               "picture.position_count");
-    fill_layer(data, "normal", 3, picture.normal, picture.normal_count, "picture.normal_count");
+    fill_layer(data, "depth", 1, picture.depth_m);
+    fill_layer(data, "position", 3, picture.position_m);
+    fill_layer(data, "normal", 3, picture.normal);
     picture.origin_lat_deg = degrees(data.origin.lat_rad);
     picture.origin_lon_deg = degrees(data.origin.lon_rad);
     picture.origin_height_m = data.origin.height_m;
@@ -171,9 +178,11 @@ relevo_result relevo_draw_picture(relevo_session* session, relevo_picture* pictu
     return c::guarded("relevo_draw_picture", [&] {
         relevo_picture wanted = c::read_struct(picture, "picture");
         c::sessions().get(session, "session")->run([&](c::SceneDrawer& drawer) {
+            const bool with_data = wanted.depth_m || wanted.position_m || wanted.normal;
+            if (with_data) drawer.check_has_data();
+            c::check_counts(drawer.picture_px(), wanted);
             if (wanted.rgba) c::fill_colours(drawer.picture(), wanted);
-            if (wanted.depth_m || wanted.position_m || wanted.normal)
-                c::fill_data(drawer.data(), wanted);
+            if (with_data) c::fill_data(drawer.data(), wanted);
         });
         c::write_struct(wanted, picture);
     });

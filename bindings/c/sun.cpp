@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,18 +33,29 @@ double seconds_of(sun::Instant instant) {
     return static_cast<double>(instant.unix_us()) * 1e-6;
 }
 
-sun::Refraction refraction_of(const char* model, const geo::Geodetic& place) {
+/// The model lasts until the thread's next one. A table takes 6 ms, and many times are asked for
+/// one after the other.
+const sun::Refraction& refraction_of(const char* model, const geo::Geodetic& place) {
+    struct Kept {
+        std::string name;
+        double lat_rad, height_m;  // what models depend on
+        sun::Refraction refraction;
+    };
+    thread_local std::optional<Kept> kept;
     const std::string name = model ? model : "standard";
     if (!contains(std::vector<std::string>{"standard", "saemundsson", "none"}, name))
         bad_input(
             fmt::format("refraction: expected standard, saemundsson or none but got {}", name));
-    return session::refraction_at(name, place);
+    if (!kept || kept->name != name || kept->lat_rad != place.lat_rad ||
+        kept->height_m != place.height_m)
+        kept = Kept{name, place.lat_rad, place.height_m, session::refraction_at(name, place)};
+    return kept->refraction;
 }
 
 relevo_event event_of(const sun::Event& event) {
     // The names are literals, which end with 0.
-    return {sun::name_of(event.kind).data(), seconds_of(event.utc), degrees(event.azimuth_rad),
-            degrees(event.elevation_rad)};
+    return {sizeof(relevo_event), sun::name_of(event.kind).data(), seconds_of(event.utc),
+            degrees(event.azimuth_rad), degrees(event.elevation_rad)};
 }
 
 light::HorizonOptions horizon_options(const char* text, size_t directions) {
@@ -70,7 +82,7 @@ relevo_result relevo_sun_position(const relevo_place* place, const double* times
     return c::guarded("relevo_sun_position", [&] {
         const geo::Geodetic at = c::place_of(place);
         if (count > 0) c::need(times_s, "times_s");
-        const sun::Refraction air = c::refraction_of(refraction, at);
+        const sun::Refraction& air = c::refraction_of(refraction, at);
         for (size_t i = 0; i < count; ++i) {
             const sun::Position position = sun::position(c::instant_of(times_s[i]), at);
             if (azimuth_deg) azimuth_deg[i] = degrees(position.azimuth_rad);
@@ -84,13 +96,15 @@ relevo_result relevo_sun_events(const relevo_place* place, const char* date, con
                                 relevo_event* events, size_t capacity, size_t* count) {
     return c::guarded("relevo_sun_events", [&] {
         c::need(count, "count") = 0;
-        if (capacity > 0) c::need(events, "events");
+        // The caller's events are as large as the first one says.
+        const size_t size = capacity > 0 ? c::read_struct(events, "events").size : 0;
         const geo::Geodetic at = c::place_of(place);
         const sun::Day day = sun::day_events(sun::parse_date(&c::need(date, "date")),
                                              session::zone_of(zone ? zone : "", at).zone, at);
         *count = day.events.size();
         for (size_t i = 0; i < std::min(capacity, day.events.size()); ++i)
-            events[i] = c::event_of(day.events[i]);
+            c::write_struct(c::event_of(day.events[i]), size,
+                            reinterpret_cast<char*>(events) + i * size);
     });
 }
 

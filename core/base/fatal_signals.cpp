@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "base/host_program.h"
 #include "base/watchdog.h"
 
 namespace relevo {
@@ -25,12 +26,25 @@ struct Guard {
 std::vector<Guard> guards;  // in their order
 std::array<struct sigaction, kFatalSignals.size()> old_actions;
 
-void on_signal(int signal) {
-    const Messages* const messages = of_thread ? of_thread : newest.load();
-    for (std::size_t i = 0; messages && i < kFatalSignals.size(); ++i)
-        if (kFatalSignals[i].number == signal) end_program((*messages)[i].c_str());
+/// A signal of no guard's: as if there were none. Programs that load Relevo as a library may use
+/// such signals (virtual machines do).
+void pass_on(int signal, siginfo_t* info, void* context) {
+    for (std::size_t i = 0; i < kFatalSignals.size(); ++i) {
+        const struct sigaction& old = old_actions[i];
+        if (kFatalSignals[i].number != signal) continue;
+        if (old.sa_flags & SA_SIGINFO) return old.sa_sigaction(signal, info, context);
+        if (old.sa_handler == SIG_IGN) return;
+        if (old.sa_handler != SIG_DFL) return old.sa_handler(signal);
+    }
     std::signal(signal, SIG_DFL);
     raise(signal);
+}
+
+void on_signal(int signal, siginfo_t* info, void* context) {
+    const Messages* const messages = of_thread || is_hosted() ? of_thread : newest.load();
+    for (std::size_t i = 0; messages && i < kFatalSignals.size(); ++i)
+        if (kFatalSignals[i].number == signal) end_program((*messages)[i].c_str());
+    pass_on(signal, info, context);
 }
 
 void find_newest() {
@@ -45,8 +59,8 @@ void add(const Guard& guard) {
     find_newest();
     if (guards.size() > 1) return;
     struct sigaction action {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_ONSTACK;
+    action.sa_sigaction = on_signal;
+    action.sa_flags = SA_ONSTACK | SA_SIGINFO;
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &action, &old_actions[i]);
 }

@@ -20,11 +20,14 @@ std::filesystem::path own_file() {
     return file.filename().string().find(".so") == std::string::npos ? program : file;
 }
 
+/// Found while the library is loaded: its name may be relative, and the working folder may change.
+const std::filesystem::path loaded_from = own_file();
+
 /// `bin/relevo`, `lib/librelevo.so.0` and `lib/x86_64-linux-gnu/librelevo.so.0` are of one.
 const std::filesystem::path& prefix() {
     static const std::filesystem::path found = [] {
         std::error_code ignored;
-        const std::filesystem::path above = own_file().parent_path().parent_path();
+        const std::filesystem::path above = loaded_from.parent_path().parent_path();
         const bool deeper =
             !std::filesystem::exists(above / "share" / "relevo", ignored) &&
             std::filesystem::exists(above.parent_path() / "share" / "relevo", ignored);

@@ -16,6 +16,8 @@ constexpr int kBarWidth = 24;
 constexpr double kRedraw_s = 0.25;
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
+bool lines = false;  // set once, before there are threads
+
 void put(int descriptor, std::string_view text) {
     // A terminal that is gone is no reason to end the work.
     [[maybe_unused]] const ssize_t written = write(descriptor, text.data(), text.size());
@@ -29,17 +31,22 @@ std::string duration_text(double seconds) {
                           : fmt::format("{:.0f} h", seconds / 3600);
 }
 
+void ProgressBar::use_lines(bool on) {
+    lines = on;
+}
+
 ProgressBar::ProgressBar(std::string what, int descriptor)
     : what_(std::move(what)),
       descriptor_(descriptor),
-      shown_(isatty(descriptor) == 1 && log::level() <= log::Level::Info) {
+      shown_(lines || (isatty(descriptor) == 1 && log::level() <= log::Level::Info)),
+      next_s_(lines ? 0 : 1) {
     if (!what_.empty()) what_ += ' ';
-    if (shown_ && descriptor_ == STDERR_FILENO)
+    if (shown_ && !lines && descriptor_ == STDERR_FILENO)
         log::set_before([] { put(STDERR_FILENO, kClearLine); });
 }
 
 ProgressBar::~ProgressBar() {
-    if (shown_ && descriptor_ == STDERR_FILENO) log::set_before({});
+    if (shown_ && !lines && descriptor_ == STDERR_FILENO) log::set_before({});
     if (drawn_) put(descriptor_, kClearLine);
 }
 
@@ -57,6 +64,10 @@ void ProgressBar::draw(double share, const std::string& words) {
     const double passed_s = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
     if (!shown_ || passed_s < next_s_ || !(share > 0 && share < 1)) return;
     next_s_ = passed_s + kRedraw_s;
+    if (lines) {
+        put(descriptor_, fmt::format("progress {:.3f}\n", share));
+        return;
+    }
     drawn_ = true;
     const auto full = static_cast<std::size_t>(share * kBarWidth);
     put(descriptor_, fmt::format("{}{}[{}{}] {}, {} left", kClearLine, what_,

@@ -37,6 +37,10 @@ class Progress {
 /// the line's place. Safe on several threads at once.
 class ProgressBar {
   public:
+    /// Whether bars that are made from now on are lines for other programs, on any stream and also
+    /// with -q: "progress 0.342", the share that is done, four times a second at most.
+    static void use_lines(bool on);
+
     /// @param what        is done, before the bar; may be empty
     /// @param descriptor  of the stream, standard error
     explicit ProgressBar(std::string what = {}, int descriptor = 2);
@@ -55,7 +59,7 @@ class ProgressBar {
     std::string what_;
     int descriptor_;
     bool shown_, drawn_ = false;
-    double next_s_ = 1;
+    double next_s_;
     std::mutex mutex_;
     Progress::Clock::time_point began_ = Progress::Clock::now();
 };

@@ -1,7 +1,6 @@
 #include "dem/gdal_support.h"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 
 #include <cpl_conv.h>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 #include <gdal.h>
 
+#include "base/host_program.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "dem/guard.h"
@@ -23,19 +23,13 @@ void to_debug_log(CPLErr, int, const char* text) {
     log::debug(fmt::format("GDAL: {}", text));
 }
 
-std::atomic<bool> shared{false};
-
 }  // namespace
-
-void share_gdal() {
-    shared = true;
-}
 
 void prepare_gdal() {
     static std::once_flag once;
     std::call_once(once, [] {
         GDALAllRegister();
-        if (shared) return;
+        if (is_hosted()) return;
         CPLSetErrorHandler(to_debug_log);
         disarm_gdal();
         open_regular_files_only();
@@ -46,6 +40,7 @@ void prepare_gdal() {
 }
 
 void hold_blocks(std::int64_t bytes) {
+    if (is_hosted()) return;
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() < bytes)
@@ -53,7 +48,7 @@ void hold_blocks(std::int64_t bytes) {
 }
 
 void spare_blocks() {
-    if (!shared && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) &&
+    if (!is_hosted() && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) &&
         GDALGetCacheMax64() <= kBlockBytes)
         GDALSetCacheMax64(kBlockBytes / 2);
 }

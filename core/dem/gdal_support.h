@@ -6,16 +6,12 @@
 
 namespace relevo::dem {
 
-/// Leaves GDAL as it is, because it is that of another program too, which has loaded Relevo as a
-/// library: nothing is taken from it, its messages go where that program wants them, and its net
-/// is open if it is for that program. Call it before all else here.
-void share_gdal();
-
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
 /// keeps its cache of blocks to 256 MiB (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
-/// to standard error: what nobody collects goes to the debug log. Safe
-/// on several threads at once; everything here that uses GDAL calls it first. Takes 3 ms the first
-/// time; loading GDAL's own libraries, before main, takes 50.
+/// to standard error: what nobody collects goes to the debug log. In a process of another program
+/// (is_hosted()) it only registers the drivers. Safe on several threads at once; everything here
+/// that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries, before
+/// main, takes 50.
 void prepare_gdal();
 
 /// Lets GDAL's cache have so much at least: blocks that it cannot hold are decoded for every read.

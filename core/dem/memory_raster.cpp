@@ -33,14 +33,19 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     const double area = a.x_column * a.y_row - a.x_row * a.y_column;
     if (!std::isfinite(area) || area == 0 || !std::isfinite(a.x0 + a.y0))
         bad_input("heights: transform: expected finite numbers and cells with an area");
+    if (a.x0 == 0.5 && std::abs(a.y0) == 0.5 && a.x_column == 1 && a.x_row == 0 &&
+        a.y_column == 0 && a.y_row == 2 * a.y0)
+        bad_input(
+            "heights: transform: the identity, which GDAL has where it knows no place; expected "
+            "coordinates of the CRS");
     prepare_gdal();
     const GdalMessages messages;
     GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     if (!driver) refuse(messages, name_);
-    const std::unique_ptr<GDALDataset> file(
-        driver->Create(name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
     double transform[6] = {a.x0 - 0.5 * (a.x_column + a.x_row), a.x_column, a.x_row,
                            a.y0 - 0.5 * (a.y_column + a.y_row), a.y_column, a.y_row};
+    const std::unique_ptr<GDALDataset> file(
+        driver->Create(name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
     if (!file || file->SetGeoTransform(transform) != CE_None) refuse(messages, name_);
     GDALRasterBand* const band = file->GetRasterBand(1);
     band->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
@@ -55,7 +60,8 @@ MemoryRaster::MemoryRaster(MemoryRaster&& other) noexcept
     : name_(std::exchange(other.name_, std::string())) {}
 
 MemoryRaster::~MemoryRaster() {
-    if (!name_.empty()) VSIUnlink(name_.c_str());
+    if (name_.empty()) return;
+    VSIUnlink(name_.c_str());
 }
 
 }  // namespace relevo::dem

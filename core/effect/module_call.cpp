@@ -10,6 +10,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "base/host_program.h"
+
 namespace relevo::effect {
 namespace {
 
@@ -22,11 +24,13 @@ std::mutex call_mutex;
 std::mutex modules_mutex;
 std::vector<const ModuleInProcess*> modules;  // that are loaded
 
-/// main() unloads all modules: if one is loaded, it has ended the program.
+/// main() unloads all modules: if one is loaded, it has ended the program. Another program may exit
+/// with modules loaded.
 void on_exit_of_the_program() {
     if (const ModuleCall* call = running.load()) end_program(call->exit_message());
     const std::lock_guard lock(modules_mutex);
-    if (!modules.empty()) end_program(modules.back()->message("", "ended the program").c_str());
+    if (!modules.empty() && !is_hosted())
+        end_program(modules.back()->message("", "ended the program").c_str());
 }
 
 void watch_for_exits() {

@@ -20,6 +20,9 @@ namespace relevo::session {
 
 namespace {
 
+/// Exaggerations of a DEM, and angles of each, whose default views are kept.
+constexpr std::size_t kMostShown = 1000;
+
 /// The part of a scene that dem_key() depends on.
 scene::Scene dem_of_scene(const scene::Scene& scene) {
     scene::Scene only;
@@ -122,6 +125,7 @@ SceneTimes::Shown& SceneTimes::shown_of(const scene::Scene& scene) {
     auto& known = dem_of(scene).shown;
     const auto found = known.find(scene.exaggeration);
     if (found != known.end()) return found->second;
+    if (known.size() >= kMostShown) known.clear();
     const render::Ground ground = ground_of(*heights);
     Shown shown{render::ground_to_show(heights->field, ground, scene.exaggeration).net,
                 scene::DefaultDay(ground.frame.origin(), ground.block_m <= 0)};
@@ -135,6 +139,7 @@ scene::View SceneTimes::settled_view(const scene::Scene& scene) {
     auto& known = dem_of(scene).shown;
     const auto found = known.find(scene.exaggeration);
     Shown& shown = found == known.end() ? shown_of(scene) : found->second;
+    if (shown.framed.size() >= kMostShown) shown.framed.clear();
     const auto [framed, fresh] =
         shown.framed.try_emplace({view.orbit.azimuth_deg, view.orbit.elevation_deg});
     if (fresh) framed->second = scene::frame_ground(view.orbit, shown.net, shown.day).orbit;

@@ -21,14 +21,14 @@
  *     session wait for each other; sessions are independent of each other.
  *   - Angles are degrees, azimuths clockwise from true north. Places are WGS 84, longitudes
  *     positive east. Times are seconds since 1970-01-01T00:00Z without leap seconds, 1900 to 2100.
- *     Rasters have the DEM's rows in their order; holes are NaN.
+ *     Rasters have the DEM's rows in their order; voids are NaN.
  *
- * Messages name options as the program's command line does: `--crs` is the option `crs`. GDAL is
- * left as the process has it, also its access to the net; the program takes from it what files from
- * others could misuse.
+ * Messages are those of the program, also where they name its options: `--crs` is the option `crs`.
+ * GDAL is left as the process has it, also its access to the net; the program takes from it what
+ * files from others could misuse.
  *
- * An effect's GLSL that never ends on the device ends the process after RELEVO_PATIENCE_S seconds
- * (20), because nothing else can stop it.
+ * Code of effects can end the process: GLSL that never ends on the device, after RELEVO_PATIENCE_S
+ * seconds (20), and a native module that crashes, hangs or exits.
  */
 #ifndef RELEVO_RELEVO_H
 #define RELEVO_RELEVO_H
@@ -95,13 +95,15 @@ RELEVO_API relevo_result relevo_dem_open(const char* const* files, size_t count,
 /* Heights in memory as a DEM. They are copied. */
 typedef struct relevo_raster {
     size_t size;
-    const float* heights_m; /* row by row; NaN for holes */
+    const float* heights_m; /* row by row; NaN for voids; metres, unless `options` say the unit */
     size_t count;           /* columns * rows */
     int32_t columns, rows;  /* at least 2 each */
     /* From corners of cells to coordinates of the CRS, as GDAL's geotransform:
      * x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5] row. */
     double transform[6];
     const char* crs; /* "EPSG:32632", WKT or a PROJ string */
+    /* As those of relevo_dem_open(), without crs; null: none */
+    const char* options;
 } relevo_raster;
 RELEVO_API relevo_result relevo_dem_from_heights(const relevo_raster* heights, relevo_dem** dem);
 
@@ -120,10 +122,13 @@ RELEVO_API relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid);
 /* The CRS: its code ("EPSG:32632") where it has one, else WKT 2. */
 RELEVO_API relevo_result relevo_dem_crs(relevo_dem* dem, const char** crs);
 
+/* The CRS as WKT 2, on one line. */
+RELEVO_API relevo_result relevo_dem_wkt(relevo_dem* dem, const char** wkt);
+
 /* All heights [m]. @param count  columns * rows */
 RELEVO_API relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size_t count);
 
-/* The height at a place, bilinear between posts; NaN in a hole and outside of the DEM. */
+/* The height at a place, bilinear between posts; NaN in a void and outside of the DEM. */
 RELEVO_API relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
                                            double* height_m);
 
@@ -147,6 +152,7 @@ RELEVO_API relevo_result relevo_sun_position(const relevo_place* place, const do
 
 /* Something that the sun does over a level horizon. */
 typedef struct relevo_event {
+    size_t size;      /* in an array that of the first one counts for all */
     const char* kind; /* "sunrise", "transit", "civil_dusk" ...; lasts as long as the library */
     double time_s;
     double azimuth_deg, elevation_deg; /* of the centre, without refraction */
@@ -154,6 +160,7 @@ typedef struct relevo_event {
 /* Events of a local day in order of time, by the rule of the Naval Observatory.
  * @param date      "2026-06-21"
  * @param zone      "Europe/Zurich", "+02:00"; null: that of the place
+ * @param events    `size` of the first one is to be set
  * @param capacity  of `events`; as many as fit are filled
  * @param count     receives how many there are */
 RELEVO_API relevo_result relevo_sun_events(const relevo_place* place, const char* date,
@@ -176,8 +183,9 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
  * other. Values are those that the program writes, to the bit.
  *
  * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard").
- * `about`, which may be null, receives JSON with "definition" and "holes", and where ground beyond
- * the DEM could change values "beyond". `progress` may be null. */
+ * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
+ * "unit"}], "1" for plain numbers), and where ground beyond the DEM could change values
+ * "beyond". `progress` may be null. */
 
 /* Light and shade at a time: 1 lit, 0 in the shadow of the ground.
  * @param options  "time" ("2026-06-21T18:30+02:00", "sunset-30min at 47.2,11.4"), "date", "zone" as

@@ -98,5 +98,26 @@ TEST(ProgressBar, SaysNothingWhereNothingIsToBeSaid) {
     EXPECT_EQ(terminal.text(), "");
 }
 
+TEST(ProgressBar, IsLinesForOtherPrograms) {
+    std::array<int, 2> pipe_ends{};
+    ASSERT_EQ(pipe(pipe_ends.data()), 0);
+    ProgressBar::use_lines(true);
+    log::set_level(log::Level::Warning);
+    {
+        ProgressBar bar("shade.tif", pipe_ends[1]);
+        bar.show(0.25);
+        bar.show(0.3);  // too soon
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        bar.show(3, 4);
+    }
+    ProgressBar::use_lines(false);
+    log::set_level(log::Level::Info);
+    std::string text(4096, 0);
+    text.resize(static_cast<std::size_t>(read(pipe_ends[0], text.data(), text.size())));
+    EXPECT_EQ(text, "progress 0.250\nprogress 0.750\n");
+    close(pipe_ends[0]);
+    close(pipe_ends[1]);
+}
+
 }  // namespace
 }  // namespace relevo

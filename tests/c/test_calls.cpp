@@ -1,6 +1,8 @@
 // What is wrong with a call is a code and a sentence, never a crash.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -28,6 +30,7 @@ TEST(BadCalls, NullIsAnError) {
         relevo_dem_from_heights(nullptr, nullptr),
         relevo_dem_grid(nullptr, nullptr),
         relevo_dem_crs(nullptr, nullptr),
+        relevo_dem_wkt(nullptr, nullptr),
         relevo_dem_read(nullptr, nullptr, 0),
         relevo_dem_height(nullptr, 0, 0, nullptr),
         relevo_sun_position(nullptr, nullptr, 1, nullptr, nullptr, nullptr, nullptr),
@@ -79,12 +82,39 @@ TEST(BadCalls, SizesAreChecked) {
     expect_error(
         relevo_dem_grid(dem.get(), &grid), RELEVO_RESULT_BAD_CALL,
         "relevo_dem_grid: grid.size: expected " + std::to_string(sizeof grid) + " but got 0");
-    // A struct of an earlier version, which ended before the spacings.
     grid.size = offsetof(relevo_grid, column_spacing_m);
-    grid.column_spacing_m = -7;
-    expect_ok(relevo_dem_grid(dem.get(), &grid));
-    EXPECT_GT(grid.columns, 1);
-    EXPECT_EQ(grid.column_spacing_m, -7);
+    EXPECT_EQ(relevo_dem_grid(dem.get(), &grid), RELEVO_RESULT_BAD_CALL);
+    // A struct of a later version: only the members that are known are filled.
+    struct {
+        relevo_grid grid;
+        double later;
+    } larger{{}, -7};
+    larger.grid.size = sizeof larger;
+    expect_ok(relevo_dem_grid(dem.get(), &larger.grid));
+    EXPECT_GT(larger.grid.columns, 1);
+    EXPECT_EQ(larger.grid.size, sizeof larger);
+    EXPECT_EQ(larger.later, -7);
+}
+
+TEST(Dems, AreFoundAfterTheWorkingFolderHasChanged) {
+    const std::filesystem::path before = std::filesystem::current_path();
+    const std::filesystem::path path = bundled_dem();
+    std::filesystem::current_path(path.parent_path());
+    const std::string name = path.filename().string();
+    const char* const file = name.c_str();
+    relevo_dem* opened = nullptr;
+    expect_ok(relevo_dem_open(&file, 1, nullptr, &opened));
+    const DemHandle dem(opened);
+    std::filesystem::current_path("/");
+    const relevo_grid grid = grid_of(opened);
+    auto place = sized<relevo_place>();
+    place.lat_deg = grid.centre_lat_deg;
+    place.lon_deg = grid.centre_lon_deg;
+    const double azimuth_deg = 90;
+    double elevation_deg = -90;
+    expect_ok(relevo_horizon(opened, &place, nullptr, &azimuth_deg, 1, &elevation_deg, nullptr));
+    EXPECT_GT(elevation_deg, -10);
+    std::filesystem::current_path(before);
 }
 
 TEST(BadInput, SaysWhatTheProgramSays) {
@@ -146,6 +176,10 @@ TEST(BadInput, HeightsOfLies) {
     relevo_dem* dem = nullptr;
     expect_error(relevo_dem_from_heights(&raster, &dem), RELEVO_RESULT_BAD_INPUT,
                  "heights: transform: expected finite numbers and cells with an area");
+    raster.transform[1] = raster.transform[5] = 1;
+    expect_error(relevo_dem_from_heights(&raster, &dem), RELEVO_RESULT_BAD_INPUT,
+                 "heights: transform: the identity, which GDAL has where it knows no place; "
+                 "expected coordinates of the CRS");
     const double transform[6] = {600000, 30, 0, 5200000, 0, -30};
     std::copy_n(transform, 6, raster.transform);
     raster.columns = 5;

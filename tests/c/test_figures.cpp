@@ -77,6 +77,9 @@ TEST_F(Figures, HoursAndIrradiationAreThoseOfTheProgram) {
     EXPECT_EQ(json["holes"], 0);
     EXPECT_TRUE(std::string(json["definition"]).find("irradiation") != std::string::npos);
     EXPECT_TRUE(json.contains("beyond"));
+    ASSERT_EQ(json["bands"].size(), 3U);
+    EXPECT_EQ(json["bands"][2]["name"], "global irradiation");
+    EXPECT_EQ(json["bands"][2]["unit"], "kWh/m2");
 }
 
 TEST_F(Figures, AYearTakesDirectionsAsInTheProgram) {
@@ -121,6 +124,36 @@ TEST_F(Figures, ADemFromMemoryGivesTheSame) {
               draw(open_session(copy.get(), scene).get()).rgba);
 }
 
+TEST(Heights, AreReadAsTheOptionsSay) {
+    std::vector<float> heights(12, 1000.0F);
+    heights[5] = -5;
+    auto raster = sized<relevo_raster>();
+    raster.heights_m = heights.data();
+    raster.count = 12;
+    raster.columns = 4;
+    raster.rows = 3;
+    raster.crs = "EPSG:32632";
+    const double transform[6] = {600000, 30, 0, 5200000, 0, -30};
+    std::copy_n(transform, 6, raster.transform);
+    raster.options = R"({"unit": "ft", "nodata": -5})";
+    relevo_dem* made = nullptr;
+    expect_ok(relevo_dem_from_heights(&raster, &made));
+    const DemHandle dem(made);
+    std::vector<float> read(12);
+    expect_ok(relevo_dem_read(dem.get(), read.data(), 12));
+    EXPECT_FLOAT_EQ(read[0], 304.8F);
+    EXPECT_TRUE(std::isnan(read[5]));
+    const char* wkt = nullptr;
+    expect_ok(relevo_dem_wkt(dem.get(), &wkt));
+    EXPECT_EQ(std::string(wkt).rfind("PROJCRS[\"WGS 84 / UTM zone 32N\"", 0), 0U) << wkt;
+    raster.options = R"({"crs": "EPSG:4326"})";
+    expect_error(relevo_dem_from_heights(&raster, &made), RELEVO_RESULT_BAD_CALL,
+                 "relevo_dem_from_heights: heights.options: crs: expected none");
+    raster.size = offsetof(relevo_raster, options);  // of an earlier version
+    expect_ok(relevo_dem_from_heights(&raster, &made));
+    relevo_dem_close(made);
+}
+
 TEST_F(Figures, ThePositionIsThatOfTheProgram) {
     auto place = sized<relevo_place>();
     place.lat_deg = 46.95;
@@ -141,11 +174,33 @@ TEST_F(Figures, ThePositionIsThatOfTheProgram) {
     }
 }
 
+TEST(Position, DependsOnTheCallAlone) {
+    // What one call has computed of the air is no other place's or model's.
+    const double time_s = 1781982000;  // 2026-06-20T19:00Z, the sun near the horizon
+    const auto apparent = [&](double lat_deg, double height_m, const char* model) {
+        auto place = sized<relevo_place>();
+        place.lat_deg = lat_deg;
+        place.lon_deg = 7.44;
+        place.height_m = height_m;
+        double elevation_deg = 0, apparent_deg = 0;
+        expect_ok(
+            relevo_sun_position(&place, &time_s, 1, model, nullptr, &elevation_deg, &apparent_deg));
+        return apparent_deg - elevation_deg;
+    };
+    const double first = apparent(46.95, 0, nullptr);
+    EXPECT_LT(apparent(46.95, 3000, nullptr), 0.8 * first);
+    EXPECT_NE(apparent(46.95, 0, "saemundsson"), first);
+    EXPECT_EQ(apparent(46.95, 0, "none"), 0);
+    EXPECT_NE(apparent(40, 0, "standard"), first);
+    EXPECT_EQ(apparent(46.95, 0, "standard"), first);
+}
+
 TEST_F(Figures, EventsAreThoseOfTheProgram) {
     auto place = sized<relevo_place>();
     place.lat_deg = 46.95;
     place.lon_deg = 7.44;
-    relevo_event events[20];
+    relevo_event events[20] = {};
+    events[0].size = sizeof(relevo_event);
     std::size_t count = 0;
     expect_ok(relevo_sun_events(&place, "2026-06-21", "Europe/Zurich", events, 20, &count));
     const Result run = relevo({"sun", "day", "--at", "46.95,7.44,0", "--date", "2026-06-21", "--tz",

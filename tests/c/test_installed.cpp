@@ -69,6 +69,27 @@ TEST_F(Installed, ByPkgConfig) {
     EXPECT_EQ(hours.out, "13.16 h\n") << hours.err;
 }
 
+TEST_F(Installed, ThePythonPackage) {
+    const fs::path packages = prefix() / RELEVO_PYTHON_DIR;
+    if (!fs::exists(packages / "relevo")) GTEST_SKIP() << "built without the Python package";
+    const std::string script =
+        "import importlib.metadata, relevo, sys, warnings\n"
+        "warnings.simplefilter('ignore')\n"
+        "dem = relevo.open(sys.argv[1])\n"
+        "print(relevo.__file__, importlib.metadata.version('relevo') == relevo.__version__)\n"
+        "print(round(float(dem.sun.hours('2026-06-21').values.mean()), 2))\n"
+        "print(dem.capture(size=(64, 48), device='software').shape)\n";
+    const Result ran = run(RELEVO_PYTHON_PROGRAM, {"-B", "-c", script, dem()},
+                           {"PYTHONPATH=" + packages.string(), environment("LD_LIBRARY_PATH", "")});
+    EXPECT_EQ(ran.out, (packages / "relevo/__init__.py").string() + " True\n13.16\n(48, 64, 4)\n")
+        << ran.err;
+    // Nothing in it leads back to where it was built.
+    const Result dynamic =
+        run("/bin/sh", {"-c", "readelf -d " + packages.string() + "/relevo/*.so"});
+    EXPECT_NE(dynamic.out.find("librelevo.so.0"), std::string::npos) << dynamic.err;
+    EXPECT_EQ(dynamic.out.find("RUNPATH"), std::string::npos) << dynamic.out;
+}
+
 TEST_F(Installed, APluginByCMake) {
     const fs::path sources = dir_ / "plugin";
     fs::create_directories(sources);

@@ -1,6 +1,8 @@
 // Pictures of the library are the program's.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -103,6 +105,10 @@ TEST_F(Sessions, AnErrorLeavesTheSceneAsItWas) {
         EXPECT_NE(std::string(relevo_error()), "") << change;
         EXPECT_EQ(scene_of(session_.get()), scene) << change;
     }
+    const std::string in_feet =
+        fmt::format(R"({{"dem": {{"files": ["{}"], "unit": "ft"}}}})", bundled_dem());
+    expect_error(relevo_set(session_.get(), in_feet.c_str()), RELEVO_RESULT_BAD_INPUT,
+                 "scene: dem: a session keeps its DEM; open another session");
     EXPECT_EQ(relevo_resize(session_.get(), 0, 4), RELEVO_RESULT_BAD_INPUT);
     EXPECT_EQ(draw(session_.get()).rgba, before);
 }
@@ -148,12 +154,45 @@ TEST_F(Sessions, PositionsLieOnTheGround) {
     std::printf("[ accuracy ] positions of %d pixels: worst %.2f m (limit 12)\n", compared,
                 worst_m);
     EXPECT_LT(worst_m, 12);  // a tenth of a pixel of the farthest ground, triangles for bilinear
-    // Counts are checked before anything is drawn into the arrays.
+    // Nothing is written where a count is wrong, or where there is no data.
+    std::vector<std::uint8_t> rgba(4 * pixels, 7);
+    picture.rgba = rgba.data();
+    picture.rgba_count = rgba.size();
     picture.normal_count -= 1;
     EXPECT_EQ(relevo_draw_picture(session_.get(), &picture), RELEVO_RESULT_BAD_CALL);
+    EXPECT_TRUE(std::ranges::all_of(rgba, [](auto value) { return value == 7; }));
     expect_ok(relevo_set(session_.get(), R"({"camera": {"stereo": "anaglyph"}})"));
     picture.normal_count += 1;
     EXPECT_EQ(relevo_draw_picture(session_.get(), &picture), RELEVO_RESULT_BAD_INPUT);
+    EXPECT_TRUE(std::ranges::all_of(rgba, [](auto value) { return value == 7; }));
+}
+
+TEST_F(Sessions, TakeOverlaysAndTheirOwnScene) {
+    const std::string hours = (scratch_dir("overlay") / "hours.tif").string();
+    ASSERT_EQ(relevo({"-q", "sun", "hours", bundled_dem(), "--date", "2026-06-21", "-o", hours,
+                      "--overwrite"})
+                  .status,
+              0);
+    const std::vector<std::uint8_t> plain = draw(session_.get()).rgba;
+    expect_ok(relevo_set(session_.get(),
+                         fmt::format(R"({{"overlay": {{"file": "{}"}}}})", hours).c_str()));
+    EXPECT_EQ(draw(session_.get()).rgba,
+              captured({"--time", "2026-06-21T20:00Z", "--size", "128x96", "--overlay", hours}));
+    const std::string scene = scene_of(session_.get());
+    expect_ok(relevo_set(session_.get(), scene.c_str()));
+    EXPECT_EQ(draw(open_session(dem_.get(), scene).get()).rgba, draw(session_.get()).rgba);
+    EXPECT_NE(draw(session_.get()).rgba, plain);
+}
+
+TEST_F(Sessions, AHostMayExitWithANativeEffectInUse) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(
+        {
+            relevo_set(session_.get(), R"({"effects": {"enable": ["contours"]}})");
+            draw(session_.get());
+            std::exit(0);
+        },
+        testing::ExitedWithCode(0), "");
 }
 
 TEST_F(Sessions, OpenWithoutADevice) {

@@ -1,0 +1,46 @@
+"""Relevo: any DEM under the sun of a date.
+
+    import relevo
+
+    dem = relevo.open("alps.tif")
+    picture = dem.capture(time="2026-06-21T18:30", size=(1280, 1024))
+    hours = dem.sun.hours("2026-06-21")
+
+Units are metres, degrees and hours; azimuths are clockwise from true north; places are WGS 84, east positive.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from . import _relevo, sun
+from ._dem import Dem, open
+from ._errors import BadCall, BadInput, Cancelled, Error, NoDevice, OutOfMemory, Warning
+from ._raster import Raster
+from ._sun_over_dem import Horizon, SunOverDem
+from ._transform import Transform
+from ._view import Layers, View
+
+__all__ = [
+    "BadCall",
+    "BadInput",
+    "Cancelled",
+    "Dem",
+    "Error",
+    "Horizon",
+    "Layers",
+    "NoDevice",
+    "OutOfMemory",
+    "Raster",
+    "SunOverDem",
+    "Transform",
+    "View",
+    "Warning",
+    "open",
+    "sun",
+]
+
+__version__ = _relevo.version()
+
+if "xarray" in sys.modules:
+    from . import xarray as _xarray  # noqa: F401, the accessor

@@ -1,0 +1,84 @@
+"""Errors and warnings of the library, and what it says on its way."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import re
+import sys
+import warnings
+from collections.abc import Iterator
+
+from . import _relevo
+
+log = logging.getLogger("relevo")
+
+_DEBUG, _INFO = 0, 1  # levels of messages; above: a warning
+
+
+class Error(Exception):
+    """An error of Relevo. Its text is the sentence that the program would print."""
+
+
+class BadCall(Error, ValueError):
+    """The call itself is wrong: an array of a wrong shape or type, a DEM or view that is closed."""
+
+
+class BadInput(Error, ValueError):
+    """A file, an option or a value is wrong."""
+
+
+class NoDevice(Error):
+    """There is no GL device that can draw."""
+
+
+class Cancelled(Error):
+    """`progress` returned False."""
+
+
+class OutOfMemory(Error, MemoryError):
+    """Memory does not suffice."""
+
+
+class Warning(UserWarning):
+    """The result may not be what the user expects."""
+
+
+_CLASSES: dict[int, type[Error]] = {2: BadCall, 3: BadInput, 4: NoDevice, 5: Cancelled, 6: OutOfMemory}
+
+
+_MEMORY = re.compile(r"/vsimem/relevo/\d+/heights\.tif")  # the name that heights of memory have for GDAL
+
+
+def error_of(code: int, text: str) -> Error:
+    """The exception for a code of the C interface. The module calls it."""
+    return _CLASSES.get(code, Error)(_MEMORY.sub("heights", text))
+
+
+def _level_of_caller() -> int:
+    """`stacklevel` of the first frame outside of this package, for the function that calls."""
+    level = 1
+    frame = sys._getframe(1)
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).split(".")[0] in ("relevo", "contextlib"):
+        frame = frame.f_back
+        level += 1
+    return level
+
+
+def warn(text: str) -> None:
+    """Warns the caller of the package."""
+    warnings.warn(text, Warning, stacklevel=_level_of_caller())
+
+
+@contextlib.contextmanager
+def messages() -> Iterator[None]:
+    """Around calls of the library: what it says becomes warnings and log records, on this thread."""
+    try:
+        yield
+    finally:
+        for level, text in _relevo.take_messages():
+            text = _MEMORY.sub("heights", text)
+            if level > _INFO:
+                warn(text)
+            else:
+                log.log(logging.INFO if level == _INFO else logging.DEBUG, "%s", text)

@@ -1,0 +1,178 @@
+"""DEMs from memory: numpy arrays, rasterio datasets and xarray's arrays become heights that the library takes."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, NamedTuple, Optional
+
+import numpy
+from numpy.typing import NDArray
+
+from ._errors import BadInput, warn
+from ._transform import Transform, read_transform
+
+
+class Heights(NamedTuple):
+    """Heights on a grid."""
+
+    values: NDArray[numpy.float32]  # (rows, columns), C-contiguous, NaN in voids
+    transform: Transform
+    crs: str
+    unit: Optional[str]  # None: metres
+
+
+def plain_heights(given: Any, nodata: Optional[float]) -> NDArray[numpy.float32]:
+    """float32 of any numbers; masked elements and those of `nodata` become NaN. No copy where none is needed."""
+    if isinstance(given, numpy.ma.MaskedArray) and given.dtype.kind in "iuf":
+        given = numpy.where(numpy.ma.getmaskarray(given), numpy.float32("nan"), given.data)  # type: ignore[no-untyped-call]
+    array = numpy.asarray(given)
+    if array.dtype.kind not in "iuf":
+        raise BadInput(f"heights: expected numbers but got an array of {array.dtype}")
+    if array.ndim != 2:
+        raise BadInput(f"heights: expected rows and columns but got {array.ndim} dimensions, {array.shape}")
+    if min(array.shape) < 2:
+        raise BadInput(f"heights: expected 2 rows and columns or more but got {array.shape}")
+    heights = numpy.ascontiguousarray(array, dtype=numpy.float32)
+    if nodata is not None and not numpy.isnan(nodata):
+        voids = array == nodata
+        if voids.any():
+            heights = heights.copy() if numpy.may_share_memory(heights, array) else heights
+            heights[voids] = numpy.nan
+    return heights
+
+
+def of_array(array: Any, transform: Any, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+    if transform is None:
+        raise BadInput("transform: missing; an array needs transform= and crs=")
+    if crs is None:
+        raise BadInput('crs: missing; an array needs transform= and crs=, such as "EPSG:32632"')
+    return Heights(plain_heights(array, nodata), read_transform(transform), crs_text(crs), unit)
+
+
+def crs_text(crs: Any) -> str:
+    """A text that the library takes of one, of a number of EPSG, or of a CRS of rasterio or pyproj."""
+    if isinstance(crs, str):
+        return crs
+    if isinstance(crs, (int, numpy.integer)) and not isinstance(crs, bool):
+        return f"EPSG:{crs}"
+    for method in ("to_wkt", "ExportToWkt"):
+        if hasattr(crs, method):
+            return str(getattr(crs, method)())
+    raise BadInput(f'crs: expected a text such as "EPSG:32632", or a CRS of rasterio or pyproj, but got {crs!r}')
+
+
+def is_rasterio(source: Any) -> bool:
+    """Whether it is an open dataset of rasterio, which is then imported already."""
+    return all(hasattr(source, name) for name in ("read", "transform", "crs", "nodatavals", "count"))
+
+
+def of_rasterio(dataset: Any, band: int, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+    """Heights of a band with scale, offset, mask and unit as the dataset has them."""
+    if not 1 <= band <= dataset.count:
+        raise BadInput(f"band: {dataset.name} has {dataset.count} bands, not {band}")
+    if dataset.crs is None and crs is None:
+        raise BadInput(f"crs: {dataset.name} has none; give crs=")
+    values = dataset.read(band, masked=True)
+    if nodata is not None:
+        values[values.data == nodata] = numpy.ma.masked
+    scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
+    if (scale, offset) != (1, 0):
+        values = values.astype(numpy.float64) * scale + offset
+    if unit is None:
+        unit = dataset.units[band - 1] or None
+    return Heights(
+        plain_heights(values, None),
+        read_transform(dataset.transform),
+        crs_text(dataset.crs if crs is None else crs),
+        unit,
+    )
+
+
+def is_dataarray(source: Any) -> bool:
+    """Whether it is a DataArray of xarray, which is then imported already."""
+    xarray = sys.modules.get("xarray")
+    return xarray is not None and isinstance(source, xarray.DataArray)
+
+
+def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+    """Heights with coordinates and CRS as rioxarray writes them, or CF has them."""
+    array = array.squeeze(drop=False)
+    if array.ndim != 2:
+        raise BadInput(f"heights: expected two dimensions but got {array.dims}")
+    if unit is None and isinstance(array.attrs.get("units"), str):
+        unit = _unit_of(array.attrs["units"])
+    if nodata is None:
+        nodata = _number(array.attrs.get("_FillValue", array.attrs.get("nodata")))
+    if transform is None:
+        transform = _transform_of(array)
+    if crs is None:
+        crs = _crs_of(array)
+    if crs is None:
+        raise BadInput("crs: the DataArray has none; give crs=")
+    return Heights(plain_heights(array.values, nodata), read_transform(transform), crs_text(crs), unit)
+
+
+def _unit_of(text: str) -> Optional[str]:
+    return None if text in ("", "1", "m", "metre", "meter", "metres", "meters") else text
+
+
+def _number(value: Any) -> Optional[float]:
+    try:
+        return None if value is None else float(value)
+    except (TypeError, ValueError):
+        return None
+
+
+def _transform_of(array: Any) -> Transform:
+    """From coordinates of centres, and from GeoTransform, where GDAL's drivers and rioxarray put it: that one is exact,
+    but stays as it was where a part of the array is taken."""
+    text = _reference_of(array).get("GeoTransform")
+    written = Transform.from_gdal(*(float(number) for number in str(text).split())) if text else None
+    y, x = (_step_of(array, dim) for dim in array.dims)
+    if x is None or y is None:
+        if written is None:
+            raise BadInput("transform: the DataArray has no regular coordinates; give transform=")
+        return written
+    (first_x, step_x), (first_y, step_y) = x, y
+    found = Transform(step_x, 0, first_x - 0.5 * step_x, 0, step_y, first_y - 0.5 * step_y)
+    return written if written is not None and _agree(written, found, array.shape) else found
+
+
+def _agree(written: Transform, found: Transform, shape: tuple[int, int]) -> bool:
+    """Whether corners differ by less than a thousandth of a cell."""
+    for corner in ((0, 0), (shape[1], shape[0])):
+        (x, y), (other_x, other_y) = written.apply(*corner), found.apply(*corner)
+        if abs(x - other_x) > 1e-3 * abs(found.a) or abs(y - other_y) > 1e-3 * abs(found.e):
+            return False
+    return True
+
+
+def _step_of(array: Any, dim: Any) -> Optional[tuple[float, float]]:
+    """The first coordinate and the step of regular ones; None where the dimension has no coordinates."""
+    if dim not in array.coords or array.coords[dim].dtype.kind not in "iuf":
+        return None
+    centres = numpy.asarray(array.coords[dim].values, dtype=numpy.float64)
+    step = (centres[-1] - centres[0]) / (len(centres) - 1) if len(centres) > 1 else 0.0
+    if step == 0 or not numpy.allclose(numpy.diff(centres), step, rtol=1e-3, atol=0):
+        raise BadInput(f"transform: the coordinates of {dim} are not regular; expected equal steps")
+    return float(centres[0]), float(step)
+
+
+def _reference_of(array: Any) -> dict[Any, Any]:
+    """Attributes of the variable that describes the CRS."""
+    name = array.encoding.get("grid_mapping", array.attrs.get("grid_mapping", "spatial_ref"))
+    return dict(array.coords[name].attrs) if name in array.coords else {}
+
+
+def _crs_of(array: Any) -> Any:
+    attributes = _reference_of(array)
+    for name in ("crs_wkt", "spatial_ref"):
+        if attributes.get(name):
+            return attributes[name]
+    if array.attrs.get("crs"):
+        return array.attrs["crs"]
+    units = [str(array.coords[dim].attrs.get("units", "")) for dim in array.dims if dim in array.coords]
+    if len(units) == 2 and units[0].startswith("degree") and units[1].startswith("degree"):
+        warn("crs: the DataArray has degrees and no CRS, WGS 84 is assumed; crs= sets another")
+        return "EPSG:4326"
+    return None

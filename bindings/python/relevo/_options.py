@@ -1,0 +1,32 @@
+"""Options and scenes as JSON texts."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy
+
+from ._errors import BadInput
+
+
+def _plain(value: Any) -> Any:
+    """What json does not know of numpy."""
+    if isinstance(value, numpy.generic):
+        return value.item()
+    if isinstance(value, numpy.ndarray):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is nothing that JSON has")
+
+
+def json_text(who: str, value: Any) -> str:
+    """JSON of a value. Raises BadInput for what JSON cannot have."""
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise BadInput(f"{who}: {error}") from None
+
+
+def options_text(who: str, **options: Any) -> str:
+    """JSON of those options that are not None."""
+    return json_text(who, {key: value for key, value in options.items() if value is not None})

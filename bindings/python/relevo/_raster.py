@@ -1,0 +1,151 @@
+"""Rasters with their place on the Earth."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NoReturn, Optional, Union
+
+import numpy
+from numpy.typing import NDArray
+
+from ._errors import BadInput
+from ._transform import Transform
+
+
+class Raster:
+    """Values on the grid of a DEM.
+
+    numpy takes it as an array: `numpy.asarray(raster)`, `matplotlib.pyplot.imshow(raster)`.
+    """
+
+    def __init__(
+        self,
+        values: NDArray[numpy.float32],
+        transform: Transform,
+        crs: str,
+        wkt: str,
+        bands: tuple[str, ...],
+        names: tuple[str, ...],
+        units: tuple[str, ...],
+        about: dict[str, Any],
+    ) -> None:
+        self.values = values
+        """float32, (rows, columns), or (bands, rows, columns) where a list of bands was asked for. Rows are in the
+        order of the DEM, voids are NaN."""
+        self.transform = transform
+        self.crs = crs
+        """The code of the CRS, such as "EPSG:32632", or WKT where it has none."""
+        self.wkt = wkt
+        """The CRS as WKT 2."""
+        self.bands = bands
+        """Names by which `raster["global"]` finds a band."""
+        self.names = names
+        """What each band is, for titles: "sun hours"."""
+        self.units = units
+        """The unit of each band: "h", "min", "kWh/m2", "m"; "1" for plain numbers."""
+        self.about = about
+        """"definition": what was computed, in a sentence. "holes": number of voids. "beyond": a sentence about terrain
+        outside of the DEM, where that could change values."""
+
+    @property
+    def name(self) -> str:
+        """What the first band is."""
+        return self.names[0]
+
+    @property
+    def unit(self) -> str:
+        """The unit of the first band."""
+        return self.units[0]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """That of `values`."""
+        return self.values.shape
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(left, bottom, right, top) in the CRS, outer edges of cells."""
+        return bounds_of(self.transform, self.values.shape[-2], self.values.shape[-1])
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        values = self.values if dtype is None else self.values.astype(dtype, copy=False)
+        return values.copy() if copy else values
+
+    def __getitem__(self, band: str) -> Raster:
+        """A band by its name: a raster of (rows, columns). No copy."""
+        if band not in self.bands:
+            raise KeyError(f"{band}: expected one of {', '.join(self.bands)}")
+        i = self.bands.index(band)
+        values = self.values if self.values.ndim == 2 else self.values[i]
+        one = slice(i, i + 1)
+        return Raster(
+            values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], self.about
+        )
+
+    def __iter__(self) -> NoReturn:
+        raise TypeError("a raster has no order of its own; go over raster.values or raster.bands")
+
+    def __repr__(self) -> str:
+        shape = " x ".join(str(side) for side in self.values.shape)
+        what = ", ".join(f"{name} [{unit}]" for name, unit in zip(self.names, self.units))
+        crs = self.crs if len(self.crs) < 40 else self.crs[:37] + "..."
+        return f"<relevo.Raster {shape}: {what}, {crs}>"
+
+    def to_xarray(self) -> Any:
+        """An xarray.DataArray with coordinates of the centres of cells and the CRS in `spatial_ref`, as rioxarray has
+        it. No copy of the values.
+
+        Dimensions are y and x, with band before them where `values` has it. The coordinates of a rotated raster are
+        numbers of rows and columns.
+        """
+        from . import xarray
+
+        return xarray.to_dataarray(self)
+
+    def save(self, path: Union[str, os.PathLike[str]], **creation_options: Any) -> None:
+        """Writes a GeoTIFF by rasterio, which has to be installed: float32, NaN as nodata, unit and name of each band.
+
+        creation_options: as rasterio.open() takes them, such as compress="deflate".
+        """
+        import rasterio
+
+        bands = self.values if self.values.ndim == 3 else self.values[numpy.newaxis]
+        profile: dict[str, Any] = {"driver": "GTiff", "nodata": float("nan"), "tiled": True, **creation_options}
+        with rasterio.open(
+            path,
+            "w",
+            count=bands.shape[0],
+            height=bands.shape[1],
+            width=bands.shape[2],
+            dtype="float32",
+            crs=self.wkt,
+            transform=rasterio.Affine(*self.transform),
+            **profile,
+        ) as file:
+            file.write(bands)
+            file.descriptions = self.names
+            file.units = self.units
+            file.update_tags(**{f"RELEVO_{key.upper()}": str(value) for key, value in self.about.items()})
+
+
+def bounds_of(transform: Transform, rows: int, columns: int) -> tuple[float, float, float, float]:
+    """(left, bottom, right, top) of a raster."""
+    corners = [transform.apply(column, row) for column in (0, columns) for row in (0, rows)]
+    xs, ys = zip(*corners)
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def band_list(bands: Union[str, list[str], tuple[str, ...]]) -> tuple[list[str], bool]:
+    """Names of bands, and whether there is one alone, whose values are then without a dimension of bands."""
+    if isinstance(bands, str):
+        return [bands], True
+    names = list(bands)
+    if not names or not all(isinstance(name, str) for name in names):
+        raise BadInput("bands: expected a name or a list of names")
+    return names, False
+
+
+def empty(bands: Optional[int], rows: int, columns: int) -> NDArray[numpy.float32]:
+    """Room for values."""
+    shape = (rows, columns) if bands is None else (bands, rows, columns)
+    return numpy.empty(shape, dtype=numpy.float32)

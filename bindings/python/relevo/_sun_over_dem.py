@@ -1,0 +1,187 @@
+"""Figures of sunlight over a DEM."""
+
+from __future__ import annotations
+
+import datetime
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy
+from numpy.typing import NDArray
+
+from ._errors import BadInput, messages
+from ._options import options_text
+from ._raster import Raster, band_list, empty
+from ._times import Date, Time, date_text, time_text
+
+if TYPE_CHECKING:
+    from ._dem import Dem
+
+Progress = Callable[[float], object]
+"""Is called with the share that is done, 0 to 1, on the thread that has called. False from it cancels."""
+
+_Fill = Callable[[str, NDArray[Any], Optional[Progress]], str]
+
+
+class Horizon(NamedTuple):
+    """The horizon that the ground makes around a place; float64, an element for each direction."""
+
+    azimuth: NDArray[numpy.float64]
+    """Degrees clockwise from true north."""
+    elevation: NDArray[numpy.float64]
+    """Degrees, terrestrial refraction included."""
+    distance: NDArray[numpy.float64]
+    """Of the ground that makes the horizon [m]; NaN where that is outside of the DEM."""
+
+
+class SunOverDem:
+    """Figures of sunlight over a DEM: `dem.sun`.
+
+    Rasters have the DEM's rows and columns; values are those of the program, to the bit. Ctrl-C ends them with
+    KeyboardInterrupt and leaves the DEM usable. All take
+
+    progress: a function that is called with the share that is done; False from it raises Cancelled
+    terrestrial_refraction: curvature of a line of sight in units of the Earth's (0.13)
+    refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"
+
+    and warn (relevo.Warning) where terrain outside of the DEM could change values.
+    """
+
+    def __init__(self, dem: Dem) -> None:
+        self._dem = dem
+
+    def hours(
+        self,
+        date: Optional[Date] = None,
+        *,
+        start: Optional[Date] = None,
+        end: Optional[Date] = None,
+        year: Optional[int] = None,
+        zone: Optional[str] = None,
+        bands: Union[str, list[str], tuple[str, ...]] = "hours",
+        step: Union[float, datetime.timedelta, None] = None,
+        linke: Optional[float] = None,
+        albedo: Optional[float] = None,
+        terrestrial_refraction: Optional[float] = None,
+        refraction: Optional[str] = None,
+        progress: Optional[Progress] = None,
+    ) -> Raster:
+        """Hours of direct sun, and what belongs to them.
+
+        One of these: date, a day; start and end, both included; year, all of its days.
+
+        zone: of the days, "Europe/Zurich", "+05:30". None: that of the place.
+        bands: "hours" [h]; of at most four days "first", "last" (minutes from the beginning to the first and the last
+            sun) and "spells" (sunshine periods); "global", "beam", "diffuse", "reflected" (clear sky, kWh/m2). A list
+            gives values of (bands, rows, columns).
+        step: of the sun, of at most four days [s] (180)
+        linke: Linke turbidity of irradiation (3)
+        albedo: of the ground, of irradiation (0.2)
+        """
+        names, alone = band_list(bands)
+        if isinstance(step, datetime.timedelta):
+            step = step.total_seconds()
+        days = {"date": date, "from": start, "to": end}
+        options = options_text(
+            "hours",
+            **{key: date_text(day) for key, day in days.items() if day is not None},
+            year=year,
+            zone=zone,
+            bands=names,
+            step=step,
+            linke=linke,
+            albedo=albedo,
+            terrestrial_refraction=terrestrial_refraction,
+            refraction=refraction,
+        )
+        return self._raster(self._dem._handle.sun_hours, options, tuple(names), alone, progress)
+
+    def shadow(
+        self,
+        time: Time,
+        *,
+        date: Optional[Date] = None,
+        zone: Optional[str] = None,
+        soft: bool = False,
+        terrestrial_refraction: Optional[float] = None,
+        refraction: Optional[str] = None,
+        progress: Optional[Progress] = None,
+    ) -> Raster:
+        """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
+
+        time, date, zone: as in `Dem.view()`
+        soft: the visible fraction of the solar disc instead
+        """
+        options = options_text(
+            "shadow",
+            time=time_text(time),
+            date=None if date is None else date_text(date),
+            zone=zone,
+            soft=soft,
+            terrestrial_refraction=terrestrial_refraction,
+            refraction=refraction,
+        )
+        return self._raster(self._dem._handle.shadow, options, ("shadow",), True, progress)
+
+    def sky_view(
+        self,
+        directions: Optional[int] = None,
+        *,
+        level: bool = False,
+        terrestrial_refraction: Optional[float] = None,
+        progress: Optional[Progress] = None,
+    ) -> Raster:
+        """The sky-view factor, 0 to 1.
+
+        directions: in which horizons are computed (36)
+        level: of a level plane instead of the ground as it is inclined
+        """
+        options = options_text(
+            "sky_view", directions=directions, level=level, terrestrial_refraction=terrestrial_refraction
+        )
+        return self._raster(self._dem._handle.sky_view, options, ("sky_view",), True, progress)
+
+    def horizon(
+        self,
+        lat: float,
+        lon: float,
+        *,
+        eye_height: float = 0.0,
+        step: float = 1.0,
+        azimuth: Any = None,
+        terrestrial_refraction: Optional[float] = None,
+    ) -> Horizon:
+        """The horizon that the ground makes around a place.
+
+        lat, lon: degrees of WGS 84
+        eye_height: above the ground [m]
+        step: of the azimuth, from north [degrees]
+        azimuth: directions instead of a step [degrees]
+
+        Raises BadInput for a place without ground.
+        """
+        if azimuth is None:
+            if not 0.001 <= step <= 360:
+                raise BadInput(f"step: expected 0.001 to 360 degrees but got {step}")
+            azimuth = numpy.arange(int(numpy.ceil(round(360 / step, 6)))) * step
+        azimuths = numpy.ascontiguousarray(numpy.atleast_1d(azimuth), dtype=numpy.float64)
+        elevation, distance = numpy.empty_like(azimuths), numpy.empty_like(azimuths)
+        options = options_text("horizon", eye_height=eye_height, terrestrial_refraction=terrestrial_refraction)
+        with messages():
+            self._dem._handle.horizon(float(lat), float(lon), options, azimuths, elevation, distance)
+        return Horizon(azimuths, elevation, distance)
+
+    def _raster(
+        self, fill: _Fill, options: str, bands: tuple[str, ...], alone: bool, progress: Optional[Progress]
+    ) -> Raster:
+        values = empty(None if alone else len(bands), *self._dem.shape)
+        with messages():
+            about = json.loads(fill(options, values, progress))
+        described = about.pop("bands")
+        names = tuple(band["name"] for band in described)
+        units = tuple(band["unit"] for band in described)
+        return self._dem._raster(values, bands, names, units, about)
+
+    def __repr__(self) -> str:
+        return f"<sun over {self._dem!r}>"

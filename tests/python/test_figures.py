@@ -1,0 +1,140 @@
+"""Figures of the package are the program's, bit by bit."""
+
+import datetime
+import json
+
+import numpy
+import pytest
+import rasterio
+
+import relevo
+
+
+def test_grid_is_the_file_s(dem, path):
+    with rasterio.open(path) as file:
+        assert dem.shape == file.shape
+        assert tuple(dem.transform) == pytest.approx(tuple(file.transform)[:6], rel=1e-12)
+        assert dem.bounds == pytest.approx(tuple(file.bounds), rel=1e-12)
+        assert dem.crs == "EPSG:4326"
+        assert rasterio.crs.CRS.from_wkt(dem.wkt) == file.crs
+        numpy.testing.assert_array_equal(dem.heights(), file.read(1).astype(numpy.float32))
+    assert dem.heights().unit == "m"
+
+
+def test_hours(dem, written):
+    hours = dem.sun.hours("2026-06-21")
+    numpy.testing.assert_array_equal(hours, written("sun", "hours", dem.name, "--date", "2026-06-21")[0])
+    assert (hours.name, hours.unit) == ("sun hours", "h")
+    assert hours.about["holes"] == 0
+    assert hours.about["definition"].startswith("hours that the centre of the sun stands over the terrain")
+    assert "beyond" in hours.about
+    assert hours.values.dtype == numpy.float32 and hours.shape == dem.shape
+
+
+def test_bands_of_hours(dem, written):
+    values = dem.sun.hours(
+        start="2026-12-20",
+        end=datetime.date(2026, 12, 21),
+        zone="-05:00",
+        bands=["hours", "first", "global"],
+        linke=2,
+        step=datetime.timedelta(minutes=2),
+    )
+    expected = written(
+        "sun", "hours", dem.name, "--from", "2026-12-20", "--to", "2026-12-21", "--tz", "-05:00", "--bands",
+        "hours,first,global", "--linke", 2, "--step", "2min",
+    )
+    numpy.testing.assert_array_equal(values, expected)
+    assert values.units == ("h", "min", "kWh/m2")
+    numpy.testing.assert_array_equal(values["global"], expected[2])
+    assert values["global"].name == "global irradiation"
+    assert numpy.shares_memory(values["global"].values, values.values)
+    assert "irradiation" in values.about["definition"]
+    with pytest.raises(KeyError, match="diffuse: expected one of hours, first, global"):
+        values["diffuse"]
+
+
+def test_hours_of_a_year(dem, written):
+    numpy.testing.assert_array_equal(dem.sun.hours(year=2026), written("sun", "hours", dem.name, "--year", 2026)[0])
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        "2026-12-21T14:00Z",
+        datetime.datetime(2026, 12, 21, 9, tzinfo=datetime.timezone(datetime.timedelta(hours=-5))),
+        numpy.datetime64("2026-12-21T14:00"),
+        1797861600,
+    ],
+)
+def test_shadow(dem, written, time):
+    expected = written("sun", "shadow", dem.name, "--time", "2026-12-21T14:00Z")
+    numpy.testing.assert_array_equal(dem.sun.shadow(time), expected[0])
+
+
+def test_soft_shadow_of_an_event(dem, written):
+    soft = dem.sun.shadow("sunset-30min", date="2026-12-21", soft=True, refraction="none", terrestrial_refraction=0.2)
+    expected = written(
+        "sun", "shadow", dem.name, "--time", "sunset-30min", "--date", "2026-12-21", "--soft", "--no-refraction", "-k", 0.2
+    )
+    numpy.testing.assert_array_equal(soft, expected[0])
+    assert 0 < numpy.count_nonzero((soft.values > 0) & (soft.values < 1))
+    assert soft.name == "visible fraction of the solar disc"
+
+
+def test_sky_view(dem, written):
+    view = dem.sun.sky_view(directions=16, level=True)
+    numpy.testing.assert_array_equal(view, written("sun", "sky-view", dem.name, "--directions", 16, "--level")[0])
+    assert (view.name, view.unit) == ("sky-view factor", "1")
+
+
+def test_horizon(dem, program):
+    lat, lon = dem.centre
+    horizon = dem.sun.horizon(lat, lon, eye_height=2, step=1)
+    told = json.loads(
+        program("sun", "horizon", dem.name, "--at", f"{lat!r},{lon!r}", "--eye-height", 2, "--step", 1, "--json")
+    )["horizon"]
+    assert len(horizon.azimuth) == len(told) == 360
+    numpy.testing.assert_allclose(horizon.elevation, [row["horizon_deg"] for row in told], atol=1e-6)
+    distances = [numpy.nan if row["distance_m"] is None else row["distance_m"] for row in told]
+    numpy.testing.assert_allclose(horizon.distance, distances, atol=1e-3)
+    south = dem.sun.horizon(lat, lon, eye_height=2, azimuth=180)
+    assert south.elevation[0] == pytest.approx(horizon.elevation[180], abs=1e-4)  # of few, by another way
+    assert len(dem.sun.horizon(lat, lon, step=0.1).azimuth) == 3600
+
+
+def test_height(dem):
+    lat, lon = dem.centre
+    heights = dem.heights().values
+    rows, columns = dem.shape
+    # The middle of an even number of rows and an odd one of columns lies between two posts.
+    between = 0.5 * (float(heights[rows // 2 - 1, columns // 2]) + float(heights[rows // 2, columns // 2]))
+    assert dem.height(lat, lon) == pytest.approx(between, abs=0.01)
+    many = dem.height([[lat, 0], [lat, lat]], lon)
+    assert many.shape == (2, 2)
+    assert many[0, 0] == many[1, 1] == dem.height(lat, lon)
+    assert numpy.isnan(many[0, 1])
+
+
+def test_options_of_opening(path, written):
+    crop = (-84.3, 36.2, -84.2, 36.3)
+    with relevo.open(path, crop=crop, unit="ft", memory_mib=256, holes="cut") as dem:
+        assert dem.shape == pytest.approx((120, 120), abs=1)
+        expected = written("sun", "hours", path, "--date", "2026-06-21", "--crop", "-84.3,36.2,-84.2,36.3", "--unit", "ft")
+        numpy.testing.assert_array_equal(dem.sun.hours("2026-06-21"), expected[0])
+
+
+def test_saved_raster(dem, tmp_path):
+    dem.sun.hours("2026-06-21", bands=["hours", "spells"]).save(tmp_path / "hours.tif", compress="deflate")
+    hours = dem.sun.hours("2026-06-21")
+    with rasterio.open(tmp_path / "hours.tif") as file:
+        numpy.testing.assert_array_equal(file.read(1), hours)
+        assert file.units == ("h", "1") and file.descriptions[0] == "sun hours"
+        assert file.crs.to_epsg() == 4326
+        assert tuple(file.transform)[:6] == pytest.approx(tuple(dem.transform), rel=1e-12)
+        assert file.tags()["RELEVO_DEFINITION"] == hours.about["definition"]
+
+
+def test_repr(dem):
+    assert repr(dem) == f"<relevo.Dem {dem.name!r}: 344 x 403>"
+    assert repr(dem.sun.shadow("2026-12-21T14:00Z")) == "<relevo.Raster 344 x 403: direct sun [1], EPSG:4326>"
