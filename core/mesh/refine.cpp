@@ -241,8 +241,10 @@ std::int64_t cut_corner_contacts(Array2d<float>& height_m) {
 
 std::optional<GridMesh> refine(const Array2d<float>& height_m, Array2d<std::uint8_t>& roles,
                                double error_m, std::int64_t max_triangles) {
+    // Three edges a triangle are numbered with 32 bits.
+    constexpr std::int64_t kMost = std::int64_t{1} << 30;
     Refinement refinement(height_m, roles, error_m);
-    if (!refinement.run(max_triangles)) return std::nullopt;
+    if (!refinement.run(std::min(max_triangles, kMost))) return std::nullopt;
     return refinement.ground();
 }
 
