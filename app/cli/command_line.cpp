@@ -288,6 +288,7 @@ void add_verbs(CLI::App& app) {
     add_film(line);
     add_compare(line);
     add_info(line);
+    add_export(line);
     add_sun(line);
     add_plugins(line);
     add_thumbnail(line);

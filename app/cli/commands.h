@@ -13,6 +13,7 @@ void add_film(Verb app);
 void add_view(Verb app);
 void add_doctor(Verb app);
 void add_info(Verb app);
+void add_export(Verb app);
 void add_sun(Verb app);
 void add_plugins(Verb app);
 void add_thumbnail(Verb app);

@@ -20,14 +20,20 @@ std::filesystem::path own_file() {
     return file.filename().string().find(".so") == std::string::npos ? program : file;
 }
 
-/// Found while the library is loaded: its name may be relative, and the working folder may change.
-const std::filesystem::path loaded_from = own_file();
+const std::filesystem::path& loaded_from() {
+    static const std::filesystem::path file = own_file();
+    return file;
+}
+
+/// Asked while the program or the library is loaded: its name may be relative, and the working
+/// folder may change.
+[[maybe_unused]] const bool asked = !loaded_from().empty();
 
 /// `bin/relevo`, `lib/librelevo.so.0` and `lib/x86_64-linux-gnu/librelevo.so.0` are of one.
 const std::filesystem::path& prefix() {
     static const std::filesystem::path found = [] {
         std::error_code ignored;
-        const std::filesystem::path above = loaded_from.parent_path().parent_path();
+        const std::filesystem::path above = loaded_from().parent_path().parent_path();
         const bool deeper =
             !std::filesystem::exists(above / "share" / "relevo", ignored) &&
             std::filesystem::exists(above.parent_path() / "share" / "relevo", ignored);
