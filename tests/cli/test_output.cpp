@@ -137,6 +137,9 @@ TEST_F(Output, WithoutTheModuleOfFormatsOnlyPngIsWritten) {
     std::error_code error;
     std::filesystem::create_hard_link(kProgram, dir_ / "bin/relevo", error);
     ASSERT_FALSE(error) << error.message();
+    std::filesystem::create_directories(dir_ / "lib/relevo");
+    std::filesystem::create_symlink(build_dir() / "lib/relevo/gdal.so",
+                                    dir_ / "lib/relevo/gdal.so");
     const std::vector<std::string> share{"RELEVO_SHARE=" + (build_dir() / "share/relevo").string()};
     const std::string module = path("lib/relevo/image_formats.so");
     const Result jpg = run(dir_ / "bin/relevo", capture(path("a.jpg")), share);
@@ -146,7 +149,7 @@ TEST_F(Output, WithoutTheModuleOfFormatsOnlyPngIsWritten) {
                            ": cannot open shared object file: No such file or directory; install "
                            "OpenImageIO (libopenimageio2.4), or name a .png\n");
     EXPECT_EQ(run(dir_ / "bin/relevo", capture(path("a.png")), share).status, 0);
-    EXPECT_EQ(names(), (std::vector<std::string>{"a.png", "bin"}));
+    EXPECT_EQ(names(), (std::vector<std::string>{"a.png", "bin", "lib"}));
 }
 
 TEST_F(Output, StandardOutputThatIsLostIsAnErrorOfEveryVerb) {

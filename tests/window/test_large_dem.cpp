@@ -162,7 +162,9 @@ TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
     ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "494"}); }));
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
-    act({"mousemove", "900", "500", "key", "ctrl+e"});
+    act({"mousemove", "900", "500"});
+    settles();
+    act({"key", "ctrl+e"});
     const auto saved = folder_ / "relevo-1.tif";
     ASSERT_TRUE(test::WindowedProgram::wait([&] { return std::filesystem::exists(saved); }, 120))
         << program_->output();
