@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -29,7 +30,11 @@ struct SizeArguments {
                         "are bilinear");
     }
     std::optional<glm::ivec2> size() const {
-        return text.empty() ? std::nullopt : std::optional(parse_size(text));
+        if (text.empty()) return std::nullopt;
+        const glm::ivec2 size = parse_size(text);
+        if (std::min(size.x, size.y) < 2)
+            bad_usage(fmt::format("--size: {}: expected at least 2 columns and rows", text));
+        return size;
     }
 };
 

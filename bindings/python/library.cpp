@@ -46,7 +46,8 @@ Messages& messages() {
 void keep_message(void* /*user*/, std::int32_t level, const char* text) {
     constexpr std::size_t kMost = 1000;  // of a long call; nobody reads more
     const std::lock_guard lock(messages().mutex);
-    if (messages().kept.size() < kMost) messages().kept.emplace_back(level, text);
+    if (level >= RELEVO_MESSAGE_WARNING || messages().kept.size() < kMost)
+        messages().kept.emplace_back(level, text);
 }
 
 /// Work on a thread of its own, as the thread that waits for it sees it.
@@ -117,8 +118,12 @@ std::vector<std::unique_ptr<Work>>& abandoned() {
 }
 
 void abandon(std::unique_ptr<Work> work) {
-    std::erase_if(abandoned(), [](const std::unique_ptr<Work>& one) { return one->over(); });
     work->cancel();
+    // Works release the GIL where they end: the list has to be whole before.
+    std::vector<std::unique_ptr<Work>> ended;
+    for (std::unique_ptr<Work>& one : abandoned())
+        if (one->over()) ended.push_back(std::move(one));
+    std::erase(abandoned(), nullptr);
     abandoned().push_back(std::move(work));
 }
 
@@ -166,7 +171,7 @@ std::string call_long(const py::object& progress, LongCall call_library) {
     try {
         while (!work->wait())
             attend(*work, progress, shown);
-    } catch (py::error_already_set&) {
+    } catch (...) {
         abandon(std::move(work));
         throw;
     }

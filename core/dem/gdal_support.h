@@ -10,8 +10,8 @@ namespace relevo::dem {
 /// keeps its cache of blocks to 256 MiB (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
 /// to standard error: what nobody collects goes to the debug log. In a process of another program
 /// (is_hosted()) it only registers the drivers. Safe on several threads at once; everything here
-/// that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries, before
-/// main, takes 50.
+/// that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries
+/// takes 50.
 void prepare_gdal();
 
 /// Lets GDAL's cache have so much at least: blocks that it cannot hold are decoded for every read.

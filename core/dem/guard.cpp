@@ -33,6 +33,7 @@ std::string disarmed_driver_of(const std::string& path) {
     GdalStrings names;
     for (const std::string& name : gdal_module().disarmed_drivers())
         names.add(name);
+    if (!names.list()) return "";  // for which GDAL would take all drivers
     const GDALDriverH found =
         GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, names.list(), nullptr);
     return found ? GDALGetDriverShortName(found) : "";

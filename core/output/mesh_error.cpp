@@ -83,6 +83,34 @@ class Distances {
     std::vector<GroundFrame::Point> points_;
 };
 
+/// How far 32 bits of their coordinates move the mesh's own points.
+MeshError of_points(const mesh::GridMesh& mesh, const std::vector<glm::vec3>& position_m,
+                    const Array2d<float>& height_m, const GroundFrame& frame) {
+    MeshError sum;
+    std::vector<glm::dvec2> posts;
+    std::vector<double> heights;
+    std::vector<GroundFrame::Point> points;
+    for (std::size_t begin = 0; begin < mesh.points.size(); begin += kPostsAtOnce) {
+        const std::size_t end = std::min(mesh.points.size(), begin + kPostsAtOnce);
+        posts.clear();
+        heights.clear();
+        for (std::size_t i = begin; i < end; ++i) {
+            posts.emplace_back(mesh.points[i].column, mesh.points[i].row);
+            heights.push_back(height_m.at(mesh.points[i].column, mesh.points[i].row));
+        }
+        points.resize(posts.size());
+        frame.place(posts, heights, points);
+        for (std::size_t i = begin; i < end; ++i) {
+            const GroundFrame::Point& exact = points[i - begin];
+            const double off_m =
+                std::abs(glm::dot(glm::dvec3(position_m[i]) - exact.at_m, exact.up));
+            sum.worst_m = std::max(sum.worst_m, off_m);
+            sum.mean_m += off_m;
+        }
+    }
+    return sum;
+}
+
 }  // namespace
 
 MeshError mesh_error(const mesh::GridMesh& mesh, const std::vector<glm::vec3>& position_m,
@@ -102,7 +130,7 @@ MeshError mesh_error(const mesh::GridMesh& mesh, const std::vector<glm::vec3>& p
             of_part[static_cast<std::size_t>(part)] = {distances.worst_m, distances.sum_m};
         }
     });
-    MeshError error;
+    MeshError error = of_points(mesh, position_m, height_m, frame);
     for (const MeshError& part : of_part) {
         error.worst_m = std::max(error.worst_m, part.worst_m);
         error.mean_m += part.mean_m;

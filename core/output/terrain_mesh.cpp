@@ -89,19 +89,33 @@ class Maker {
                             options_.name));
     }
 
+    double lowest_m() const {
+        float lowest = std::numeric_limits<float>::max();
+        for (const float height : height_m_)
+            if (height < lowest) lowest = height;
+        return double{lowest};
+    }
+    double highest_m() const {
+        float highest = std::numeric_limits<float>::lowest();
+        for (const float height : height_m_)
+            if (height > highest) highest = height;
+        return double{highest};
+    }
+
     /// What 32 bits of a coordinate round by [m].
     double rounding_m() const {
         const std::vector<glm::dvec2> corners{{0, 0},
                                               {grid_.columns() - 1, 0},
                                               {0, grid_.rows() - 1},
                                               {grid_.columns() - 1, grid_.rows() - 1}};
-        const std::vector<double> heights(4, 0);
-        std::vector<GroundFrame::Point> points(4);
-        frame_.place(corners, heights, points);
         double most_m = 1;
-        for (const GroundFrame::Point& point : points)
-            if (const double far_m = glm::length(point.at_m); std::isfinite(far_m))
-                most_m = std::max(most_m, far_m);
+        for (const double height_m : {lowest_m(), highest_m()}) {
+            std::vector<GroundFrame::Point> points(4);
+            frame_.place(corners, std::vector<double>(4, height_m), points);
+            for (const GroundFrame::Point& point : points)
+                if (const double far_m = glm::length(point.at_m); std::isfinite(far_m))
+                    most_m = std::max(most_m, far_m);
+        }
         return most_m * 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
     }
 

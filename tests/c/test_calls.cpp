@@ -13,6 +13,7 @@
 
 #include "c/library.h"
 #include "cli/program.h"
+#include "support/support.h"
 
 namespace relevo::test {
 namespace {
@@ -128,6 +129,14 @@ TEST(BadInput, SaysWhatTheProgramSays) {
     expect_error(relevo_dem_open(&file, 1, R"({"untit": "m"})", &dem), RELEVO_RESULT_BAD_INPUT,
                  "scene: (text):1: dem.untit: no such key; did you mean \"unit\"?");
     EXPECT_EQ(relevo_dem_open(&file, 1, "{", &dem), RELEVO_RESULT_BAD_INPUT);
+    // A damaged file is damaged, and not on the net.
+    const std::string damaged = (scratch_dir() / "damaged.tif").string();
+    std::filesystem::copy_file(path, damaged);
+    std::filesystem::resize_file(damaged, 200);
+    const char* const damaged_name = damaged.c_str();
+    EXPECT_EQ(relevo_dem_open(&damaged_name, 1, nullptr, &dem), RELEVO_RESULT_BAD_INPUT);
+    EXPECT_NE(std::string(relevo_error()).find("damaged"), std::string::npos) << relevo_error();
+    EXPECT_EQ(std::string(relevo_error()).find("net"), std::string::npos) << relevo_error();
     auto place = sized<relevo_place>();
     place.lat_deg = 91;
     double time_s = 0, azimuth_deg = 0;

@@ -209,5 +209,21 @@ TEST(ExportVerb, VoidsAreFilledAsPicturesAreOrCut) {
     EXPECT_NEAR(ratio, 1 - 3.1416 * 6.5 * 6.5 / (59 * 59), 0.01);
 }
 
+// Coordinates of 32 bits are a step of 0.06 m apart at 800 km.
+TEST(ExportVerb, CoordinatesOfHighGroundAreAsExactAsTheErrorNeeds) {
+    Raster raster;
+    raster.columns = raster.rows = 8;
+    raster.value = [](int column, int row, int) { return 8000.0 + column * 0.7 + row * 0.3; };
+    const std::string dem = write_raster(folder() / "high.tif", raster);
+    const Result made = relevo({"export", "mesh", dem, "-o", out("high.glb"), "--flat", "--error",
+                                "0.01", "--exaggerate", "100"});
+    EXPECT_EQ(made.status, 3) << made.out;
+    EXPECT_NE(made.err.find("smaller than what 32-bit coordinates hold"), std::string::npos)
+        << made.err;
+    for (const char* size : {"1x9", "9x1"})
+        expect_failure({"export", "normals", dem, "-o", out("n.png"), "--size", size}, 2,
+                       fmt::format("--size: {}: expected at least 2 columns and rows", size));
+}
+
 }  // namespace
 }  // namespace relevo::test

@@ -86,8 +86,12 @@ class Library(Backend):
         if ending not in _DRIVERS:
             raise RelevoError(f"{output}: expected a name that ends in {', '.join(_DRIVERS)}")
         with self._opened(dem, watch) as opened, opened.view(scene=_scene_of(picture)) as view:
+            if watch.is_cancelled():
+                raise Cancelled()
             pixels = view.draw()
             place = (opened.bounds, opened.wkt) if picture.is_map else None
+        if watch.is_cancelled():
+            raise Cancelled()
         _write_picture(pixels, place, _DRIVERS[ending], output)
 
     def carpet(
@@ -263,9 +267,13 @@ def _replace(image: Any, driver: str, options: List[str], output: str) -> None:
     with tempfile.TemporaryDirectory(prefix=".relevo-", dir=os.path.dirname(os.path.abspath(output))) as folder:
         part = os.path.join(folder, os.path.basename(output))
         gdal.ErrorReset()
-        copy = gdal.GetDriverByName(driver).CreateCopy(part, image, options=options)
-        if copy is None:
+        try:
+            copy = gdal.GetDriverByName(driver).CreateCopy(part, image, options=options)
+            is_made = copy is not None
+            del copy  # writes what is left
+        except RuntimeError as error:  # where somebody has had GDAL raise its errors
+            raise RelevoError(f"{output}: cannot be written: {error}") from error
+        if not is_made or gdal.GetLastErrorType() >= gdal.CE_Failure:
             raise RelevoError(f"{output}: cannot be written: {gdal.GetLastErrorMsg()}")
-        del copy
         for name in os.listdir(folder):
             os.replace(os.path.join(folder, name), os.path.join(os.path.dirname(os.path.abspath(output)), name))
