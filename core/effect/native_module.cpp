@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/paths.h"
 #include "effect/module_trial.h"
+#include "geo/gdal_library.h"
 
 namespace relevo::effect {
 namespace {
@@ -104,6 +105,9 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
     if (!fault.empty()) fail(library, fault);
 
     module.folder_ = manifest.folder;
+    // Of libraries that were loaded later an exit destroys what they have before it comes to our
+    // handler, while another thread may use them.
+    geo::load_gdal();
     module.process_ = std::make_unique<ModuleInProcess>(manifest.id, library);
     const ModuleCall call(*module.process_, "registration");
     module.handle_ = {open_library(library), Close{module.process_.get()}};

@@ -36,4 +36,8 @@ void* gdal_function(const char* name) {
     return found;
 }
 
+void load_gdal() {
+    module();
+}
+
 }  // namespace relevo::geo

@@ -9,4 +9,7 @@ namespace relevo::geo {
 /// @throws Error (Failed) where the module, a library or the function is missing
 void* gdal_function(const char* name);
 
+/// Loads both now, for what has to come after. @throws Error (Failed) where one is missing
+void load_gdal();
+
 }  // namespace relevo::geo
