@@ -53,7 +53,8 @@ inside sh -c 'printf "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n1
     $(printf "%s" "$line" | sed "s#%s#128#; s#%u#file:///tmp/a%20grid.asc#; s#%o#/tmp/thumbnail.png#") && test -s /tmp/thumbnail.png'
 
 say "removed again"
-inside sh -c 'apt-get purge -y $(dpkg-query -W -f "${Package} " "*relevo*") > /dev/null'
+read -ra packages <<< "$(inside dpkg-query -W -f '${Package} ' '*relevo*')"
+inside apt-get purge -y "${packages[@]}" > /dev/null
 files > "$root/without"
 left=$(grep -i relevo "$root/without" || true)
 [ -z "$left" ] || { say "left: $left"; exit 1; }

@@ -24,11 +24,11 @@ struct ExportArguments {
     /// Of the result, in lower case: "glb".
     std::string ending() const;
     /// Opens the result, before any work is done.
-    /// @param scale_file  also opens the file beside it
+    /// @param scale_file  whether a JSON file with the scale is opened too
     /// @throws Error (Usage) for an unknown ending and --holes mark, and as FilesInUse
     void open(FilesInUse& files, bool scale_file);
     /// @param size    as output::ExportOptions
-    /// @param remedy  likewise
+    /// @param remedy  as output::ExportOptions
     /// @throws Error as output::read_ground()
     output::ExportedGround read(const std::optional<glm::ivec2>& size,
                                 const std::string& remedy) const;

@@ -96,7 +96,7 @@ void write_struct(const T& ours, T* to) {
     write_struct(ours, to->size, to);
 }
 
-/// Progress of work that is told in shares.
+/// Reports the progress of work to the caller.
 class Progress {
   public:
     /// @param progress  may be null @throws BadCall

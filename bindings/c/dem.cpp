@@ -48,11 +48,6 @@ geo::Geodetic place_of(const relevo_place* given) {
 
 namespace {
 
-/// From corners of cells to their centres.
-dem::Affine affine_of(const double (&t)[6]) {
-    return {t[0] + 0.5 * (t[1] + t[2]), t[1], t[2], t[3] + 0.5 * (t[4] + t[5]), t[4], t[5]};
-}
-
 std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
     const relevo_raster heights = read_struct(given, "heights");
     need(heights.heights_m, "heights.heights_m");
@@ -63,7 +58,7 @@ std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
                 static_cast<std::size_t>(heights.columns) * static_cast<std::size_t>(heights.rows));
     const geo::Crs crs = geo::Crs::parse(&need(heights.crs, "heights.crs"), "crs");
     dem::MemoryRaster held(heights.heights_m, heights.columns, heights.rows,
-                           affine_of(heights.transform));
+                           dem::Affine::of_geotransform(heights.transform));
     scene::Scene named = read_dem({held.name()}, heights.options);
     if (!named.dem.crs.empty()) throw BadCall{"heights.options: crs: expected none"};
     named.dem.crs = crs.text();
@@ -103,15 +98,12 @@ relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid) {
     return c::guarded("relevo_dem_grid", [&] {
         c::read_struct(grid, "grid");
         const dem::Grid& of = c::dems().get(dem, "dem")->grid();
-        const dem::Affine& a = of.affine();
         const geo::Geodetic centre = of.center();
         const glm::dvec2 spacing_m = of.post_spacing_m();
         relevo_grid result{};
         result.columns = of.columns();
         result.rows = of.rows();
-        const double transform[6] = {a.x0 - 0.5 * (a.x_column + a.x_row), a.x_column, a.x_row,
-                                     a.y0 - 0.5 * (a.y_column + a.y_row), a.y_column, a.y_row};
-        std::copy_n(transform, 6, result.transform);
+        std::ranges::copy(of.affine().geotransform(), result.transform);
         result.centre_lat_deg = degrees(centre.lat_rad);
         result.centre_lon_deg = degrees(centre.lon_rad);
         result.column_spacing_m = spacing_m.x;

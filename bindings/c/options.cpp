@@ -2,6 +2,10 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "scene/options.h"
 #include "scene/scene_reader.h"
 #include "session/scene_times.h"
 
@@ -27,6 +31,13 @@ Options::Options(const char* text, const std::string& who)
 
 void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder) {
     if (text) take(scene, json::parse("scene", kText, text), folder);
+}
+
+std::string refraction_name(const std::string& name, const std::string& who) {
+    const scene::Option& option = scene::option("--refraction");
+    const std::string fault = scene::fault_of(option, scene::value_of(option, name));
+    if (!fault.empty()) bad_input(fmt::format("{}refraction: {}", who, fault));
+    return name;
 }
 
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {

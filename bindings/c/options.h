@@ -33,6 +33,10 @@ class Options {
 /// @throws Error (BadInput)
 void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder);
 
+/// The name of a model of refraction, as scenes have it.
+/// @param who  what errors begin with @throws Error (BadInput) for an unknown one
+std::string refraction_name(const std::string& name, const std::string& who);
+
 /// A scene of a DEM.
 /// @param text  members of `dem` without `files`; null: none
 /// @throws Error (BadInput)

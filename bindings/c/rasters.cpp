@@ -39,8 +39,7 @@ struct Air {
     }
     void take(json::ObjectReader& reader) {
         take_terrestrial(reader);
-        static const std::vector<std::string> kModels{"standard", "saemundsson", "none"};
-        model = kModels[reader.choice("refraction", kModels, 0)];
+        model = refraction_name(reader.string("refraction", model), "options: ");
     }
     std::function<sun::Refraction(const geo::Geodetic&)> at_posts() const {
         return [model = model](const geo::Geodetic& place) {

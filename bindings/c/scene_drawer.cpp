@@ -50,7 +50,9 @@ void SceneDrawer::take(scene::Scene scene) {
         bad_input("scene: picture.size: too large for memory; draw it by relevo capture");
     shot.utc = times_.of(shot.scene).utc;
     session::settle(shot, times_, inputs_);
+    is_shown_ = false;
     colours_.of(shot).show(shot.scene, shot.utc);
+    is_shown_ = true;
     given_ = std::move(scene);
     shot_ = std::move(shot);
     drawn_.reset();
@@ -83,7 +85,8 @@ glm::ivec2 SceneDrawer::picture_px() {
 const image::Image8& SceneDrawer::picture() {
     if (!drawn_) {
         session::Session& session = colours_.of(shot_);
-        session.show(shot_.scene, shot_.utc);
+        if (!is_shown_) session.show(shot_.scene, shot_.utc);
+        is_shown_ = true;
         drawn_ = std::get<image::Image8>(session.make_picture().pixels);
     }
     return *drawn_;

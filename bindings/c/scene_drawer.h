@@ -56,6 +56,8 @@ class SceneDrawer {
     session::ShotSession colours_, data_;
     scene::Scene given_;  ///< what the caller has said
     scene::Shot shot_;    ///< with what was chosen
+    /// Whether colours_ shows it: a change that failed may have left parts of another scene.
+    bool is_shown_ = false;
     std::optional<image::Image8> drawn_;
 };
 

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/contains.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "dem.h"
@@ -42,10 +41,7 @@ const sun::Refraction& refraction_of(const char* model, const geo::Geodetic& pla
         sun::Refraction refraction;
     };
     thread_local std::optional<Kept> kept;
-    const std::string name = model ? model : "standard";
-    if (!contains(std::vector<std::string>{"standard", "saemundsson", "none"}, name))
-        bad_input(
-            fmt::format("refraction: expected standard, saemundsson or none but got {}", name));
+    const std::string name = model ? refraction_name(model, "") : "standard";
     if (!kept || kept->name != name || kept->lat_rad != place.lat_rad ||
         kept->height_m != place.height_m)
         kept = Kept{name, place.lat_rad, place.height_m, session::refraction_at(name, place)};

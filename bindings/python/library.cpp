@@ -119,7 +119,7 @@ std::vector<std::unique_ptr<Work>>& abandoned() {
 
 void abandon(std::unique_ptr<Work> work) {
     work->cancel();
-    // Works release the GIL where they end: the list has to be whole before.
+    // Destroying a Work releases the GIL: the list is complete before that.
     std::vector<std::unique_ptr<Work>> ended;
     for (std::unique_ptr<Work>& one : abandoned())
         if (one->over()) ended.push_back(std::move(one));

@@ -46,7 +46,7 @@ std::optional<Affine> affine_in(const std::string& path, GDALDatasetH dataset) {
     if (!std::isfinite(area) || area == 0 || !std::isfinite(g[0] + g[3]))
         refuse(path, "a georeference in which the cells have no area; the file is damaged");
     // GDAL's coordinates are those of cell corners, whatever AREA_OR_POINT says.
-    return Affine{g[0] + (g[1] + g[2]) / 2, g[1], g[2], g[3] + (g[4] + g[5]) / 2, g[4], g[5]};
+    return Affine::of_geotransform(g);
 }
 
 /// What a file says of its CRS.

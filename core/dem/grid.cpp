@@ -32,6 +32,15 @@ double path_m(const Grid& grid, const glm::dvec2& from, const glm::dvec2& to) {
 
 }  // namespace
 
+Affine Affine::of_geotransform(std::span<const double, 6> t) {
+    return {t[0] + (t[1] + t[2]) / 2, t[1], t[2], t[3] + (t[4] + t[5]) / 2, t[4], t[5]};
+}
+
+std::array<double, 6> Affine::geotransform() const {
+    return {x0 - (x_column + x_row) / 2, x_column, x_row,
+            y0 - (y_column + y_row) / 2, y_column, y_row};
+}
+
 glm::dvec2 Affine::inverse(const glm::dvec2& point) const {
     const double determinant = x_column * y_row - x_row * y_column;
     const double x = point.x - x0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -24,6 +25,9 @@ struct Affine {
     glm::dvec2 operator()(double column, double row) const {
         return {x0 + x_column * column + x_row * row, y0 + y_column * column + y_row * row};
     }
+    /// From GDAL's geotransform, which has corners of cells at whole indices, and to it.
+    static Affine of_geotransform(std::span<const double, 6> t);
+    std::array<double, 6> geotransform() const;
     /// The indices of a point; the rows and columns must not be parallel.
     glm::dvec2 inverse(const glm::dvec2& point) const;
 

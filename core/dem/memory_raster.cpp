@@ -1,5 +1,6 @@
 #include "dem/memory_raster.h"
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -43,9 +44,9 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     GDALDriverH const driver = GDALGetDriverByName("GTiff");
     if (!driver) refuse(messages, name_);
     const Dataset file(GDALCreate(driver, name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
-    double transform[6] = {a.x0 - 0.5 * (a.x_column + a.x_row), a.x_column, a.x_row,
-                           a.y0 - 0.5 * (a.y_column + a.y_row), a.y_column, a.y_row};
-    if (!file || GDALSetGeoTransform(file.get(), transform) != CE_None) refuse(messages, name_);
+    std::array<double, 6> transform = a.geotransform();
+    if (!file || GDALSetGeoTransform(file.get(), transform.data()) != CE_None)
+        refuse(messages, name_);
     GDALRasterBandH const band = GDALGetRasterBand(file.get(), 1);
     GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN());
     GDALSetRasterUnitType(band, "m");

@@ -41,7 +41,7 @@ struct GridMesh {
     std::size_t triangles() const { return corners.size() / 3; }
 };
 
-/// Bytes of memory that refine() takes for each triangle, and its result beside it (measured).
+/// Memory of refine() and of its result together, for each triangle [bytes] (measured).
 inline constexpr std::int64_t kBytesATriangle = 72;
 
 /// Greedy refinement: begins with two triangles and inserts the post that is farthest from the

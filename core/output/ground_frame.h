@@ -32,7 +32,8 @@ class GroundFrame {
         glm::dvec3 up{0, 0, 1};  ///< unit
     };
     /// @param posts     x the column, y the row
-    /// @param height_m  as many; likewise `points`
+    /// @param height_m  one for each post
+    /// @param points    one for each post
     /// Safe on several threads at once.
     void place(std::span<const glm::dvec2> posts, std::span<const double> height_m,
                std::span<Point> points) const;

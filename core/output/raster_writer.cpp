@@ -32,19 +32,13 @@ GDALDriverH driver(const char* name) {
     return found;
 }
 
-/// From cell corners.
-std::array<double, 6> geotransform(const dem::Affine& a) {
-    return {a.x0 - (a.x_column + a.x_row) / 2, a.x_column, a.x_row,
-            a.y0 - (a.y_column + a.y_row) / 2, a.y_column, a.y_row};
-}
-
 GDALDataType type_of(RasterType type) {
     return type == RasterType::Float ? GDT_Float32 : GDT_Byte;
 }
 
 void describe(GDALDatasetH dataset, const dem::Grid& grid, RasterType type,
               const std::vector<RasterBand>& bands) {
-    std::array<double, 6> transform = geotransform(grid.affine());
+    std::array<double, 6> transform = grid.affine().geotransform();
     GDALSetGeoTransform(dataset, transform.data());
     const dem::GdalCrs crs(grid.crs().text());
     if (crs.known()) GDALSetSpatialRef(dataset, crs.handle());

@@ -65,7 +65,7 @@ RELEVO_API const char* relevo_version(void);
 /* Why the last call that failed on this thread did; "" before any. Lasts until the next failure. */
 RELEVO_API const char* relevo_error(void);
 
-/* Receives what the library has to say besides results: what it assumed, what it left out.
+/* Receives messages: assumptions, warnings, and with them what was skipped.
  * Called on any thread, one call at a time. Must not call the library. */
 #define RELEVO_MESSAGE_DEBUG 0
 #define RELEVO_MESSAGE_INFO 1

@@ -148,7 +148,7 @@ TEST(BadInput, SaysWhatTheProgramSays) {
                   RELEVO_RESULT_BAD_INPUT);
     expect_error(relevo_sun_position(&place, &time_s, 1, "mist", &azimuth_deg, nullptr, nullptr),
                  RELEVO_RESULT_BAD_INPUT,
-                 "refraction: expected standard, saemundsson or none but got mist");
+                 "refraction: expected one of standard, saemundsson, none but got \"mist\"");
 }
 
 TEST(BadInput, OptionsOfRastersAreChecked) {

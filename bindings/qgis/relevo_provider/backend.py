@@ -57,7 +57,7 @@ class Hours:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn. None, and what is empty: as Relevo chooses."""
+    """What is drawn. Relevo chooses the values of members that are None or empty."""
 
     when: Optional[When] = None
     size: Tuple[int, int] = (1280, 1024)  # [px]
