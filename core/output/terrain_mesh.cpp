@@ -175,7 +175,8 @@ class Maker {
             fmt::format("{}: {} triangles are too few for an error of {:g} m; pass a larger "
                         "--error, --crop W,S,E,N, or a larger --memory, now {} MiB",
                         options_.name, options_.max_triangles, options_.error_m,
-                        options_.max_triangles * mesh::kBytesATriangle >> 20));
+                        // Rounded up, as --memory has been divided into whole triangles.
+                        (options_.max_triangles * mesh::kBytesATriangle + (1 << 20) - 1) >> 20));
     }
 
     double height_m(const mesh::LatticePoint& post) const {

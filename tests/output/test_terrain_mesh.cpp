@@ -308,7 +308,7 @@ TEST(TerrainMesh, SaysWhatItCannotDo) {
             rough.at(column, row) = static_cast<float>((column * 7 + row * 13) % 11);
     EXPECT_EQ(error(rough, {.error_m = 0.1, .max_triangles = 100}),
               "exit 3: a.tif: 100 triangles are too few for an error of 0.1 m; pass a larger "
-              "--error, --crop W,S,E,N, or a larger --memory, now 0 MiB");
+              "--error, --crop W,S,E,N, or a larger --memory, now 1 MiB");
     EXPECT_TRUE(error(Array2d<float>(2, 20000, 5), {.error_m = 0.01})
                     .starts_with("exit 3: --error: 0.01: smaller than what 32-bit coordinates"));
 }
