@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/memory_use.h"
 #include "cli/format_arguments.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
@@ -105,6 +106,7 @@ class Timings {
         json["triangles"] = session.triangles();
         json["stages_ms"] = stages_;
         json["whole_ms"] = milliseconds_since(began_);
+        json["memory_mib"] = memory_of(session.scene().dem.memory);
         nlohmann::ordered_json& passes = json["passes_ms"] = nlohmann::ordered_json::object();
         for (const auto& [name, ms] : passes_)
             passes[name] = ms;
@@ -117,6 +119,20 @@ class Timings {
 
   private:
     static constexpr double kSunStep_s = 60;
+
+    /// What parts of the run may take, and the peak of the process.
+    static nlohmann::ordered_json memory_of(const MemoryBudget& memory) {
+        const auto mib = [](std::int64_t bytes) {
+            return static_cast<double>(bytes) / static_cast<double>(MemoryBudget::kMiB);
+        };
+        return {{"allowed", memory.mib()},
+                {"posts", mib(memory.posts * MemoryBudget::kBytesAPost)},
+                {"light", mib(memory.light_posts * MemoryBudget::kBytesALightPost)},
+                {"pages", mib(memory.page_bytes)},
+                {"blocks", mib(memory.block_bytes)},
+                {"work", mib(memory.work_bytes)},
+                {"peak", peak_memory_mib()}};
+    }
 
     /// @param step_s  by which the sun moves before each frame
     static nlohmann::ordered_json frames(session::Session& session, int repeat, double step_s) {

@@ -292,6 +292,7 @@ void add_verbs(CLI::App& app) {
     add_sun(line);
     add_plugins(line);
     add_thumbnail(line);
+    add_cache(line);
     add_doctor(line);
     check_values(app);
 }

@@ -17,5 +17,6 @@ void add_export(Verb app);
 void add_sun(Verb app);
 void add_plugins(Verb app);
 void add_thumbnail(Verb app);
+void add_cache(Verb app);
 
 }  // namespace relevo::cli

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -8,9 +9,11 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/memory_budget.h"
 #include "base/parallel_for.h"
 #include "base/paths.h"
 #include "cli/commands.h"
+#include "cli/memory_use.h"
 #include "cli/shared.h"
 #include "dem/versions.h"
 #include "effect/registry.h"
@@ -160,6 +163,7 @@ struct Findings {
     Plugins plugins;
     std::vector<std::string> advice;
     bool has_share = false;
+    std::optional<double> floor_mib;  ///< of memory
 
     bool software() const { return chosen && chosen->device.software; }
 };
@@ -177,6 +181,7 @@ Findings examine(const std::string& wanted) {
     found.advice = remedies(found.devices, found.chosen);
     std::error_code ignored;
     found.has_share = std::filesystem::is_directory(share_dir() / "shaders", ignored);
+    if (found.chosen) found.floor_mib = memory_floor_mib(wanted);
     return found;
 }
 
@@ -201,6 +206,7 @@ Json to_json(const Findings& found) {
     for (const Tried& tried : found.devices)
         json["devices"].push_back(to_json(tried));
     json["threads"] = thread_count();
+    json["floor_mib"] = found.floor_mib ? Json(std::round(*found.floor_mib)) : Json();
     json["gdal"] = dem::gdal_version();
     json["proj"] = dem::proj_version();
     json["films"] = film::installed_text();
@@ -238,6 +244,10 @@ void print(const Findings& found) {
                              ? fmt::format("{}, {}", tried.info->renderer, tried.info->version)
                              : tried.reason));
     line("threads", std::to_string(thread_count()));
+    if (found.floor_mib)
+        line("memory", fmt::format("{:.0f} MiB for a picture of 2 x 2 posts; --memory, {} MiB by "
+                                   "default, is on top of that",
+                                   *found.floor_mib, MemoryBudget::kDefault_mib));
     line("films", film::installed_text());
     line("data", fmt::format("{}{}", share_dir().string(),
                              found.has_share ? "" : " (not there; RELEVO_SHARE names another)"));

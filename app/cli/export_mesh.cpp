@@ -99,7 +99,7 @@ void write(Arguments& arguments) {
     options.solid = !arguments.base.empty();
     if (options.solid) options.base_m = parse_base(arguments.base);
     if (options.base_m) *options.base_m *= ground.exaggeration;
-    options.max_triangles = arguments.shared.dem.options().max_posts * 4 / mesh::kBytesATriangle;
+    options.max_triangles = arguments.shared.dem.options().memory.posts * 4 / mesh::kBytesATriangle;
     const output::GroundFrame frame(ground.field.grid, arguments.flat || options.solid);
     const output::TerrainMesh mesh =
         output::terrain_mesh(std::move(ground.field.height_m), ground.field.grid, frame, options);

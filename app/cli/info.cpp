@@ -98,10 +98,10 @@ std::string text_of(const std::optional<dem::Water>& water, const dem::Grid& gri
 /// Parses a time that requires the DEM.
 /// @param field  loaded if the time requires heights
 sun::ParsedTime parse_over(const scene::TimeSpec& spec, const dem::Source& source,
-                           std::int64_t max_posts, std::optional<dem::Heightfield>& field) {
+                           const MemoryBudget& memory, std::optional<dem::Heightfield>& field) {
     if (!sun::is_event_time(spec.at))  // only the time zone is missing
         return session::parse(spec, {.middle = [&] { return source.grid().center(); }});
-    field = dem::load(source, max_posts);
+    field = dem::load(source, memory);
     return session::parse_over(spec, source, *field);
 }
 
@@ -152,16 +152,16 @@ void add_info(Verb app) {
         const scene::TimeSpec spec = arguments->time.spec();
         std::optional<sun::ParsedTime> given_time;
         if (arguments->time.given() && !session::needs_dem(spec)) given_time = session::parse(spec);
-        const std::int64_t max_posts = arguments->dem.options().max_posts;
+        const MemoryBudget memory = arguments->dem.options().memory;
         const dem::Source source =
             dem::Source::open(arguments->dem.paths, arguments->dem.options());
         std::optional<dem::Heightfield> field;
         if (arguments->time.given() && !given_time)
-            given_time = parse_over(spec, source, max_posts, field);
+            given_time = parse_over(spec, source, memory, field);
         // Means would hide the lowest and the highest post.
         const dem::Summary summary = field && field->reduction == 1
                                          ? dem::summarize(*field)
-                                         : dem::summarize(source, max_posts);
+                                         : dem::summarize(source, memory.posts);
         const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);

@@ -83,6 +83,9 @@ void DemArguments::add_to(Verb verb) {
             [this](const std::string& text) { bounds = dem::parse_bounds(text, "--bounds"); },
             "Edges of the raster, W,S,E,N in degrees, instead of its georeference")
         .group("DEM");
+    verb.add_flag("--no-cache", no_cache,
+                  "Neither use nor keep averaged levels of a large DEM (relevo cache)")
+        .group("DEM");
 }
 
 void DemArguments::apply_to(scene::Scene& scene) const {
@@ -93,6 +96,7 @@ void DemArguments::apply_to(scene::Scene& scene) const {
         scene.dem.no_nodata = no_nodata;
     }
     if (bounds) scene.dem.bounds = bounds;
+    scene.dem.cached = !no_cache;
 }
 
 dem::LoadOptions DemArguments::options() const {

@@ -43,6 +43,7 @@ struct DemArguments {
     std::optional<double> nodata;
     bool no_nodata = false;
     std::optional<dem::Bounds> bounds;
+    bool no_cache = false;
     Option dem_option;
 
     void add_to(Verb verb);

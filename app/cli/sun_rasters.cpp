@@ -20,9 +20,9 @@
 namespace relevo::cli {
 namespace {
 
-// Measured: the program with its libraries; blocks of a file that are kept, and what tiles and
-// threads take besides; and how many tiles of all bands GDAL has at once while it writes.
-constexpr double kProgram_mib = 120, kBlocks_mib = 256, kTilesAtOnce = 20;
+// Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how many
+// tiles of all bands it has at once then.
+constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
 constexpr double kTile = 512;  // posts a side
 
 }  // namespace
@@ -79,7 +79,7 @@ RasterGround RasterArguments::load() const {
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     std::vector<dem::Window> parts{window};
     if (!posts.in_memory())
-        parts = session::raster_parts(window, dem.options().max_posts / session::kPostsAPart);
+        parts = session::raster_parts(window, dem.options().memory.posts / session::kPostsAPart);
     return {std::move(posts), window, std::move(parts)};
 }
 
@@ -194,19 +194,20 @@ void RasterRun::tell() const {
     for (const dem::Window& part : ground_.parts)
         most = std::max(most, posts_of(part));
     const dem::Grid& grid = ground_.posts.grid();
+    const MemoryBudget memory = arguments_.dem.options().memory;
     // What sweeps keep; those beyond memory have what is kept of the heights, and the file's
     // blocks.
     const double heights =
         ground_.posts.in_memory()
             ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
             : static_cast<double>(sizeof(float)) *
-                      static_cast<double>(arguments_.dem.options().max_posts) +
-                  kBlocks_mib * kMiB;
+                      static_cast<double>(memory.posts) +
+                  static_cast<double>(memory.block_bytes);
     // A result is written from what is kept of it.
     const double tiles =
         std::ceil(ground_.window.columns / kTile) * std::ceil(ground_.window.rows / kTile);
     const double band = bytes_a_value_, tile = kTile * kTile * band * static_cast<double>(bands_);
-    const double writing = most * band + std::min(kBlocks_mib * kMiB, tiles * tile) +
+    const double writing = most * band + std::min(kWriting_mib * kMiB, tiles * tile) +
                            std::min(kTilesAtOnce, 3 * tiles + 2) * tile;
     fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
                ground_.parts.size() == 1 ? "" : "s");

@@ -182,6 +182,7 @@ class MainWindow {
     std::string device_name_;
     SceneDevice device_;
     std::string zone_;  // of --tz
+    const bool is_cached_;  // not --no-cache
     Memory memory_ = Memory::of_user();
     State state_;
     Settings written_;  // as in memory_

@@ -75,10 +75,10 @@ void MainWindow::open_files(const std::vector<std::string>& files) {
 void MainWindow::open_dem(const RecentDem& dem) {
     // Options of the last DEM do not apply, except for the window's limit of memory.
     scene::Scene scene = state_.document.scene;
-    const std::int64_t max_posts = scene.dem.max_posts;
+    const MemoryBudget memory = scene.dem.memory;
     scene.dems = dem.files;
     scene.dem = dem.options;
-    scene.dem.max_posts = max_posts;
+    scene.dem.memory = memory;
     scene.holes = dem.holes;
     scene.view = {};
     scene.overlay.reset();
@@ -98,6 +98,7 @@ void MainWindow::open_imported(const RecentDem& dem) {
 void MainWindow::open_scene(scene::Scene scene) {
     state_.message.clear();
     import_sheet_.close();
+    scene.dem.cached = is_cached_;
     opening_->open(std::move(scene), first_wanted());
     pacing_.need_frames(3);
 }

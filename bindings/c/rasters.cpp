@@ -80,7 +80,7 @@ class RasterCall {
         std::vector<dem::Window> parts{all()};
         if (!posts().in_memory())
             parts =
-                session::raster_parts(all(), dem_->named().dem.max_posts / session::kPostsAPart);
+                session::raster_parts(all(), dem_->named().dem.memory.posts / session::kPostsAPart);
         for (const dem::Window& part : parts) {
             progress_.begin_part(static_cast<double>(part.columns) * part.rows / all_posts);
             make(part);

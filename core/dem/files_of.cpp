@@ -39,8 +39,7 @@ class Collector {
   public:
     void add(const std::string& name, int depth) {
         if (!seen_.insert(name).second || depth > kDeepest) return;
-        if (std::filesystem::path file = file_behind(name); !file.empty())
-            files_.push_back(std::move(file));
+        add_file(name);
         std::string path = name;
         Dataset dataset;
         try {
@@ -53,25 +52,44 @@ class Collector {
             const std::string source = *entry;
             if (lower(source).rfind(".vrt") == source.size() - 4)
                 add(source, depth + 1);
-            else if (std::filesystem::path file = file_behind(source); !file.empty())
-                files_.push_back(std::move(file));
+            else
+                add_file(source);
         }
         CSLDestroy(entries);
     }
     std::vector<std::filesystem::path> take() { return std::move(files_); }
+    bool are_local() const { return local_; }
 
   private:
+    void add_file(const std::string& name) {
+        std::filesystem::path file = file_behind(name);
+        local_ = local_ && !file.empty();
+        if (!file.empty()) files_.push_back(std::move(file));
+    }
+
     std::set<std::string> seen_;
     std::vector<std::filesystem::path> files_;
+    bool local_ = true;
 };
 
-}  // namespace
-
-std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
+Collector collect(std::span<const std::string> paths) {
     Collector collector;
     for (const std::string& path : paths)
         for (const std::string& raster : rasters_of_quietly(path))
             collector.add(raster, 0);
+    return collector;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
+    return collect(paths).take();
+}
+
+std::optional<std::vector<std::filesystem::path>> local_files_of(
+    std::span<const std::string> paths) {
+    Collector collector = collect(paths);
+    if (!collector.are_local()) return std::nullopt;
     return collector.take();
 }
 

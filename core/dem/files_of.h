@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@ namespace relevo::dem {
 /// Opens each raster, and reads no heights.
 /// @param paths  as Source::open() takes them
 std::vector<std::filesystem::path> files_of(std::span<const std::string> paths);
+
+/// The same; nullopt if heights are also read from what is no file of this machine.
+std::optional<std::vector<std::filesystem::path>> local_files_of(
+    std::span<const std::string> paths);
 
 /// Adds the rasters that are named to what a run reads. @throws Error as FilesInUse::add_input
 void add_named(std::span<const std::string> paths, FilesInUse& files);

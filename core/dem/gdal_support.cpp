@@ -37,18 +37,45 @@ void prepare_gdal() {
     });
 }
 
-void hold_blocks(std::int64_t bytes) {
-    if (is_hosted()) return;
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() < bytes)
-        GDALSetCacheMax64(bytes);
+namespace {
+
+/// The size of GDAL's cache of blocks, unless the user or a host program has set it.
+class BlockCache {
+  public:
+    static BlockCache& instance() {
+        static BlockCache cache;
+        return cache;
+    }
+    void allow(std::int64_t bytes) {
+        const std::lock_guard lock(mutex_);
+        allowed_ = bytes;
+        set();
+    }
+    void hold(std::int64_t bytes) {
+        const std::lock_guard lock(mutex_);
+        held_ = std::max(held_, bytes);
+        set();
+    }
+
+  private:
+    void set() const {
+        if (!is_hosted() && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
+            GDALSetCacheMax64(std::max(allowed_, held_));
+    }
+
+    std::mutex mutex_;
+    std::int64_t allowed_ = kBlockBytes, held_ = 0;
+};
+
+}  // namespace
+
+void allow_blocks(std::int64_t bytes) {
+    prepare_gdal();
+    BlockCache::instance().allow(bytes);
 }
 
-void spare_blocks() {
-    if (!is_hosted() && !CPLGetConfigOption("GDAL_CACHEMAX", nullptr) &&
-        GDALGetCacheMax64() <= kBlockBytes)
-        GDALSetCacheMax64(kBlockBytes / 2);
+void hold_blocks(std::int64_t bytes) {
+    BlockCache::instance().hold(bytes);
 }
 
 GdalMessages::GdalMessages() {

@@ -7,19 +7,18 @@
 namespace relevo::dem {
 
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
-/// keeps its cache of blocks to 256 MiB (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
+/// keeps its cache of blocks to 256 MiB or less (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
 /// to standard error: what nobody collects goes to the debug log. In a process of another program
 /// (is_hosted()) it only registers the drivers. Safe on several threads at once; everything here
 /// that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries
 /// takes 50.
 void prepare_gdal();
 
-/// Lets GDAL's cache have so much at least: blocks that it cannot hold are decoded for every read.
-void hold_blocks(std::int64_t bytes);
+/// Sets the size of GDAL's cache of blocks, which all datasets share.
+void allow_blocks(std::int64_t bytes);
 
-/// Leaves it half of what it has at the start, for whoever keeps what it has read; not where it has
-/// been given more since.
-void spare_blocks();
+/// Raises it to at least so much: blocks that it cannot hold are decoded for every read.
+void hold_blocks(std::int64_t bytes);
 
 /// Collects what GDAL says on this thread while it lives, instead of having it printed.
 class GdalMessages {

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "dem/interpret.h"
+#include "dem/sample.h"
 #include "dem/unearthly.h"
 
 namespace relevo::dem {
@@ -87,7 +88,7 @@ Heightfield load(const std::string& path, const LoadOptions& options) {
 }
 
 Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
-    return load(Source::open(paths, options), options.max_posts);
+    return load(Source::open(paths, options), options.memory);
 }
 
 void refuse_endless_sides(const Source& source) {
@@ -114,13 +115,25 @@ int reduction_to(const Grid& full, std::int64_t max_posts) {
     return reduction;
 }
 
+/// Of posts that are too narrow for means, or of means that are.
+[[noreturn]] void refuse_narrow(const Grid& full, const std::string& path, int reduction,
+                                const MemoryBudget& memory) {
+    const std::int64_t posts = posts_at(full, reduction);
+    const std::int64_t wanted = MemoryBudget::mib_for_posts(reduction > 1 ? 2 * posts : posts);
+    bad_input(fmt::format(
+        "{}: memory, expected at most {} MiB but got {}: {} x {} posts are too narrow for means; "
+        "pass --memory {}, or crop it with gdal_translate",
+        path, memory.mib(), wanted, full.columns(), full.rows(), wanted));
+}
+
 /// Without what is to be said of them but their statistics.
-Heightfield read_reduced(const Source& source, int reduction) {
+/// @param known  their heights; empty: they are read
+Heightfield read_reduced(const Source& source, int reduction, Array2d<float> known = {}) {
     const Grid& full = source.grid();
     const int columns = full.columns() / reduction, rows = full.rows() / reduction;
     // What is left over at the last row and column is less than one mean.
     const Window all{0, 0, columns * reduction, rows * reduction};
-    Array2d<float> height_m = source.read(all, columns, rows);
+    Array2d<float> height_m = known.empty() ? source.read(all, columns, rows) : std::move(known);
     Description about = source.description();
     about.statistics = statistics(height_m);
     Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
@@ -129,35 +142,35 @@ Heightfield read_reduced(const Source& source, int reduction) {
 
 }  // namespace
 
+int reduction_of(const Grid& full, const MemoryBudget& memory) {
+    return posts_at(full, 1) <= memory.posts ? 1 : reduction_to(full, memory.means);
+}
+
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts) {
     refuse_endless_sides(source);
     const int reduction = reduction_to(source.grid(), most_posts);
-    if (reduction == 1 || posts_at(source.grid(), reduction) > most_posts ||
-        source.cells_for_means(reduction) > 4 * static_cast<double>(most_posts))
-        return std::nullopt;
-    Heightfield field = read_reduced(source, reduction);
+    if (reduction == 1 || posts_at(source.grid(), reduction) > most_posts) return std::nullopt;
+    const bool has_overviews =
+        source.cells_for_means(reduction) <= 4 * static_cast<double>(most_posts);
+    Heightfield field =
+        has_overviews
+            ? read_reduced(source, reduction)
+            : read_reduced(source, reduction, sample_means(source, reduction, kMostSampled));
     if (field.about.statistics.valid == 0) return std::nullopt;
+    if (!has_overviews) field.reduction = 1;
     return field;
 }
 
-Heightfield load(const Source& source, std::int64_t max_posts) {
+Heightfield load(const Source& source, const MemoryBudget& memory, Array2d<float> known) {
     refuse_endless_sides(source);
     const Grid& full = source.grid();
-    const int reduction = reduction_to(full, max_posts);
-    const std::int64_t posts = posts_at(full, reduction);
     const std::string& path = source.description().path;
-    constexpr double kMiB = 1 << 20;
-    if (posts > max_posts) {
-        const double wanted = std::ceil(4.0 * static_cast<double>(posts) / kMiB);
-        bad_input(fmt::format(
-            "{}: memory for its heights, expected at most {:.0f} MiB but got {:.0f}: {} x {} posts "
-            "are too narrow for means; pass --memory {:.0f}, or crop it with gdal_translate",
-            path, 4.0 * static_cast<double>(max_posts) / kMiB, wanted, full.columns(), full.rows(),
-            wanted));
-    }
+    const int reduction = reduction_of(full, memory);
+    if (posts_at(full, reduction) > (reduction == 1 ? memory.posts : memory.means))
+        refuse_narrow(full, path, reduction, memory);
     const int columns = full.columns() / reduction, rows = full.rows() / reduction;
     try {
-        Heightfield field = read_reduced(source, reduction);
+        Heightfield field = read_reduced(source, reduction, std::move(known));
         if (reduction > 1)
             field.about.assumptions.push_back(fmt::format(
                 "reduced from {} x {} to {} x {} posts, means of {} x {}, to stay within --memory",
@@ -167,11 +180,8 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
             field.about.statistics.valid > 0 ? find_collar(field.height_m) : std::nullopt);
         return field;
     } catch (const std::bad_alloc&) {
-        failed(
-            fmt::format("{}: no memory for {} x {} heights ({:.0f} MiB); pass a "
-                        "smaller --memory, now {:.0f}",
-                        path, columns, rows, 4.0 * columns * rows / kMiB,
-                        4.0 * static_cast<double>(max_posts) / kMiB));
+        failed(fmt::format("{}: no memory for {} x {} heights; pass a smaller --memory, now {}",
+                           path, columns, rows, memory.mib()));
     }
 }
 

@@ -28,14 +28,22 @@ Heightfield load(const std::string& path, const LoadOptions& options = {});
 Heightfield load(std::span<const std::string> paths, const LoadOptions& options = {});
 
 /// The same for what is open already.
-Heightfield load(const Source& source, std::int64_t max_posts);
+/// @param known  means that an earlier load() has returned; empty: they are read
+Heightfield load(const Source& source, const MemoryBudget& memory, Array2d<float> known = {});
 
-/// Means of at most so many posts where overviews give them without the posts being read: what can
-/// be shown until load() is through. Says nothing of what looks wrong, see is_refused().
-/// @param most_posts  that are kept; files are read for up to four times as many cells
-/// @returns none where more would have to be read, all posts are that few, or no mean has a height
+/// By how many posts each way load() reduces a DEM; 1: it keeps all posts.
+int reduction_of(const Grid& full, const MemoryBudget& memory);
+
+/// Means of at most so many posts, which can be shown until load() is through: from overviews, or,
+/// where these do not suffice, from a sample of the file's blocks (sample_means()). Says nothing of
+/// what looks wrong, see is_refused(). A sample is a DEM of its own: its reduction is 1, because no
+/// finer level of it can be read.
+/// @param most_posts  that are kept; files are read for up to four times as many cells of
+///     overviews, or kMostSampled posts
+/// @returns none if all posts are that few, or no mean has a height
 /// @throws Error (BadInput) as Source::read()
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);
+inline constexpr std::int64_t kMostSampled = std::int64_t{1} << 28;
 
 /// Says what heights look wrong but for those that check_heights() refuses, in the description and
 /// with log::info.

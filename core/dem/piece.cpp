@@ -160,10 +160,10 @@ void refuse_huge_blocks(const std::string& path, GDALRasterBandH band, double me
     if (bytes > std::max(kFine, memory))
         refuse(path,
                fmt::format("is stored in blocks of {} x {} posts, {:.0f} MiB each, expected at "
-                           "most {:.0f} MiB; pass --memory {:.0f}, or make tiles of them with "
+                           "most {:.0f} MiB; pass --memory {}, or make tiles of them with "
                            "gdal_translate -co TILED=YES",
                            columns, rows, bytes / kMiB, std::max(kFine, memory) / kMiB,
-                           std::ceil(bytes / kMiB)));
+                           MemoryBudget::mib_for_posts(static_cast<std::int64_t>(bytes / 4))));
     // Windows lie on two of them or, of tiles, on four.
     hold_blocks(static_cast<std::int64_t>(2 * bytes));
 }
@@ -372,7 +372,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     if (columns < 2 || rows < 2)
         refuse(given,
                fmt::format("size, expected at least 2 x 2 posts but got {} x {}", columns, rows));
-    refuse_huge_blocks(given, band, 4.0 * static_cast<double>(options.max_posts));
+    refuse_huge_blocks(given, band, 4.0 * static_cast<double>(options.memory.posts));
     Georeference where = georeference(given, dataset.get(), options, about);
     settle_unit(given, band, where.crs, options, about);
     settle_vertical_datum(dataset.get(), where.crs, about);

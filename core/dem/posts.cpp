@@ -10,7 +10,6 @@
 
 #include "base/parallel_for.h"
 #include "base/progress.h"
-#include "dem/gdal_support.h"
 #include "dem/load.h"
 #include "dem/survey.h"
 #include "dem/tile_cache.h"
@@ -184,7 +183,6 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
                                std::numeric_limits<float>::quiet_NaN());
     go_through(std::min(max_posts / 2, kMaxSlab));
     settle_holes();
-    spare_blocks();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
 }
 
@@ -289,11 +287,11 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
     auto impl = std::make_unique<Impl>();
     impl->own_source.emplace(Source::open(paths, options));
     const Grid& grid = impl->own_source->grid();
-    if (std::int64_t{grid.columns()} * grid.rows() > options.max_posts) {
-        impl->take(*impl->own_source, options.max_posts);
+    if (std::int64_t{grid.columns()} * grid.rows() > options.memory.posts) {
+        impl->take(*impl->own_source, options.memory.posts);
         check_heights(impl->about, impl->spikes, options);
     } else {
-        impl->own_field.emplace(dem::load(*impl->own_source, options.max_posts));
+        impl->own_field.emplace(dem::load(*impl->own_source, options.memory));
         check_heights(*impl->own_field, options);
         impl->own_source.reset();
         impl->take(*impl->own_field);

@@ -35,7 +35,7 @@ class Posts {
     ///     has a height
     Posts(const Source& source, std::int64_t max_posts);
 
-    /// Opens files and holds their posts in memory where LoadOptions::max_posts allows that.
+    /// Opens files and holds their posts in memory where LoadOptions::memory allows that.
     /// @throws Error (BadInput) as dem::load, and for heights that no ground of the Earth has
     static Posts load(std::span<const std::string> paths, const LoadOptions& options = {});
 

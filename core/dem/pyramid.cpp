@@ -68,7 +68,8 @@ Pyramid::Pyramid(const Array2d<float>& posts_m)
     make_coarser_levels();
 }
 
-Pyramid::Pyramid(const Heightfield& means, const Source& source)
+Pyramid::Pyramid(const Heightfield& means, const Source& source, const MemoryBudget& memory,
+                 const TileBounds* known)
     : source_(&source), sizes_{{source.grid().columns(), source.grid().rows()}} {
     assert(means.reduction >= 2);
     first_ = std::bit_width(static_cast<unsigned>(means.reduction));
@@ -78,21 +79,42 @@ Pyramid::Pyramid(const Heightfield& means, const Source& source)
     // A mean says nothing of single posts without a height: that there may be some costs little.
     has_voids_ = true;
     levels_.push_back(nodes_of_means(means.height_m, {0, 0}, first_, {0, 0}, sizes_.back()));
-    constexpr std::int64_t kAlways = 1 << 23;
-    sample_errors(std::max<std::int64_t>(kAlways, std::ssize(means.height_m) / 4));
-    make_coarser_levels();
+    // A piece has its levels, too.
+    constexpr std::int64_t kLeast = 1 << 16;
+    if (known)
+        sampled_ = known->sampled;
+    else
+        sample_errors(std::max(kLeast, memory.work_bytes / std::int64_t{2 * sizeof(float)}));
+    make_coarser_levels(known);
 }
 
-Pyramid Pyramid::of(const Heightfield& field, const Source* source) {
-    return source && field.reduction > 1 ? Pyramid(field, *source) : Pyramid(field.height_m);
+Pyramid Pyramid::of(const Heightfield& field, const Source* source, const MemoryBudget& memory,
+                    const TileBounds* known) {
+    return source && field.reduction > 1 ? Pyramid(field, *source, memory, known)
+                                         : Pyramid(field.height_m);
 }
 
-void Pyramid::make_coarser_levels() {
-    bound_tiles(first_);
+void Pyramid::make_coarser_levels(const TileBounds* known) {
+    settle_tiles(known);
     while (std::max(sizes_.back().x, sizes_.back().y) > kTileQuads + 1) {
         make_level();
-        bound_tiles(levels() - 1);
+        settle_tiles(known);
     }
+}
+
+void Pyramid::settle_tiles(const TileBounds* known) {
+    const int level = levels() - 1;
+    if (known)
+        levels_.back().tiles = known->tiles[static_cast<std::size_t>(level - first_)];
+    else
+        bound_tiles(level);
+}
+
+Pyramid::TileBounds Pyramid::tile_bounds() const {
+    TileBounds all{sampled_, {}};
+    for (int level = first_; level < levels(); ++level)
+        all.tiles.push_back(levels_[static_cast<std::size_t>(level)].tiles);
+    return all;
 }
 
 glm::ivec2 Pyramid::size(int level) const {

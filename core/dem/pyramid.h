@@ -37,20 +37,28 @@ inline float on_triangles(float upper_left, float upper_right, float lower_left,
 /// a sample of the posts.
 class Pyramid {
   public:
+    /// Heights and vertical error of a tile.
+    struct Bounds;
+    /// The bounds of all tiles, which cost more than the levels themselves: they can be kept.
+    struct TileBounds;
+
     /// Computes coarser levels until one has at most 65 x 65 nodes.
     /// @param posts_m  level 0, NaN in voids; must outlive this
     explicit Pyramid(const Array2d<float>& posts_m);
 
     /// For a DEM of which only means are in memory.
     /// @param means   as returned by load(): means of a power of two posts; must outlive this
-    /// @param source  of the finer levels; must outlive this. Each sampled piece takes at most a
-    ///     quarter of the means' memory, or 32 MiB
+    /// @param source  of the finer levels; must outlive this
+    /// @param memory  for the pieces that are sampled
+    /// @param known   tile_bounds() of an equal pyramid; null: they are computed
     /// @throws Error (BadInput) if the file is damaged, also from block()
-    Pyramid(const Heightfield& means, const Source& source);
+    Pyramid(const Heightfield& means, const Source& source, const MemoryBudget& memory,
+            const TileBounds* known = nullptr);
 
     /// Pyramid of a heightfield of posts or of means.
     /// @param source  null: there are no levels finer than the heightfield
-    static Pyramid of(const Heightfield& field, const Source* source);
+    static Pyramid of(const Heightfield& field, const Source* source, const MemoryBudget& memory,
+                      const TileBounds* known = nullptr);
 
     int levels() const { return static_cast<int>(sizes_.size()); }
     int columns() const { return sizes_.front().x; }  ///< of level 0
@@ -113,6 +121,7 @@ class Pyramid {
     /// Bounds of tile (x, y), which has the columns 64 x to 64 x + 64 and the rows 64 y to 64 y
     /// + 64.
     Bounds bounds(int level, glm::ivec2 tile) const;
+    TileBounds tile_bounds() const;
 
     /// Quantile of the errors of a level's tiles [m].
     /// @param measure   &Bounds::error_m or &Bounds::rms_m
@@ -126,8 +135,11 @@ class Pyramid {
         Array2d<Bounds> tiles;
     };
 
-    void make_coarser_levels();
+    /// @param known  bounds of the tiles; null: they are computed
+    void make_coarser_levels(const TileBounds* known = nullptr);
     void make_level();
+    /// Takes the bounds of the last level's tiles from `known`, or computes them.
+    void settle_tiles(const TileBounds* known);
     void bound_tiles(int level);
     /// Vertical errors of a tile's triangles at the nodes of the next finer level.
     struct Misfit {
@@ -151,6 +163,11 @@ class Pyramid {
     std::vector<Level> levels_;      // empty below first_; the heights of level 0 are posts_m_
     std::vector<Bounds> sampled_;    // largest sampled errors of levels 0 to first_
     bool has_voids_ = false;
+};
+
+struct Pyramid::TileBounds {
+    std::vector<Bounds> sampled;         ///< the largest ones of levels not in memory
+    std::vector<Array2d<Bounds>> tiles;  ///< of the levels in memory, the finest first
 };
 
 }  // namespace relevo::dem

@@ -17,6 +17,7 @@
 #include "dem/cell_parts.h"
 #include "dem/clip.h"
 #include "dem/folder.h"
+#include "dem/gdal_support.h"
 #include "dem/on_earth.h"
 #include "dem/piece.h"
 
@@ -60,6 +61,7 @@ struct Source::Impl {
     bool threads_pay = false;
     int block_rows = 1;
     int tallest_block = 1;
+    std::int64_t work_bytes = 0;  // for sums
     bool leaves_earth = false;  // some posts have no place
 
     // Open handles that no call is using, the one used last at the end; a GDAL dataset serves one
@@ -290,9 +292,13 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
     if (double(window.columns) * window.rows > kManyPosts)
         progress.emplace(about.path + ": reading",
                          static_cast<double>(pieces.size()) * window.rows);
-    // Sums take four times the memory of what they become.
-    const int band_columns = std::min(columns, 1 << 20);
-    const int band_rows = std::max(1, (1 << 22) / band_columns);
+    // Sums take four times the memory of what they become. Bands end where blocks do.
+    const std::int64_t room = std::max<std::int64_t>(1 << 12, work_bytes / std::int64_t{2 * sizeof(double)});
+    const auto band_columns = static_cast<int>(std::min<std::int64_t>(columns, room));
+    int band_rows = std::max(1, static_cast<int>(std::min<std::int64_t>(rows, room / band_columns)));
+    if (const int of_block = static_cast<int>(double(block_rows) * rows / window.rows);
+        of_block > 1 && band_rows >= of_block)
+        band_rows -= band_rows % of_block;
     for (int first_row = 0; first_row < rows; first_row += band_rows)
         for (int first_column = 0; first_column < columns; first_column += band_columns) {
             const int width = std::min(band_columns, columns - first_column);
@@ -331,7 +337,9 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
     if (options.bounds && paths.size() > 1)
         bad_usage(
             fmt::format("--bounds: it says where one file is, but there are {}", paths.size()));
+    allow_blocks(options.memory.block_bytes);
     auto impl = std::make_unique<Impl>();
+    impl->work_bytes = options.memory.work_bytes;
     std::vector<Dataset> opened(std::min(paths.size(), kMaxIdle));
     for (std::size_t i = 0; i < paths.size(); ++i) {
         Dataset dataset;
@@ -412,6 +420,12 @@ Source::Blank Source::blank(const Window& window) const {
 
 int Source::block_rows() const {
     return impl_->tallest_block;
+}
+
+glm::ivec2 Source::block_size() const {
+    if (impl_->pieces.size() > 1) return {256, 256};
+    const Piece& piece = impl_->pieces.front();
+    return {piece.block_columns, piece.block_rows};
 }
 
 double Source::stored(int column, int row) const {

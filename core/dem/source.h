@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "base/memory_budget.h"
 #include "dem/encoding.h"
 #include "dem/heightfield.h"
 #include "dem/placement.h"
@@ -25,18 +26,13 @@ struct LoadOptions {
     std::optional<Bounds> bounds = {};   ///< `--bounds`: instead of the file's georeference
     /// `--crop W,S,E,N` in degrees: only the posts in there; empty: all.
     std::string crop = {};
-    /// The most posts that load() keeps; a larger raster is averaged down by a power of two and the
-    /// description says by which. The default is 1 GiB of heights.
-    std::int64_t max_posts = std::int64_t{1} << 28;
+    /// `--memory`. load() averages a raster with more posts down by a power of two, and the
+    /// description says by which.
+    MemoryBudget memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
+    /// Averaged levels of large DEMs are kept in the user's cache (LevelCache). Never so for
+    /// libraries, which write no files unasked.
+    bool cached = false;
 };
-
-/// Posts whose heights take so much memory, and the whole MiB that posts take.
-constexpr std::int64_t posts_in_mib(std::int64_t mib) {
-    return (mib << 20) / std::int64_t{sizeof(float)};
-}
-constexpr std::int64_t mib_of_posts(std::int64_t posts) {
-    return posts * std::int64_t{sizeof(float)} >> 20;
-}
 
 /// A DEM that is open: what it is, and its heights on demand. Errors begin with `dem::load`.
 ///
@@ -101,6 +97,9 @@ class Source {
 
     /// Rows that are read best at once, those of the files' blocks.
     int block_rows() const;
+
+    /// Columns and rows of the file's blocks; 256 x 256 for several files.
+    glm::ivec2 block_size() const;
 
     /// The height at a place, as Heightfield::height_at() has it: four posts are read.
     double height_at(const geo::Geodetic& place) const;

@@ -22,12 +22,13 @@ glm::ivec2 swapped(const glm::ivec2& size) {
 void check_memory(const std::string& path, const glm::ivec2& size, const dem::LoadOptions& how,
                   const std::string& remedy) {
     const std::int64_t posts = std::int64_t{size.x} * size.y;
-    if (posts <= how.max_posts) return;
+    if (posts <= how.memory.posts) return;
+    const std::int64_t wanted = MemoryBudget::mib_for_posts(posts);
     bad_input(fmt::format(
         "{}: {} x {} heights take {} MiB, expected at most {}; pass {}--crop W,S,E,N or --memory "
         "{}",
-        path, size.x, size.y, dem::mib_of_posts(posts) + 1, dem::mib_of_posts(how.max_posts),
-        remedy.empty() ? "" : remedy + ", ", dem::mib_of_posts(posts) + 1));
+        path, size.x, size.y, wanted, how.memory.mib(), remedy.empty() ? "" : remedy + ", ",
+        wanted));
 }
 
 /// Posts of the DEM, or means where a side has fewer.

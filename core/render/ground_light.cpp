@@ -229,6 +229,7 @@ std::shared_ptr<const SkyView> compute_sky_view(const dem::Heightfield& field,
 struct GroundLight::Impl {
     const dem::Heightfield& field;
     const geo::LocalFrame& frame;
+    std::int64_t max_posts;
 
     /// Posts of one reduction, with data that all suns share.
     struct Level {
@@ -258,13 +259,18 @@ struct GroundLight::Impl {
     CoverageTexture fraction, sky;
     bool has_shadows = true;  // false: the grid is too near a pole
 
-    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyViewFuture future, ShadowsOn on)
-        : field(f), frame(l), where(on), sky_future(std::move(future)) {}
+    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyViewFuture future, ShadowsOn on,
+         std::int64_t most)
+        : field(f),
+          frame(l),
+          max_posts(std::min<std::int64_t>(most, kMaxPosts)),
+          where(on),
+          sky_future(std::move(future)) {}
 
     /// The largest reduction whose means are not coarser than the pixels, within kCoarsePosts.
     int reduction_for(double pixel_posts) const {
-        const int coarsest = reduction_within(field.height_m, kCoarsePosts);
-        int reduction = reduction_within(field.height_m, kMaxPosts);
+        int reduction = reduction_within(field.height_m, max_posts);
+        const int coarsest = std::max(reduction, reduction_within(field.height_m, kCoarsePosts));
         while (2 * reduction * field.reduction <= pixel_posts && 2 * reduction <= coarsest)
             reduction *= 2;
         return reduction;
@@ -411,8 +417,8 @@ SkyViewFuture compute_sky_view_async(const dem::Heightfield& field, double exagg
 }
 
 GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame,
-                         SkyViewFuture sky, ShadowsOn where)
-    : impl_(std::make_unique<Impl>(field, frame, std::move(sky), where)) {}
+                         SkyViewFuture sky, ShadowsOn where, std::int64_t max_posts)
+    : impl_(std::make_unique<Impl>(field, frame, std::move(sky), where, max_posts)) {}
 GroundLight::GroundLight(GroundLight&&) noexcept = default;
 GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
 GroundLight::~GroundLight() = default;

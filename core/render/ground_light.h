@@ -38,7 +38,8 @@ enum class ShadowsOn {
 /// - "light_sky": sky-view factor relative to that of an unobstructed slope, times coverage (r),
 ///   and coverage (g), with mipmaps.
 ///
-/// Posts are reduced to means of 2 x 2, 4 x 4, ... posts for DEMs of more than kMaxPosts posts, and
+/// Posts are reduced to means of 2 x 2, 4 x 4, ... posts for DEMs of more than kMaxPosts posts or
+/// than memory has room for, and
 /// where no pixel of the frame is finer than the means. The sky-view factor has at most
 /// kMaxSkyPosts posts.
 class GroundLight {
@@ -47,8 +48,9 @@ class GroundLight {
     /// @param frame  the DEM's local frame; must outlive this
     /// @param sky    sky-view factors of the same field; may be invalid or for another exaggeration
     /// @param where  a device that fails is reported once, and the processor takes over
+    /// @param max_posts  for which shadows are computed, kMaxPosts or fewer
     GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyViewFuture sky = {},
-                ShadowsOn where = ShadowsOn::Processor);
+                ShadowsOn where = ShadowsOn::Processor, std::int64_t max_posts = kMaxPosts);
     GroundLight(GroundLight&&) noexcept;
     GroundLight& operator=(GroundLight&&) noexcept;
     ~GroundLight();

@@ -5,12 +5,16 @@
 #include <numeric>
 #include <optional>
 
+#include "base/parallel_for.h"
 #include "render/page_maker.h"
 
 namespace relevo::render {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // pages in memory before their upload
+/// Pages in memory before their upload: enough for all threads, and few.
+std::size_t batch() {
+    return static_cast<std::size_t>(std::clamp(4 * thread_count(), 8, 64));
+}
 
 }  // namespace
 
@@ -90,11 +94,11 @@ struct PageCache::Impl {
         const std::vector<TileKey> wanted = missing(keys);
         if (wanted.empty()) return false;
         const std::vector<int> order = oldest();
-        for (std::size_t begin = 0; begin < wanted.size(); begin += kBatch) {
-            const std::span batch =
-                std::span(wanted).subspan(begin, std::min(kBatch, wanted.size() - begin));
+        for (std::size_t begin = 0; begin < wanted.size(); begin += batch()) {
+            const std::span keys_of_batch =
+                std::span(wanted).subspan(begin, std::min(batch(), wanted.size() - begin));
             const std::vector<MadePage> pages =
-                make_pages(batch, [this](const TileKey& key) { return make(key); });
+                make_pages(keys_of_batch, [this](const TileKey& key) { return make(key); });
             for (std::size_t i = 0; i < pages.size(); ++i)
                 put(pages[i], order[begin + i]);
         }

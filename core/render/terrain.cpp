@@ -7,11 +7,13 @@
 #include <unordered_set>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/error.h"
 #include "base/units.h"
 #include "render/pages.h"
 #include "render/tile_grid.h"
@@ -22,6 +24,32 @@ namespace {
 
 constexpr int kMaxHeightPages = 1024;  // 73 MB
 constexpr int kMaxNormalPages = 384;   // 102 MB
+
+/// Parts of MemoryBudget::page_bytes for pages of heights, and for those of normals, water and
+/// rasters, whose texels all have four bytes.
+constexpr std::int64_t kHeightPart = 6;  // one in so many
+constexpr std::int64_t kHeightPageBytes = std::int64_t{kHeightPage_px} * kHeightPage_px * 16;
+constexpr std::int64_t kNormalPageBytes = std::int64_t{kNormalPage_px} * kNormalPage_px * 4;
+
+int height_slots_in(const MemoryBudget& memory) {
+    return static_cast<int>(std::min<std::int64_t>(
+        kMaxHeightPages, memory.page_bytes / kHeightPart / kHeightPageBytes));
+}
+
+/// @param layers  that share the memory
+int normal_slots_in(const MemoryBudget& memory, std::int64_t layers) {
+    return static_cast<int>(std::min<std::int64_t>(
+        kMaxNormalPages,
+        memory.page_bytes * (kHeightPart - 1) / kHeightPart / (layers * kNormalPageBytes)));
+}
+
+/// A view would be coarser than with more memory.
+/// @throws Error (BadInput)
+[[noreturn]] void refuse_coarser(const MemoryBudget& memory) {
+    bad_input(fmt::format("--memory {}: too little for the tile pages of this view; use "
+                          "--memory {}, or a smaller --size",
+                          memory.mib(), 2 * memory.mib()));
+}
 
 /// Factor of the tolerance between attempts.
 constexpr double kCoarser = 1.2;
@@ -72,13 +100,13 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     : serial_(next_serial()),
       options_(options),
       own_pyramid_(options.pyramid ? std::nullopt
-                                   : std::optional(dem::Pyramid::of(heightfield, finer))),
+                                   : std::optional(dem::Pyramid::of(heightfield, finer, options.memory))),
       pyramid_(options.pyramid ? *options.pyramid : *own_pyramid_),
       grid_(finer && heightfield.reduction > 1 ? finer->grid() : heightfield.grid),
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
-      light_(heightfield, frame, options.sky, options.shadows_on),
+      light_(heightfield, frame, options.sky, options.shadows_on, options.memory.light_posts),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
@@ -93,7 +121,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
                            [this](const TileKey& key) {
                                return bytes_of(height_page(pyramid_, key.level, key.at));
                            }}},
-                         std::min({tiles_of_all_levels(pyramid_), kMaxHeightPages, most}));
+                         std::min({tiles_of_all_levels(pyramid_), height_slots_in(options.memory),
+                                   most}));
     int normal_count = 0;
     for (int level = 0; level < normal_levels_; ++level)
         normal_count +=
@@ -138,7 +167,8 @@ void Terrain::update_surface_layers() {
                           [this](const TileKey& key) {
                               return bytes_of(water_->page(pyramid_, key.level, key.at));
                           }});
-    surface_ = PageCache(std::move(layers), normal_layers_);
+    const int in_memory = normal_slots_in(options_.memory, std::ssize(layers));
+    surface_ = PageCache(std::move(layers), std::min(normal_layers_, in_memory));
 }
 
 void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
@@ -152,7 +182,9 @@ void Terrain::set_rasters(NamedRasters rasters) {
 }
 
 int Terrain::raster_slots() const {
-    return std::min(kMaxNormalPages, options_.max_array_layers);
+    constexpr std::int64_t kSurfaceLayers = 3;
+    return std::min(normal_slots_in(options_.memory, kSurfaceLayers + 1),
+                    options_.max_array_layers);
 }
 
 void Terrain::write(FrameBlock& block) const {
@@ -219,8 +251,11 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
     std::vector<TileDraw> draws;
     std::vector<TileKey> keys;
     // A quarter of the slots is reserved for selections that are kept.
-    const int slots = heights_.slots();
-    const int room = keep || slots == tiles_of_all_levels(pyramid_) ? slots : slots - slots / 4;
+    const auto room_of = [&](int slots) {
+        return keep || slots == tiles_of_all_levels(pyramid_) ? slots : slots - slots / 4;
+    };
+    const int room = room_of(heights_.slots());
+    const int room_in_more_memory = room_of(std::min(kMaxHeightPages, options_.max_array_layers));
     while (true) {
         draws = tree_.select(view);
         keys.clear();
@@ -233,8 +268,10 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
                 name(tile.draw.key);
         for (const TileDraw& draw : draws)
             name(draw.key);
-        const bool fits = static_cast<int>(keys.size()) <= room;
-        if (fits && (!view.eye_m || in_budget(wanted, draws))) break;
+        const auto pages = static_cast<int>(keys.size());
+        const bool is_coarse_enough = !view.eye_m || in_budget(wanted, draws);
+        if (pages <= room && is_coarse_enough) break;
+        if (is_coarse_enough && pages <= room_in_more_memory) refuse_coarser(options_.memory);
         view.tolerance = coarser(view.tolerance);
     }
     heights_.require(keys);
@@ -356,6 +393,8 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool determi
             pages.push_back({std::max(key.level - kNormalPageLevels, 0), key.at});
         });
         if (static_cast<int>(pages.size()) <= surface_.slots()) break;
+        if (loading == Loading::Wait && surface_.slots() < normal_layers_)
+            refuse_coarser(options_.memory);
     }
     const bool came = surface_.load(pages, loading);
     complete_ = complete_ && std::ranges::all_of(pages, [&](const TileKey& page) {

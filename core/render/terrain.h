@@ -38,6 +38,7 @@ struct TerrainOptions {
     /// Vertices of a frame above which the error is increased.
     int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< of the device
+    MemoryBudget memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
     /// The heightfield's pyramid; must outlive the terrain. Null: built by the terrain.
     const dem::Pyramid* pyramid = nullptr;
     /// Water and filled voids at the heightfield's posts, for lib/water.glsl; must outlive the

@@ -76,10 +76,10 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return text(dem::name_of(s.dem.encoding)); },
      [](Scene& s, const Value& v) { s.dem.encoding = dem::Encoding{index_of(kEncodings, v)}; }},
     {"dem", "memory_mib", "--memory", "DEM",
-     "MiB of heights in memory; a larger DEM is averaged in memory and read from the file near the "
-     "camera", Kind::Whole, 1, 1 << 20, {},
-     [](const Scene& s) { return number(static_cast<double>(dem::mib_of_posts(s.dem.max_posts))); },
-     [](Scene& s, const Value& v) { s.dem.max_posts = dem::posts_in_mib(std::lround(v.number)); }},
+     "MiB of memory above what the program takes itself (3072); a larger DEM is averaged in memory "
+     "and read from the file near the camera", Kind::Whole, 1, 1 << 20, {},
+     [](const Scene& s) { return number(static_cast<double>(s.dem.memory.mib())); },
+     [](Scene& s, const Value& v) { s.dem.memory = MemoryBudget::of_mib(std::lround(v.number)); }},
     {"dem", "holes", "--holes", "Options",
      "How voids in the DEM are drawn: fill (filled, wide ones covered in grey, those at the edge "
      "cut out), cut (all cut out), mark (filled and painted)", Kind::Word, 0, 0, kHoles,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "dem/level_cache.h"
 #include "dem/load.h"
 #include "render/ground.h"
 #include "session/session.h"
@@ -13,7 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
+/// @param known  water that was found before; null: it is found
+LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes,
+                          dem::Water* known) {
     LoadedDem::Drawn drawn;
     // Voids of a reduced DEM stay cut: finer levels of detail are read from the file, with voids.
     const bool all = field.reduction == 1;
@@ -30,8 +33,9 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
             drawn.is_filled = std::move(filled.filled);
         }
     }
-    drawn.water =
-        dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
+    drawn.water = known ? std::move(*known)
+                        : dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m,
+                                          field.grid);
     return drawn;
 }
 
@@ -50,15 +54,26 @@ void check_heights(const dem::Description& about) {
                     about.path, s.min_m, s.max_m, -kMostHeight_m, kMostHeight_m));
 }
 
-std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
-                                            dem::Heightfield field, const scene::Scene& scene,
-                                            Clock::time_point began, bool is_preview) {
-    auto dem = std::make_shared<LoadedDem>(LoadedDem{
-        .source = std::move(source), .field = std::move(field), .is_preview = is_preview});
-    dem->drawn = drawn_of(dem->field, scene.holes);
-    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get()));
-    dem->took_ms = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+/// @param known  what an earlier run has found; null: it is computed
+std::shared_ptr<LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
+                                      dem::Heightfield field, const scene::Scene& scene,
+                                      dem::Levels* known = nullptr) {
+    auto dem = std::make_shared<LoadedDem>(
+        LoadedDem{.source = std::move(source), .field = std::move(field)});
+    dem->drawn = drawn_of(dem->field, scene.holes, known ? &known->water : nullptr);
+    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get(), scene.dem.memory,
+                                          known ? &known->bounds : nullptr));
     return dem;
+}
+
+double milliseconds_since(Clock::time_point began) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+/// A DEM that is kept in the cache: a large one of which only means are in memory.
+bool is_cached(const dem::Grid& grid, int reduction) {
+    return reduction > 1 &&
+           std::int64_t{grid.columns()} * grid.rows() >= dem::LevelCache::kLeastPosts;
 }
 
 }  // namespace
@@ -66,22 +81,34 @@ std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> s
 std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
                                           const scene::Scene& scene) {
     const auto began = Clock::now();
-    dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
+    const dem::Grid& grid = source->grid();
+    const int reduction = dem::reduction_of(grid, scene.dem.memory);
+    dem::LoadOptions options = scene.dem;
+    options.cached = options.cached && is_cached(grid, reduction);
+    const dem::LevelCache cache(scene.dems, options, dem::user_level_cache());
+    std::optional<dem::Levels> known = cache.read(grid, reduction);
+    dem::Heightfield field =
+        dem::load(*source, scene.dem.memory,
+                  known ? std::move(known->height_m) : Array2d<float>());
     dem::check_heights(field, scene.dem);
     check_heights(field.about);
-    return loaded_dem(std::move(source), std::move(field), scene, began, /*is_preview=*/false);
+    auto dem = loaded_dem(std::move(source), std::move(field), scene, known ? &*known : nullptr);
+    if (!known) cache.write(dem->field, *dem->pyramid, dem->drawn.water);
+    dem->took_ms = milliseconds_since(began);
+    return dem;
 }
 
 std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source> source,
                                               const scene::Scene& scene) {
     const auto began = Clock::now();
     const dem::Grid& grid = source->grid();
-    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
-    // A DEM that exceeds the memory limit is reduced anyway.
-    if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
+    if (std::int64_t{grid.columns()} * grid.rows() <= kManyPosts) return nullptr;
     std::optional<dem::Heightfield> field = dem::load_quickly(*source, kPreviewPosts);
     if (!field || dem::is_refused(*field, scene.dem)) return nullptr;
-    return loaded_dem(std::move(source), std::move(*field), scene, began, /*is_preview=*/true);
+    auto dem = loaded_dem(std::move(source), std::move(*field), scene);
+    dem->is_preview = true;
+    dem->took_ms = milliseconds_since(began);
+    return dem;
 }
 
 render::Ground ground_of(const LoadedDem& dem) {

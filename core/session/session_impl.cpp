@@ -226,6 +226,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                     render::TerrainOptions{
                         .pixel_error = state.scene.pixel_error,
                         .max_array_layers = context->info().max_array_layers,
+                        .memory = state.scene.dem.memory,
                         .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,

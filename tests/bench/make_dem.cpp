@@ -1,12 +1,15 @@
-// make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews]
+// make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews] [--layout strips1|strips64|tiles256]
 //
 // A DEM of any size from a small real one: mirrored copies side by side, so that the ground goes on
 // without a step and is as rough as the original everywhere. Benches are run on these. A .raw file
 // holds the bare heights as 32-bit floats, first row first, for programs that read no GeoTIFF.
+// A layout is of LZW: strips of 1 or 64 rows, or tiles of 256 x 256. Without one it is deflated
+// tiles.
 
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,12 +27,49 @@ int mirrored(int index, int count) {
     return at < count ? at : period - at;
 }
 
+struct Arguments {
+    bool overviews = false;
+    std::string layout;
+    bool valid = true;
+};
+
+Arguments parse(int argc, char** argv) {
+    Arguments arguments;
+    arguments.valid = argc >= 5;
+    for (int i = 5; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word == "--overviews")
+            arguments.overviews = true;
+        else if (word == "--layout" && i + 1 < argc)
+            arguments.layout = argv[++i];
+        else
+            arguments.valid = false;
+    }
+    return arguments;
+}
+
+/// Creation options of GDAL's GeoTIFF driver.
+std::vector<std::string> creation_options(const std::string& layout) {
+    if (layout.empty()) return {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2"};
+    std::vector<std::string> options{"COMPRESS=LZW", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"};
+    if (layout == "strips1" || layout == "strips64")
+        options.push_back("BLOCKYSIZE=" + layout.substr(6));
+    else if (layout == "tiles256")
+        options.insert(options.end(), {"TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256"});
+    else
+        options.clear();
+    return options;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    const bool has_overviews = argc == 6 && std::string_view(argv[5]) == "--overviews";
-    if (argc != 5 && !has_overviews) {
-        fmt::print(stderr, "usage: make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews]\n");
+    const Arguments arguments = parse(argc, argv);
+    const std::vector<std::string> words = creation_options(arguments.layout);
+    if (!arguments.valid || words.empty()) {
+        fmt::print(stderr,
+                   "usage: make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews] "
+                   "[--layout strips1|strips64|tiles256]\n");
         return 2;
     }
     const relevo::dem::Heightfield source = relevo::dem::load(std::string(argv[1]));
@@ -51,9 +91,12 @@ int main(int argc, char** argv) {
     double geotransform[6] = {
         post.x0 - 0.5 * post.x_column, post.x_column, 0, post.y0 - 0.5 * post.y_row, 0, post.y_row};
     GDALAllRegister();
-    const char* options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2", nullptr};
+    std::vector<const char*> options;
+    for (const std::string& word : words)
+        options.push_back(word.c_str());
+    options.push_back(nullptr);
     GDALDatasetH out = GDALCreate(GDALGetDriverByName("GTiff"), argv[4], columns, rows, 1,
-                                  GDT_Int16, const_cast<char**>(options));
+                                  GDT_Int16, const_cast<char**>(options.data()));
     if (!out) return 1;
     GDALSetGeoTransform(out, geotransform);
     GDALSetProjection(out, source.grid.crs().wkt().c_str());
@@ -68,7 +111,7 @@ int main(int argc, char** argv) {
             return 1;
     }
     const std::array<int, 5> factors{2, 4, 8, 16, 32};
-    if (has_overviews &&
+    if (arguments.overviews &&
         GDALBuildOverviews(out, "AVERAGE", static_cast<int>(factors.size()), factors.data(), 0,
                            nullptr, nullptr, nullptr) != CE_None)
         return 1;

@@ -111,7 +111,7 @@ TEST(SceneOptions, ADefaultOnTheLineReplacesWhatASceneSays) {
     arguments.add_to(Verb(app));
     app.parse(fmt::format("--scene {} --memory 1024 --encoding none", path));
     const Scene scene = arguments.scene();
-    EXPECT_EQ(scene.dem.max_posts, dem::posts_in_mib(1024));
+    EXPECT_EQ(scene.dem.memory.mib(), MemoryBudget::kDefault_mib);
     EXPECT_EQ(scene.dem.encoding, dem::Encoding::None);
 }
 

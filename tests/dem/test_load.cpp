@@ -305,7 +305,7 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
     raster.columns = 100;
     raster.rows = 60;
     raster.value = [](int column, int row, int) { return column + 1000.0 * row; };
-    const Heightfield f = loaded("large.tif", raster, {.max_posts = 1500});
+    const Heightfield f = loaded("large.tif", raster, {.memory = MemoryBudget::of_posts(1500)});
     EXPECT_EQ(f.grid.columns(), 50);
     EXPECT_EQ(f.grid.rows(), 30);
     // The mean of a plane over a cell is the plane in its middle.

@@ -225,7 +225,7 @@ TEST(Posts, SayWhatLooksWrongAsAWholeDemDoes) {
     LoadOptions all;
     all.unit = "m";  // else the spike is refused
     LoadOptions few = all;
-    few.max_posts = kFew;
+    few.memory = MemoryBudget::of_posts(kFew);
     const std::vector<std::string> whole =
         said([&] { EXPECT_TRUE(Posts::load(std::span(&path, 1), all).in_memory()); });
     const std::vector<std::string> parts =
@@ -248,7 +248,7 @@ TEST(Posts, OfADamagedFileAreAnErrorAndNotAPart) {
     const std::string path = write_raster(folder() / "short.tif", rough(701, 515));
     test::cut_short(path, 1000000);
     LoadOptions few;
-    few.max_posts = kFew;
+    few.memory = MemoryBudget::of_posts(kFew);
     const std::string error = error_of([&] { Posts::load(std::span(&path, 1), few); });
     EXPECT_TRUE(error.starts_with("exit 3: " + path + ": its heights cannot be read, ")) << error;
 }

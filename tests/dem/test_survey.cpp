@@ -163,11 +163,11 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
     const std::string path =
         test::write_sparse_raster(folder() / "long_rows.tif", raster, {{5, 1, 7}});
     EXPECT_EQ(
-        test::error_of([&] { Source::open(path, {.max_posts = 64 << 18}); }),
+        test::error_of([&] { Source::open(path, {.memory = MemoryBudget::of_posts(64 << 18)}); }),
         "exit 3: " + path +
             ": is stored in blocks of 30000000 x 1 posts, 114 MiB each, expected at most 64 "
             "MiB; pass --memory 115, or make tiles of them with gdal_translate -co TILED=YES");
-    const Source source = Source::open(path, {.max_posts = 120 << 18});
+    const Source source = Source::open(path, {.memory = MemoryBudget::of_posts(120 << 18)});
     EXPECT_EQ(survey(source, 120 << 18).statistics.max_m, 7);
     EXPECT_EQ(
         test::error_of([&] { load(source, 120 << 18); }),

@@ -144,7 +144,7 @@ TEST(Unearthly, SpikesAllOverRaiseTheQuestionOfTheUnit) {
               "they are right");
     EXPECT_EQ(refusal(path, {.unit = "cm"}), "no error");
     // Also where memory does not hold all posts.
-    EXPECT_THAT(refusal(path, {.max_posts = 300}),
+    EXPECT_THAT(refusal(path, {.memory = MemoryBudget::of_posts(300)}),
                 testing::HasSubstr("differ from all neighbours"));
     // Posts so far apart may be seamounts; and a unit that the file has is its own matter.
     EXPECT_THAT(refusal(write_raster(folder() / "wide.tif", soundings(900, 2000))),

@@ -92,7 +92,7 @@ TEST(ReadGround, MorePostsAreBetweenTheFirstAndTheLast) {
 
 TEST(ReadGround, RefusesWhatMemoryDoesNotHold) {
     dem::LoadOptions how;
-    how.max_posts = 10000;
+    how.memory = MemoryBudget::of_posts(10000);
     const std::string error = test::error_of([&] { bundled({.remedy = "--size 65x65"}, how); });
     EXPECT_TRUE(
         error.ends_with("jacksboro.tif: 403 x 344 heights take 1 MiB, expected at most 0; "

@@ -40,7 +40,7 @@ TEST_F(SceneFile, HasDefaultsForAllButTheDem) {
     EXPECT_EQ(scene.refraction, "standard");
     EXPECT_EQ(scene.view.orbit.azimuth_deg, plain.view.orbit.azimuth_deg);
     EXPECT_EQ(scene.pixel_error, plain.pixel_error);
-    EXPECT_EQ(scene.dem.max_posts, plain.dem.max_posts);
+    EXPECT_EQ(scene.dem.memory.mib(), plain.dem.memory.mib());
     EXPECT_FALSE(scene.view.eye);
     EXPECT_FALSE(scene.effects.switches.only);
 }
@@ -56,7 +56,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     scene.dem.nodata = -9999;
     scene.dem.encoding = dem::Encoding::Terrarium;
     scene.dem.bounds = dem::Bounds{8, 46, 9, 47};
-    scene.dem.max_posts = 1 << 20;
+    scene.dem.memory = MemoryBudget::of_mib(77);
     scene.time = {"sunset-30min", "2026-06-21", "Europe/Zurich"};
     scene.refraction = "saemundsson";
     scene.view.eye = Standpoint{geo::geodetic_deg(46.97, 8.03, 2), true};
@@ -78,7 +78,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     EXPECT_THAT(back.dems, testing::ElementsAre((dir_ / "a.tif").string(), "/vsizip/b.zip/b.tif"));
     EXPECT_EQ(back.dem.nodata, -9999);
     EXPECT_EQ(back.dem.bounds, scene.dem.bounds);
-    EXPECT_EQ(back.dem.max_posts, 1 << 20);
+    EXPECT_EQ(back.dem.memory.mib(), 77);
     EXPECT_EQ(back.time.date, "2026-06-21");
     EXPECT_EQ(back.view.eye->place.lat_rad, radians(46.97));  // to the last bit
     EXPECT_TRUE(back.view.eye->above_ground);

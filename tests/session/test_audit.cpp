@@ -170,7 +170,7 @@ TEST(Audit, ASeaOverExaggeratedGroundMovesNothingButWater) {
 TEST(Audit, MeansOfADemHaveTheShadowsOfMeans) {
     // A DEM beyond --memory: 403 x 344 posts as means of 2 x 2.
     scene::Scene scene = morning("shadows");
-    scene.dem.max_posts = 50000;
+    scene.dem.memory = MemoryBudget::of_posts(50000);
     const ShadowAudit audit = audit_of(scene);
     EXPECT_GT(audit.lit, 1000);
     EXPECT_GT(audit.shaded, 100);
@@ -181,7 +181,7 @@ TEST(Audit, MeansOfADemHaveTheShadowsOfMeans) {
 TEST(Audit, MeansOfManyPostsAreComparedWithTheirOwnPixels) {
     // Means of 4 x 4 posts: a pixel that is taken for one half a mean aside is found out.
     scene::Scene scene = morning("shadows");
-    scene.dem.max_posts = 10000;
+    scene.dem.memory = MemoryBudget::of_posts(10000);
     const ShadowAudit audit = audit_of(scene);
     EXPECT_GE(audit.agreement(), 0.98);
     EXPECT_GE(audit.balanced_accuracy(), 0.98);

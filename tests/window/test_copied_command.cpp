@@ -62,7 +62,7 @@ scene::Scene unusual(const fs::path& folder) {
     scene.dem.unit = "feet";
     scene.dem.nodata = 3;
     scene.dem.bounds = dem::Bounds{-8.5, -46.25, -8.125, -46};
-    scene.dem.max_posts = dem::posts_in_mib(77);
+    scene.dem.memory = MemoryBudget::of_mib(77);
     scene.time.at = "2026-06-21T18:30:00+02:00";
     scene.refraction = "none";
     scene.view.eye = scene::Standpoint{geo::geodetic_deg(-46.1, -8.25, 1200), false};

@@ -120,7 +120,7 @@ TEST(Command, IsQuotedForAShell) {
 std::shared_ptr<const session::LoadedDem> jacksboro() {
     const std::string file = (test::source_dir() / "data/dem/jacksboro.tif").string();
     dem::Source source = dem::Source::open(file);
-    dem::Heightfield field = dem::load(source, dem::LoadOptions{}.max_posts);
+    dem::Heightfield field = dem::load(source, dem::LoadOptions{}.memory);
     return std::make_shared<const session::LoadedDem>(session::LoadedDem{
         std::make_shared<const dem::Source>(std::move(source)), std::move(field)});
 }

@@ -171,7 +171,7 @@ TEST(SunFigures, AreWrittenAsByTheCommandLine) {
     const auto folder = test::scratch_dir("figures");
     std::filesystem::current_path(folder);
     dem::Source source = dem::Source::open(dem);
-    dem::Heightfield field = dem::load(source, dem::LoadOptions{}.max_posts);
+    dem::Heightfield field = dem::load(source, dem::LoadOptions{}.memory);
     OverlayWanted wanted;
     wanted.dem = std::make_shared<const session::LoadedDem>(session::LoadedDem{
         std::make_shared<const dem::Source>(std::move(source)), std::move(field)});

@@ -30,14 +30,14 @@ void run(const std::string& arguments) {
 constexpr OverlayChoice kDay{.kind = OverlayKind::Hours}, kMask{.kind = OverlayKind::Mask};
 
 OverlayWanted of(const std::string& file, const OverlayChoice& choice,
-                 std::int64_t max_posts = dem::LoadOptions{}.max_posts) {
+                 const MemoryBudget& memory = dem::LoadOptions{}.memory) {
     dem::Source source = dem::Source::open(file);
-    dem::Heightfield field = dem::load(source, max_posts);
+    dem::Heightfield field = dem::load(source, memory);
     OverlayWanted wanted;
     wanted.dem = std::make_shared<const session::LoadedDem>(session::LoadedDem{
         std::make_shared<const dem::Source>(std::move(source)), std::move(field)});
     wanted.dems = {file};
-    wanted.options.max_posts = max_posts;
+    wanted.options.memory = memory;
     wanted.raster = raster_of(choice, sun::parse_time("2026-12-24T16:00:00Z").utc,
                               sun::Zone::named("America/New_York"), "standard");
     wanted.title = title_of(choice, wanted.raster);

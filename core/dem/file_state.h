@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace relevo::dem {
+
+/// Names, sizes and times of the last change of all files that rasters are read from, in lines:
+/// it differs once one of them has changed. nullopt if that cannot be seen, such as for files of
+/// the net, heights in memory, and virtual rasters among more than 16 rasters.
+/// @param paths  as Source::open() takes them
+std::optional<std::string> state_of_files(std::span<const std::string> paths);
+
+}  // namespace relevo::dem
