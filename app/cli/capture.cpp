@@ -18,8 +18,8 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/memory_use.h"
 #include "cli/format_arguments.h"
+#include "cli/memory_use.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
 #include "effect/search_path.h"
@@ -126,8 +126,6 @@ class Timings {
             return static_cast<double>(bytes) / static_cast<double>(MemoryBudget::kMiB);
         };
         return {{"allowed", memory.mib()},
-                {"posts", mib(memory.posts * MemoryBudget::kBytesAPost)},
-                {"light", mib(memory.light_posts * MemoryBudget::kBytesALightPost)},
                 {"pages", mib(memory.page_bytes)},
                 {"blocks", mib(memory.block_bytes)},
                 {"work", mib(memory.work_bytes)},

@@ -10,7 +10,7 @@ namespace relevo::viewer {
 namespace {
 
 std::string effects_text(const Document& document) {
-    scene::Scene scene{};
+    scene::Scene scene;
     scene.effects = document.scene.effects;
     return scene::scene_text(scene, "");
 }

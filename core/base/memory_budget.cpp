@@ -14,18 +14,26 @@ constexpr std::int64_t kLeastOfPictures_mib = 64;
 
 }  // namespace
 
-MemoryBudget MemoryBudget::of_mib(std::int64_t mib) {
+MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
+    constexpr std::int64_t kBytesADrawnPost = 5;   // a height, and the levels' third of it
+    constexpr std::int64_t kBytesAMean = 12;       // a height, two levels with coverage, water
+    constexpr std::int64_t kBytesALightPost = 20;  // heights, sweeps, results, textures
     const std::int64_t bytes = mib * kMiB;
-    return {.total_bytes = bytes,
-            .posts = bytes / kBytesAPost,
-            .means = bytes / (2 * kBytesAPost),
-            .light_posts = bytes * 7 / 32 / kBytesALightPost,
-            .page_bytes = std::min(bytes / 4, 512 * kMiB),
-            .block_bytes = std::clamp(bytes / 8, 8 * kMiB, 256 * kMiB),
-            .work_bytes = std::clamp(bytes / 16, kMiB, 64 * kMiB)};
+    MemoryBudget budget{.total_bytes = bytes,
+                        .posts = bytes / kBytesAPost,
+                        .page_bytes = std::clamp(bytes / 4, 32 * kMiB, 512 * kMiB),
+                        .block_bytes = std::clamp(bytes / 8, 8 * kMiB, 256 * kMiB),
+                        .work_bytes = std::clamp(bytes / 16, kMiB, 64 * kMiB)};
+    const std::int64_t light_bytes = bytes / 8 + std::max<std::int64_t>(0, bytes - 256 * kMiB) / 8;
+    budget.light_posts = light_bytes / kBytesALightPost;
+    const std::int64_t rest = std::max<std::int64_t>(
+        0, bytes - light_bytes - budget.page_bytes - budget.block_bytes - budget.work_bytes);
+    budget.drawn_posts = rest / kBytesADrawnPost;
+    budget.means = rest / kBytesAMean;
+    return budget;
 }
 
-MemoryBudget MemoryBudget::of_posts(std::int64_t posts) {
+MemoryBudget MemoryBudget::of_posts(std::int64_t posts) noexcept {
     MemoryBudget budget = of_mib(kDefault_mib);
     budget.posts = budget.means = posts;
     return budget;
@@ -35,10 +43,13 @@ std::int64_t MemoryBudget::mib_for_posts(std::int64_t posts) {
     return std::max<std::int64_t>(1, (posts * kBytesAPost + kMiB - 1) / kMiB);
 }
 
-void MemoryBudget::check_for_pictures() const {
+MemoryBudget MemoryBudget::for_pictures() const {
     if (total_bytes < kLeastOfPictures_mib * kMiB)
-        bad_input(fmt::format("--memory {}: pictures need at least {}", mib(),
-                              kLeastOfPictures_mib));
+        bad_input(
+            fmt::format("--memory {}: pictures need at least {}", mib(), kLeastOfPictures_mib));
+    MemoryBudget pictures = *this;
+    pictures.posts = std::min(posts, drawn_posts);
+    return pictures;
 }
 
 }  // namespace relevo

@@ -8,35 +8,35 @@ namespace relevo {
 /// the same run takes for a DEM of 2 x 2 posts. A value that is passed down; all of it follows from
 /// one number.
 ///
-/// Posts have more than their heights: coarser levels, water, sweeps of figures. Means of a DEM
-/// that is larger than memory have about twice as much, because their finest level is no copy of
-/// the heights.
+/// Posts have more than their heights: coarser levels in pictures, sweeps and results in figures.
+/// Means of a DEM that is larger than memory have about twice as much, because their finest level
+/// is no copy of the heights.
 struct MemoryBudget {
     static constexpr std::int64_t kMiB = std::int64_t{1} << 20;
     static constexpr std::int64_t kDefault_mib = 3072;  ///< 1 GiB of heights
-    static constexpr std::int64_t kBytesAPost = 12;  ///< of which 4 are its height
-    /// Heights, sweeps, results and textures.
-    static constexpr std::int64_t kBytesALightPost = 20;
+    static constexpr std::int64_t kBytesAPost = 12;     ///< of figures; 4 of them are its height
 
     std::int64_t total_bytes = 0;
-    std::int64_t posts = 0;        ///< of a DEM that is held whole, or in tiles
-    std::int64_t means = 0;        ///< of a DEM that is not
-    std::int64_t light_posts = 0;  ///< for which shadows are computed
+    std::int64_t posts = 0;        ///< that figures hold, of a whole DEM or in tiles
+    std::int64_t drawn_posts = 0;  ///< that pictures hold of a whole DEM
+    std::int64_t means = 0;        ///< that they hold of a DEM with more posts
+    std::int64_t light_posts = 0;  ///< for which pictures compute shadows
     std::int64_t page_bytes = 0;   ///< tile pages, on the device
     std::int64_t block_bytes = 0;  ///< GDAL's cache of blocks, which several DEMs share
     std::int64_t work_bytes = 0;   ///< buffers while heights are read
 
     /// @param mib  1 or more
-    static MemoryBudget of_mib(std::int64_t mib);
+    static MemoryBudget of_mib(std::int64_t mib) noexcept;
     /// The default, but for so many posts or means.
-    static MemoryBudget of_posts(std::int64_t posts);
+    static MemoryBudget of_posts(std::int64_t posts) noexcept;
     /// The least MiB whose budget holds so many posts.
     static std::int64_t mib_for_posts(std::int64_t posts);
 
     std::int64_t mib() const { return total_bytes / kMiB; }
 
-    /// @throws Error (BadInput) if pictures need more; the message says how much
-    void check_for_pictures() const;
+    /// `posts` are no more than `drawn_posts`. @throws Error (BadInput) if pictures need more; the
+    /// message says how much
+    MemoryBudget for_pictures() const;
 };
 
 }  // namespace relevo

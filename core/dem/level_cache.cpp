@@ -190,6 +190,10 @@ std::string LevelCache::name_of(const std::string& key, int reduction) {
     return sha256_of_text(fmt::format("{}reduction {}\n", key, reduction));
 }
 
+bool LevelCache::has(int reduction) const {
+    return key_ && folder_.peek(name_of(*key_, reduction)).has_value();
+}
+
 std::optional<Levels> LevelCache::read(const Grid& full, int reduction) const {
     if (!key_) return std::nullopt;
     const std::string name = name_of(*key_, reduction);
@@ -201,15 +205,15 @@ std::optional<Levels> LevelCache::read(const Grid& full, int reduction) const {
     if (is_of_dem)
         levels = read_levels(*file, full.columns() / reduction, full.rows() / reduction, reduction);
     if (levels)
-        log::debug(fmt::format("averaged levels are read from {}", (folder_.folder() / name).string()));
+        log::debug(
+            fmt::format("averaged levels are read from {}", (folder_.folder() / name).string()));
     else
         log::info(fmt::format("{}: damaged, so the DEM is read again",
                               (folder_.folder() / name).string()));
     return levels;
 }
 
-void LevelCache::write(const Heightfield& field, const Pyramid& pyramid,
-                       const Water& water) const {
+void LevelCache::write(const Heightfield& field, const Pyramid& pyramid, const Water& water) const {
     if (!key_) return;
     const auto bytes = static_cast<std::int64_t>(field.height_m.size() * sizeof(float));
     const std::string failure =

@@ -47,6 +47,9 @@ class LevelCache {
     /// @param paths, options  as Source::open() was called with
     LevelCache(std::span<const std::string> paths, const LoadOptions& options, CacheFolder folder);
 
+    /// Whether read() is likely to find something.
+    bool has(int reduction) const;
+
     /// @param full       of all posts
     /// @param reduction  of the heights
     std::optional<Levels> read(const Grid& full, int reduction) const;

@@ -39,11 +39,10 @@ int reduction_of(const Grid& full, const MemoryBudget& memory);
 /// what looks wrong, see is_refused(). A sample is a DEM of its own: its reduction is 1, because no
 /// finer level of it can be read.
 /// @param most_posts  that are kept; files are read for up to four times as many cells of
-///     overviews, or kMostSampled posts
-/// @returns none if all posts are that few, or no mean has a height
+///     overviews, or for an eighth of the posts
+/// @returns none if all posts are few, or no mean has a height
 /// @throws Error (BadInput) as Source::read()
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);
-inline constexpr std::int64_t kMostSampled = std::int64_t{1} << 28;
 
 /// Says what heights look wrong but for those that check_heights() refuses, in the description and
 /// with log::info.

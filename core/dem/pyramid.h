@@ -52,7 +52,8 @@ class Pyramid {
     /// @param memory  for the pieces that are sampled
     /// @param known   tile_bounds() of an equal pyramid; null: they are computed
     /// @throws Error (BadInput) if the file is damaged, also from block()
-    Pyramid(const Heightfield& means, const Source& source, const MemoryBudget& memory,
+    Pyramid(const Heightfield& means, const Source& source,
+            const MemoryBudget& memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib),
             const TileBounds* known = nullptr);
 
     /// Pyramid of a heightfield of posts or of means.

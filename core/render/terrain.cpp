@@ -44,11 +44,16 @@ int normal_slots_in(const MemoryBudget& memory, std::int64_t layers) {
 }
 
 /// A view would be coarser than with more memory.
+/// @param page_bytes  that it needs
 /// @throws Error (BadInput)
-[[noreturn]] void refuse_coarser(const MemoryBudget& memory) {
-    bad_input(fmt::format("--memory {}: too little for the tile pages of this view; use "
-                          "--memory {}, or a smaller --size",
-                          memory.mib(), 2 * memory.mib()));
+[[noreturn]] void refuse_coarser(const MemoryBudget& memory, std::int64_t page_bytes) {
+    std::int64_t mib = memory.mib();
+    while (MemoryBudget::of_mib(mib).page_bytes < page_bytes)
+        ++mib;
+    bad_input(
+        fmt::format("--memory {}: this view needs --memory {} for its tile pages, or a "
+                    "smaller --size",
+                    memory.mib(), mib));
 }
 
 /// Factor of the tolerance between attempts.
@@ -99,8 +104,9 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
                  const TerrainOptions& options, const dem::Source* finer)
     : serial_(next_serial()),
       options_(options),
-      own_pyramid_(options.pyramid ? std::nullopt
-                                   : std::optional(dem::Pyramid::of(heightfield, finer, options.memory))),
+      own_pyramid_(options.pyramid
+                       ? std::nullopt
+                       : std::optional(dem::Pyramid::of(heightfield, finer, options.memory))),
       pyramid_(options.pyramid ? *options.pyramid : *own_pyramid_),
       grid_(finer && heightfield.reduction > 1 ? finer->grid() : heightfield.grid),
       frame_(frame),
@@ -117,12 +123,12 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);
 
     const int most = options.max_array_layers;
-    heights_ = PageCache({{"height_pages", gl::Format::RGBA32F, kHeightPage_px, gl::Filter::Nearest,
-                           [this](const TileKey& key) {
-                               return bytes_of(height_page(pyramid_, key.level, key.at));
-                           }}},
-                         std::min({tiles_of_all_levels(pyramid_), height_slots_in(options.memory),
-                                   most}));
+    heights_ =
+        PageCache({{"height_pages", gl::Format::RGBA32F, kHeightPage_px, gl::Filter::Nearest,
+                    [this](const TileKey& key) {
+                        return bytes_of(height_page(pyramid_, key.level, key.at));
+                    }}},
+                  std::min({tiles_of_all_levels(pyramid_), height_slots_in(options.memory), most}));
     int normal_count = 0;
     for (int level = 0; level < normal_levels_; ++level)
         normal_count +=
@@ -167,6 +173,7 @@ void Terrain::update_surface_layers() {
                           [this](const TileKey& key) {
                               return bytes_of(water_->page(pyramid_, key.level, key.at));
                           }});
+    surface_bytes_ = std::ssize(layers) * kNormalPageBytes;
     const int in_memory = normal_slots_in(options_.memory, std::ssize(layers));
     surface_ = PageCache(std::move(layers), std::min(normal_layers_, in_memory));
 }
@@ -271,7 +278,9 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
         const auto pages = static_cast<int>(keys.size());
         const bool is_coarse_enough = !view.eye_m || in_budget(wanted, draws);
         if (pages <= room && is_coarse_enough) break;
-        if (is_coarse_enough && pages <= room_in_more_memory) refuse_coarser(options_.memory);
+        if (is_coarse_enough && pages <= room_in_more_memory)
+            refuse_coarser(options_.memory,
+                           kHeightPart * kHeightPageBytes * (pages + pages / 3 + 1));
         view.tolerance = coarser(view.tolerance);
     }
     heights_.require(keys);
@@ -394,7 +403,8 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool determi
         });
         if (static_cast<int>(pages.size()) <= surface_.slots()) break;
         if (loading == Loading::Wait && surface_.slots() < normal_layers_)
-            refuse_coarser(options_.memory);
+            refuse_coarser(options_.memory,
+                           kHeightPart * std::ssize(pages) * surface_bytes_ / (kHeightPart - 1));
     }
     const bool came = surface_.load(pages, loading);
     complete_ = complete_ && std::ranges::all_of(pages, [&](const TileKey& page) {

@@ -199,6 +199,7 @@ class Terrain {
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
     int normal_layers_ = 1;
+    std::int64_t surface_bytes_ = 0;  // of a page in all its layers
 
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;

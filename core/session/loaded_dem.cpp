@@ -15,8 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// @param known  water that was found before; null: it is found
-LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes,
-                          dem::Water* known) {
+LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes, dem::Water* known) {
     LoadedDem::Drawn drawn;
     // Voids of a reduced DEM stay cut: finer levels of detail are read from the file, with voids.
     const bool all = field.reduction == 1;
@@ -33,9 +32,9 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes,
             drawn.is_filled = std::move(filled.filled);
         }
     }
-    drawn.water = known ? std::move(*known)
-                        : dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m,
-                                          field.grid);
+    drawn.water =
+        known ? std::move(*known)
+              : dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
     return drawn;
 }
 
@@ -70,10 +69,12 @@ double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
 
-/// A DEM that is kept in the cache: a large one of which only means are in memory.
-bool is_cached(const dem::Grid& grid, int reduction) {
-    return reduction > 1 &&
-           std::int64_t{grid.columns()} * grid.rows() >= dem::LevelCache::kLeastPosts;
+/// The cache, which keeps large DEMs of which only means are in memory.
+dem::LevelCache cache_of(const dem::Grid& grid, int reduction, const scene::Scene& scene) {
+    dem::LoadOptions options = scene.dem;
+    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
+    options.cached = options.cached && reduction > 1 && posts >= dem::LevelCache::kLeastPosts;
+    return {scene.dems, options, dem::user_level_cache()};
 }
 
 }  // namespace
@@ -82,14 +83,12 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
                                           const scene::Scene& scene) {
     const auto began = Clock::now();
     const dem::Grid& grid = source->grid();
-    const int reduction = dem::reduction_of(grid, scene.dem.memory);
-    dem::LoadOptions options = scene.dem;
-    options.cached = options.cached && is_cached(grid, reduction);
-    const dem::LevelCache cache(scene.dems, options, dem::user_level_cache());
+    const MemoryBudget memory = scene.dem.memory.for_pictures();
+    const int reduction = dem::reduction_of(grid, memory);
+    const dem::LevelCache cache = cache_of(grid, reduction, scene);
     std::optional<dem::Levels> known = cache.read(grid, reduction);
     dem::Heightfield field =
-        dem::load(*source, scene.dem.memory,
-                  known ? std::move(known->height_m) : Array2d<float>());
+        dem::load(*source, memory, known ? std::move(known->height_m) : Array2d<float>());
     dem::check_heights(field, scene.dem);
     check_heights(field.about);
     auto dem = loaded_dem(std::move(source), std::move(field), scene, known ? &*known : nullptr);
@@ -103,6 +102,8 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
     const auto began = Clock::now();
     const dem::Grid& grid = source->grid();
     if (std::int64_t{grid.columns()} * grid.rows() <= kManyPosts) return nullptr;
+    const int reduction = dem::reduction_of(grid, scene.dem.memory.for_pictures());
+    if (cache_of(grid, reduction, scene).has(reduction)) return nullptr;
     std::optional<dem::Heightfield> field = dem::load_quickly(*source, kPreviewPosts);
     if (!field || dem::is_refused(*field, scene.dem)) return nullptr;
     auto dem = loaded_dem(std::move(source), std::move(*field), scene);

@@ -1,5 +1,3 @@
-#include "base/cache_folder.h"
-
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/cache_folder.h"
 #include "base/error.h"
 #include "support/support.h"
 
@@ -79,8 +78,8 @@ TEST_F(CacheFolderTest, FindsEveryKindOfDamage) {
     const fs::path file = place_ / "levels/a";
     const auto size = static_cast<std::streamoff>(fs::file_size(file));
     // In the length and the text, in a checksum, in the first and the last byte of the numbers.
-    for (const std::streamoff at : {std::streamoff{0}, std::streamoff{17}, std::streamoff{40},
-                                    size / 2, size - 1}) {
+    for (const std::streamoff at :
+         {std::streamoff{0}, std::streamoff{17}, std::streamoff{40}, size / 2, size - 1}) {
         std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
         bytes.seekg(at);
         const auto before = static_cast<char>(bytes.get());
@@ -142,7 +141,7 @@ TEST_F(CacheFolderTest, AFullDiskLeavesNothing) {
     const pid_t child = fork();
     if (child == 0) {
         std::signal(SIGXFSZ, SIG_IGN);
-        const struct rlimit limit {1 << 20, 1 << 20};
+        const struct rlimit limit { 1 << 20, 1 << 20 };
         setrlimit(RLIMIT_FSIZE, &limit);
         _exit(store(folder_, "a", kCount) == "File too large" && folder_.entries().empty() ? 0 : 1);
     }
@@ -164,7 +163,7 @@ TEST_F(CacheFolderTest, KilledAtAnyMomentItBeginsAgain) {
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
         // Whole or absent, whenever that was.
-        if (folder_.open("a")) EXPECT_TRUE(holds(folder_, "a", kCount));
+        EXPECT_EQ(holds(folder_, "a", kCount), folder_.open("a").has_value());
         EXPECT_LE(folder_.entries().size(), 2U);
     }
     EXPECT_EQ(store(folder_, "a", kCount), "");

@@ -61,7 +61,7 @@ TEST(OffTheGlobe, CornersOfAMapOfTheWorldAreHoles) {
                     << c.name << column << " " << row;
         // So it is of means, and of all posts one by one.
         const Source source = Source::open(path);
-        const Heightfield means = load(source, 64 * 32);
+        const Heightfield means = load(source, MemoryBudget::of_posts(64 * 32));
         EXPECT_GT(means.reduction, 1);
         EXPECT_NEAR(1 - means.about.statistics.nodata_share(), c.share, 0.02) << c.name;
         EXPECT_EQ(survey(source, 1 << 18).statistics, f.about.statistics) << c.name;

@@ -1,5 +1,3 @@
-#include "dem/level_cache.h"
-
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/file_state.h"
+#include "dem/level_cache.h"
 #include "dem/load.h"
 #include "fixture.h"
 #include "support/support.h"
@@ -97,9 +96,9 @@ TEST(LevelCache, GivesBackWhatPicturesAreMadeOf) {
     ASSERT_TRUE(levels);
     const Heightfield again = load(drawn.source, drawn.options.memory, std::move(levels->height_m));
     ASSERT_EQ(again.height_m.size(), drawn.field.height_m.size());
-    EXPECT_EQ(std::memcmp(again.height_m.data(), drawn.field.height_m.data(),
-                          4 * again.height_m.size()),
-              0);
+    EXPECT_EQ(
+        std::memcmp(again.height_m.data(), drawn.field.height_m.data(), 4 * again.height_m.size()),
+        0);
     EXPECT_EQ(again.about.statistics, drawn.field.about.statistics);
     EXPECT_EQ(again.about.assumptions, drawn.field.about.assumptions);
     EXPECT_EQ(again.reduction, 4);
@@ -137,8 +136,12 @@ TEST(LevelCache, WhatChangesHeightsIsAnotherEntry) {
     };
     EXPECT_FALSE(finds(with(&LoadOptions::cached, false), path));
     EXPECT_FALSE(finds(with(&LoadOptions::unit, "ft"), path));
-    EXPECT_FALSE(finds(with(&LoadOptions::nodata, std::optional<double>(500)), path));
     EXPECT_FALSE(finds(with(&LoadOptions::no_nodata, true), path));
+    const LoadOptions one = with(&LoadOptions::nodata, std::optional<double>(-9999));
+    const Drawn given(path, one);
+    given.cache().write(given.field, given.pyramid, given.water);
+    EXPECT_TRUE(finds(one, path));
+    EXPECT_FALSE(finds(with(&LoadOptions::nodata, std::optional<double>(500)), path));
     EXPECT_FALSE(finds(with(&LoadOptions::band, 1), path));
     EXPECT_FALSE(finds(with(&LoadOptions::crs, "EPSG:32633"), path));
     EXPECT_FALSE(finds(with(&LoadOptions::crop, "7,46,9,48"), path));
@@ -147,8 +150,13 @@ TEST(LevelCache, WhatChangesHeightsIsAnotherEntry) {
     EXPECT_FALSE(finds(options_of(), path, 2));
     fs::copy_file(path, folder() / "copy.tif");
     EXPECT_FALSE(finds(options_of(), (folder() / "copy.tif").string()));
-    // An entry of another name than its own.
-    fs::rename(cached_dems(Drawn::place())[0].entry.path, folder() / "cache/other");
+    // An entry of another name than its own: that of the options with the void given.
+    const std::vector<CachedDem> entries = cached_dems(Drawn::place());
+    ASSERT_EQ(entries.size(), 2U);
+    fs::rename(entries[0].entry.path, folder() / "spare");
+    fs::rename(entries[1].entry.path, entries[0].entry.path);
+    fs::rename(folder() / "spare", entries[1].entry.path);
+    EXPECT_FALSE(finds(one, path));
     EXPECT_FALSE(finds(options_of(), path));
 }
 

@@ -42,7 +42,8 @@ Raster rough(int columns, int rows) {
 
 struct Both {
     explicit Both(const std::vector<std::string>& paths)
-        : source(Source::open(paths)), field(load(source, std::int64_t{1} << 28)) {}
+        : source(Source::open(paths)),
+          field(load(source, MemoryBudget::of_posts(std::int64_t{1} << 28))) {}
     Source source;
     Heightfield field;
     Posts whole{field};

@@ -176,7 +176,8 @@ TEST(Pyramid, LevelsThatAreReadAreThoseInMemory) {
     const Source source = Source::open(path);
     const Heightfield whole = load(path);
     const Heightfield means =
-        load(source, std::int64_t{whole.grid.columns()} * whole.grid.rows() / 16);
+        load(source,
+             MemoryBudget::of_posts(std::int64_t{whole.grid.columns()} * whole.grid.rows() / 16));
     ASSERT_EQ(means.reduction, 4);
     const Pyramid in_memory(whole.height_m), read(means, source);
     ASSERT_EQ(read.first_in_memory(), 3);
@@ -226,7 +227,7 @@ TEST(Pyramid, LevelsFarFromThePostsAreKnownByMeans) {
     };
     const std::string path = test::write_raster(test::scratch_dir("pyramid") / "large.tif", raster);
     const Source source = Source::open(path);
-    const Heightfield whole = load(path), means = load(source, 160 * 160);
+    const Heightfield whole = load(path), means = load(source, MemoryBudget::of_posts(160 * 160));
     ASSERT_EQ(means.reduction, kReduction);
     for (int row = 0; row < means.height_m.height(); row += 5)
         for (int column = 0; column < means.height_m.width(); column += 5) {
@@ -275,7 +276,7 @@ TEST(Pyramid, NodesOfMeansLieOnTheirPosts) {
                                 return plane_m(column, row);
                             }});
     const Source source = Source::open(path);
-    const Heightfield means = load(source, 1000 * 700 / 64);
+    const Heightfield means = load(source, MemoryBudget::of_posts(1000 * 700 / 64));
     ASSERT_EQ(means.reduction, 8);
     const Pyramid pyramid(means, source);
     for (int level = 0; level < pyramid.levels() - 1; ++level) {

@@ -1,5 +1,3 @@
-#include "dem/sample.h"
-
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/load.h"
+#include "dem/sample.h"
 #include "fixture.h"
 
 namespace relevo::dem {
@@ -73,12 +72,12 @@ TEST_P(Sample, OfAllBlocksIsExactWhereTheyAreWhole) {
             EXPECT_NEAR(means.at(column, row), all.at(column, row), GetParam().worst_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Layouts, Sample,
-    testing::Values(Layout{{"COMPRESS=LZW", "BLOCKYSIZE=1"}, 8},
-                    Layout{{"COMPRESS=LZW", "BLOCKYSIZE=7"}, 8},
-                    Layout{{"COMPRESS=LZW", "BLOCKYSIZE=64"}, 0.01},
-                    Layout{{"TILED=YES", "BLOCKXSIZE=128", "BLOCKYSIZE=128"}, 0.01}));
+INSTANTIATE_TEST_SUITE_P(Layouts, Sample,
+                         testing::Values(Layout{{"COMPRESS=LZW", "BLOCKYSIZE=1"}, 8},
+                                         Layout{{"COMPRESS=LZW", "BLOCKYSIZE=7"}, 8},
+                                         Layout{{"COMPRESS=LZW", "BLOCKYSIZE=64"}, 0.01},
+                                         Layout{{"TILED=YES", "BLOCKXSIZE=128", "BLOCKYSIZE=128"},
+                                                0.01}));
 
 }  // namespace
 }  // namespace relevo::dem

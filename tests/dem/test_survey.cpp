@@ -118,7 +118,7 @@ TEST(Survey, WhatAFileDoesNotStoreIsNotRead) {
 
     const Source zeros = Source::open(sparse("zeros.tif", std::nullopt), {.no_nodata = true});
     EXPECT_EQ(survey(zeros, 1 << 24).statistics, (Statistics{0, 321, 200'000LL * 200'000, 0, 0}));
-    const Heightfield means = load(zeros, 1 << 20);
+    const Heightfield means = load(zeros, MemoryBudget::of_posts(1 << 20));
     EXPECT_EQ(means.reduction, 256);
     EXPECT_FLOAT_EQ(means.about.statistics.max_m, 321.0F / 65536);
     EXPECT_EQ(means.about.statistics.holes, 0);
@@ -166,21 +166,21 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
         test::error_of([&] { Source::open(path, {.memory = MemoryBudget::of_posts(64 << 18)}); }),
         "exit 3: " + path +
             ": is stored in blocks of 30000000 x 1 posts, 114 MiB each, expected at most 64 "
-            "MiB; pass --memory 115, or make tiles of them with gdal_translate -co TILED=YES");
+            "MiB; pass --memory 344, or make tiles of them with gdal_translate -co TILED=YES");
     const Source source = Source::open(path, {.memory = MemoryBudget::of_posts(120 << 18)});
     EXPECT_EQ(survey(source, 120 << 18).statistics.max_m, 7);
     EXPECT_EQ(
-        test::error_of([&] { load(source, 120 << 18); }),
+        test::error_of([&] { load(source, MemoryBudget::of_posts(120 << 18)); }),
         "exit 3: " + path +
             ": 30000000 x 2 posts, expected at most 4194304 a side; crop it with gdal_translate");
     // Means would need four rows or more.
     raster.columns = 4'000'000;
     const std::string narrow =
         test::write_sparse_raster(folder() / "narrow.tif", raster, {{5, 1, 7}});
-    EXPECT_EQ(test::error_of([&] { load(Source::open(narrow), 20 << 18); }),
+    EXPECT_EQ(test::error_of([&] { load(Source::open(narrow), MemoryBudget::of_mib(60)); }),
               "exit 3: " + narrow +
-                  ": memory for its heights, expected at most 20 MiB but got 31: 4000000 x 2 posts "
-                  "are too narrow for means; pass --memory 31, or crop it with gdal_translate");
+                  ": memory, expected at most 60 MiB but got 92: 4000000 x 2 posts "
+                  "are too narrow for means; pass --memory 92, or crop it with gdal_translate");
 }
 
 }  // namespace

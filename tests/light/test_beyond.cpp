@@ -85,7 +85,7 @@ TEST(TerrainBeyond, IsTheSameHoweverLittleMemoryThereIs) {
     };
     const std::vector<std::string> paths{test::write_raster(test::folder() / "beyond.tif", raster)};
     const dem::Source source = dem::Source::open(paths);
-    const dem::Heightfield field = dem::load(source, std::int64_t{1} << 28);
+    const dem::Heightfield field = dem::load(source, MemoryBudget::of_posts(std::int64_t{1} << 28));
     const dem::Posts all(field), few(source, 1 << 16);
     ASSERT_FALSE(few.in_memory());
     for (const dem::Window& part : {dem::Window{}, dem::Window{600, 500, 90, 500}}) {

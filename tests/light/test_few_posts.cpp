@@ -39,7 +39,7 @@ bool same(double a, double b) {
 /// The figures of a place over a DEM of which memory holds few posts, and of one in memory.
 void expect_same_light(const std::vector<std::string>& paths, double column, double row) {
     const dem::Source source = dem::Source::open(paths);
-    const dem::Heightfield field = dem::load(source, std::int64_t{1} << 28);
+    const dem::Heightfield field = dem::load(source, MemoryBudget::of_posts(std::int64_t{1} << 28));
     const dem::Posts few(source, kFew);
     ASSERT_FALSE(few.in_memory());
     const geo::Geodetic place = field.grid.place(column, row);
@@ -118,7 +118,7 @@ TEST(LightOfFewPosts, AViewpointInAHoleIsToldOfTheSamePost) {
     };
     const std::string path = write_raster(folder() / "hole.tif", holed);
     const dem::Source source = dem::Source::open(path);
-    const dem::Heightfield field = dem::load(source, std::int64_t{1} << 28);
+    const dem::Heightfield field = dem::load(source, MemoryBudget::of_posts(std::int64_t{1} << 28));
     const dem::Posts few(source, kFew);
     const geo::Geodetic place = field.grid.place(260, 190);
     const std::string whole = test::error_of([&] { TerrainHorizon(field, place); });

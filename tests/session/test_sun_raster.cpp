@@ -85,8 +85,8 @@ TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
     };
     const std::filesystem::path folder = test::scratch_dir("sun_raster");
     const std::string dem = test::write_raster(folder / "dem.tif", raster);
-    const dem::Posts posts =
-        dem::Posts::load(std::span(&dem, 1), {.memory = MemoryBudget::of_posts(std::int64_t{1} << 16)});
+    const dem::Posts posts = dem::Posts::load(
+        std::span(&dem, 1), {.memory = MemoryBudget::of_posts(std::int64_t{1} << 16)});
     ASSERT_FALSE(posts.in_memory());
     const std::filesystem::path written = folder / "mask.tif";
     OutputFile file(written, /*overwrite=*/true, "test");

@@ -231,7 +231,7 @@ def open(
     encoding: of files, heights as colours: "terrain-rgb", "terrarium"
     bounds: (west, south, east, north) [degrees] of files without a georeference
     crop: (west, south, east, north) [degrees]: only this part
-    memory_mib: of heights in memory; files that have more are read in blocks (1024)
+    memory_mib: that the DEM and what is made of it may take; larger DEMs are read in blocks (3072)
     holes: in pictures, "fill" small voids or "cut" them out
 
     Raises BadInput for what is no DEM.
