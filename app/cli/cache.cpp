@@ -48,9 +48,9 @@ void print_json(const CacheFolder& folder, const std::vector<dem::CachedDem>& de
 }
 
 void print_list(const CacheFolder& folder, const std::vector<dem::CachedDem>& dems) {
-    fmt::print("folder     {}\n",
-               folder.folder().empty() ? "none: neither XDG_CACHE_HOME nor HOME is set"
-                                       : printable(folder.folder().string()));
+    fmt::print("folder     {}\n", folder.folder().empty()
+                                      ? "none: neither XDG_CACHE_HOME nor HOME is set"
+                                      : printable(folder.folder().string()));
     fmt::print("size       {:.0f} MiB of at most {:.0f}, averaged levels of {} DEM{}\n",
                mib_of(bytes_of(dems)), mib_of(folder.most_bytes()), dems.size(),
                dems.size() == 1 ? "" : "s");

@@ -200,8 +200,7 @@ void RasterRun::tell() const {
     const double heights =
         ground_.posts.in_memory()
             ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
-            : static_cast<double>(sizeof(float)) *
-                      static_cast<double>(memory.posts) +
+            : static_cast<double>(sizeof(float)) * static_cast<double>(memory.posts) +
                   static_cast<double>(memory.block_bytes);
     // A result is written from what is kept of it.
     const double tiles =

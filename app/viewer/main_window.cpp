@@ -27,7 +27,8 @@ void play(State& state, double passed_s) {
 }  // namespace
 
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
-    : device_name_(device), device_(device, presentation_of_environment()),
+    : device_name_(device),
+      device_(device, presentation_of_environment()),
       zone_(scene.time.zone),
       is_cached_(scene.dem.cached) {
     state_.document.scene = scene;

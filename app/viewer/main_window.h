@@ -181,7 +181,7 @@ class MainWindow {
     Discard discard_;
     std::string device_name_;
     SceneDevice device_;
-    std::string zone_;  // of --tz
+    std::string zone_;      // of --tz
     const bool is_cached_;  // not --no-cache
     Memory memory_ = Memory::of_user();
     State state_;

@@ -22,7 +22,7 @@
 namespace relevo {
 namespace {
 
-constexpr std::size_t kPiece = std::size_t{1} << 22;     // bytes that have a checksum
+constexpr std::size_t kPiece = std::size_t{1} << 22;        // bytes that have a checksum
 constexpr std::int64_t kLeastFree = std::int64_t{1} << 30;  // of the disk, afterwards
 constexpr std::string_view kPartial = ".part";
 
@@ -182,8 +182,7 @@ std::filesystem::path CacheFolder::user_folder(std::string_view name) {
     // The specification has relative ones ignored.
     if (const auto cache = of("XDG_CACHE_HOME"); cache.is_absolute())
         return cache / "relevo" / name;
-    if (const auto home = of("HOME"); home.is_absolute())
-        return home / ".cache" / "relevo" / name;
+    if (const auto home = of("HOME"); home.is_absolute()) return home / ".cache" / "relevo" / name;
     return {};
 }
 

@@ -12,6 +12,12 @@ namespace {
 /// The tile pages of one view, and light for a DEM that just fills it.
 constexpr std::int64_t kLeastOfPictures_mib = 64;
 
+/// Views of 1280 x 1024 pixels need 30 to 60 MiB, whatever the DEM.
+std::int64_t page_bytes_of(std::int64_t bytes) {
+    constexpr std::int64_t kOfAView = 64 * MemoryBudget::kMiB;
+    return std::clamp(bytes / 4, std::min(bytes * 11 / 16, kOfAView), 512 * MemoryBudget::kMiB);
+}
+
 }  // namespace
 
 MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
@@ -21,10 +27,10 @@ MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
     const std::int64_t bytes = mib * kMiB;
     MemoryBudget budget{.total_bytes = bytes,
                         .posts = bytes / kBytesAPost,
-                        .page_bytes = std::clamp(bytes / 4, 32 * kMiB, 512 * kMiB),
+                        .page_bytes = page_bytes_of(bytes),
                         .block_bytes = std::clamp(bytes / 8, 8 * kMiB, 256 * kMiB),
-                        .work_bytes = std::clamp(bytes / 16, kMiB, 64 * kMiB)};
-    const std::int64_t light_bytes = bytes / 8 + std::max<std::int64_t>(0, bytes - 256 * kMiB) / 8;
+                        .work_bytes = std::clamp(bytes / 32, kMiB, 64 * kMiB)};
+    const std::int64_t light_bytes = bytes / 16 + std::max<std::int64_t>(0, bytes - 256 * kMiB) / 6;
     budget.light_posts = light_bytes / kBytesALightPost;
     const std::int64_t rest = std::max<std::int64_t>(
         0, bytes - light_bytes - budget.page_bytes - budget.block_bytes - budget.work_bytes);

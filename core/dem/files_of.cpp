@@ -1,5 +1,7 @@
 #include "dem/files_of.h"
 
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "base/error.h"
@@ -45,8 +47,10 @@ class Collector {
         try {
             dataset = open_dataset(path);
         } catch (const Error&) {
+            local_ = false;
             return;  // what reads it says so
         }
+        local_ = local_ && !may_name_others(name);
         char** const entries = GDALGetFileList(dataset.get());
         for (char** entry = entries; entry && *entry; ++entry) {
             const std::string source = *entry;
@@ -61,6 +65,15 @@ class Collector {
     bool are_local() const { return local_; }
 
   private:
+    /// A virtual raster that may name what GDAL does not list because it is out of reach.
+    static bool may_name_others(const std::string& name) {
+        if (!lower(name).ends_with(".vrt")) return false;
+        std::ifstream file(name);
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        return text.empty() || text.find("/vsi") != std::string::npos ||
+               text.find("http") != std::string::npos;
+    }
+
     void add_file(const std::string& name) {
         std::filesystem::path file = file_behind(name);
         local_ = local_ && !file.empty();

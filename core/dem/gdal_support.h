@@ -7,10 +7,10 @@
 namespace relevo::dem {
 
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
-/// keeps its cache of blocks to 256 MiB or less (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
-/// to standard error: what nobody collects goes to the debug log. In a process of another program
-/// (is_hosted()) it only registers the drivers. Safe on several threads at once; everything here
-/// that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries
+/// keeps its cache of blocks to 256 MiB or less (unless GDAL_CACHEMAX is set), and keeps GDAL from
+/// writing to standard error: what nobody collects goes to the debug log. In a process of another
+/// program (is_hosted()) it only registers the drivers. Safe on several threads at once; everything
+/// here that uses GDAL calls it first. Takes 3 ms the first time; loading GDAL's own libraries
 /// takes 50.
 void prepare_gdal();
 

@@ -18,15 +18,17 @@ struct Span {
     int first_post, posts;
 };
 
-/// Every `stride`-th block of a line, but at most one for each mean.
+/// About every `stride`-th block of a line with the first and the last one, but at most one for
+/// each mean.
 /// @param posts  of the line, `means` times `reduction`
 std::vector<Span> spans(int posts, int block, int reduction, int stride) {
     std::vector<Span> result;
     const int blocks = (posts - 1) / block + 1;
     int next_mean = 0;
-    // From the middle of a stride on, so that both ends of the line are equally far.
-    for (std::int64_t i = std::min(stride / 2, blocks - 1); i < blocks; i += stride) {
-        const auto begin = static_cast<int>(i * block);
+    const int count = (blocks - 1) / stride + 1;
+    for (int k = 0; k < count; ++k) {
+        const std::int64_t index = std::int64_t{blocks - 1} * k / std::max(1, count - 1);
+        const auto begin = static_cast<int>(index * block);
         const int end = std::min(posts, begin + block);
         const int first = (begin + reduction - 1) / reduction, last = end / reduction;
         Span span{first, last - first, first * reduction, (last - first) * reduction};
@@ -72,13 +74,14 @@ std::vector<int> indices_of(const std::vector<Span>& spans) {
 }  // namespace
 
 Array2d<float> sample_means(const Source& source, int reduction, std::int64_t most_cells) {
-    const int columns = source.grid().columns() / reduction, rows = source.grid().rows() / reduction;
+    const int columns = source.grid().columns() / reduction,
+              rows = source.grid().rows() / reduction;
     const glm::ivec2 block = source.block_size();
     const bool tiled = 2 * block.x < source.grid().columns();
     // One block for each mean at most; of these as many as the budget allows.
     const glm::ivec2 one = glm::max(reduction / block, 1);
-    const double cells = double(source.grid().columns()) * source.grid().rows() / one.y /
-                         (tiled ? one.x : 1);
+    const double cells =
+        double(source.grid().columns()) * source.grid().rows() / one.y / (tiled ? one.x : 1);
     const double excess = cells / static_cast<double>(most_cells);
     const int times = std::max(1, static_cast<int>(std::ceil(tiled ? std::sqrt(excess) : excess)));
     const std::vector<Span> down = spans(rows * reduction, block.y, reduction, one.y * times);

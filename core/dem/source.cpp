@@ -62,7 +62,7 @@ struct Source::Impl {
     int block_rows = 1;
     int tallest_block = 1;
     std::int64_t work_bytes = 0;  // for sums
-    bool leaves_earth = false;  // some posts have no place
+    bool leaves_earth = false;    // some posts have no place
 
     // Open handles that no call is using, the one used last at the end; a GDAL dataset serves one
     // thread at a time.
@@ -293,9 +293,11 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
         progress.emplace(about.path + ": reading",
                          static_cast<double>(pieces.size()) * window.rows);
     // Sums take four times the memory of what they become. Bands end where blocks do.
-    const std::int64_t room = std::max<std::int64_t>(1 << 12, work_bytes / std::int64_t{2 * sizeof(double)});
+    const std::int64_t room =
+        std::max<std::int64_t>(1 << 12, work_bytes / std::int64_t{2 * sizeof(double)});
     const auto band_columns = static_cast<int>(std::min<std::int64_t>(columns, room));
-    int band_rows = std::max(1, static_cast<int>(std::min<std::int64_t>(rows, room / band_columns)));
+    int band_rows =
+        std::max(1, static_cast<int>(std::min<std::int64_t>(rows, room / band_columns)));
     if (const int of_block = static_cast<int>(double(block_rows) * rows / window.rows);
         of_block > 1 && band_rows >= of_block)
         band_rows -= band_rows % of_block;

@@ -27,7 +27,7 @@ constexpr int kMaxNormalPages = 384;   // 102 MB
 
 /// Parts of MemoryBudget::page_bytes for pages of heights, and for those of normals, water and
 /// rasters, whose texels all have four bytes.
-constexpr std::int64_t kHeightPart = 6;  // one in so many
+constexpr std::int64_t kHeightPart = 5;  // one in so many
 constexpr std::int64_t kHeightPageBytes = std::int64_t{kHeightPage_px} * kHeightPage_px * 16;
 constexpr std::int64_t kNormalPageBytes = std::int64_t{kNormalPage_px} * kNormalPage_px * 4;
 

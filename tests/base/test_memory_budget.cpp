@@ -22,7 +22,7 @@ TEST(MemoryBudget, PartsAreTheWhole) {
                                    budget.block_bytes + budget.work_bytes;
         EXPECT_LE(parts, budget.total_bytes) << mib;
         EXPECT_GE(parts, budget.total_bytes - 32) << mib;
-        EXPECT_GT(budget.means, 1'000'000);
+        EXPECT_GT(budget.means, 500'000) << "finer than a screen";
     }
 }
 
