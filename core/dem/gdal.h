@@ -149,6 +149,7 @@ RELEVO_GDAL(OGR_G_GetPointCount);
 RELEVO_GDAL(OGR_G_GetPoints);
 RELEVO_GDAL(OGR_G_HasCurveGeometry);
 RELEVO_GDAL(OGR_L_GetFeatureCount);
+RELEVO_GDAL(OGR_L_GetGeomType);
 RELEVO_GDAL(OGR_L_GetLayerDefn);
 RELEVO_GDAL(OGR_L_GetName);
 RELEVO_GDAL(OGR_L_GetNextFeature);

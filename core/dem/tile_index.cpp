@@ -31,7 +31,7 @@ constexpr std::array kDrivers = {"GPKG",       "FlatGeobuf", "ESRI Shapefile",
                                  "GeoJSONSeq", "GeoJSON",    static_cast<const char*>(nullptr)};
 constexpr std::array<std::string_view, 6> kEndings = {".gpkg", ".fgb",     ".shp",
                                                       ".json", ".geojson", ".geojsonl"};
-constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{512} << 20;
 constexpr std::uint64_t kMostJson = std::uint64_t{256} << 20;
 
 struct DestroyFeature {
@@ -148,11 +148,23 @@ OGRLayerH layer_of_tiles(GDALDatasetH dataset) {
     return nullptr;
 }
 
-/// A catalogue of STAC by its beginning, as far as a first Item reaches.
-bool begins_like_stac(const std::string& path) {
+/// What JSON is by its beginning, as far as a first feature reaches.
+enum class JsonKind { Other, Stac, Layer };
+JsonKind json_kind(const std::string& path) {
     constexpr std::uint64_t kHead = std::uint64_t{1} << 16;
-    const std::string head = bytes_of(path, kHead);
-    return head.find("\"stac_version\"") != head.npos && head.find("\"Feature") != head.npos;
+    const std::string head = lower(bytes_of(path, kHead));
+    const auto has = [&](std::string_view key) { return head.find(key) != head.npos; };
+    if (!has("\"feature")) return JsonKind::Other;
+    if (has("\"stac_version\"")) return JsonKind::Stac;
+    return has("\"location\"") ? JsonKind::Layer : JsonKind::Other;
+}
+
+/// Refuses JSON that takes minutes to read.
+void refuse_long_json(const std::string& path, std::uint64_t bytes) {
+    if (bytes > kMostJson)
+        refuse(printable(path), fmt::format("more than {} MiB of JSON; make a GeoPackage of it "
+                                            "with a field \"{}\"",
+                                            kMostJson >> 20, kLocation));
 }
 
 /// Adds all vertices of a geometry.
@@ -225,21 +237,49 @@ bool is_tile_index(const std::string& path) {
     VSIStatBufL status{};
     if (VSIStatL(path.c_str(), &status) != 0 || VSI_ISDIR(status.st_mode)) return false;
     refuse_unreadable(path);
-    if (is_json(path) && begins_like_stac(path)) return true;
+    // Which takes a look; opening would read all of it.
+    if (is_json(path)) return json_kind(path) != JsonKind::Other;
     const Vectors vectors = open_vectors(path);
     return vectors.dataset && layer_of_tiles(vectors.dataset.get());
+}
+
+std::string why_no_index(const std::string& path) {
+    constexpr int kMostNamed = 8;
+    if (!is_index_name(path)) return "";
+    VSIStatBufL status{};
+    if (VSIStatL(path.c_str(), &status) != 0 ||
+        static_cast<std::uint64_t>(status.st_size) > kMostJson)
+        return "";
+    const GdalMessages messages;
+    const Vectors vectors = open_vectors(path);
+    if (!vectors.dataset || layer_of_tiles(vectors.dataset.get())) return "";
+    const OGRLayerH layer = GDALDatasetGetLayer(vectors.dataset.get(), 0);
+    const auto type = layer ? OGR_GT_Flatten(OGR_L_GetGeomType(layer)) : wkbNone;
+    if (type != wkbPolygon && type != wkbMultiPolygon) return "";
+    const OGRFeatureDefnH fields = OGR_L_GetLayerDefn(layer);
+    std::vector<std::string> names;
+    for (int i = 0; i < std::min(kMostNamed, OGR_FD_GetFieldCount(fields)); ++i)
+        names.push_back(printable(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(fields, i))));
+    return fmt::format("polygons without a field \"{}\", which an index of tiles has; {}",
+                       kLocation,
+                       names.empty() ? std::string("they have no fields")
+                                     : fmt::format("their fields are {}", fmt::join(names, ", ")));
 }
 
 TileIndex read_tile_index(const std::string& path, const std::string& crs,
                           const geo::Crs* tiles_crs) {
     prepare_gdal();
     refuse_unreadable(path);
-    if (!is_json(path) || !begins_like_stac(path)) return read_layer(path, crs, tiles_crs);
-    std::string text = is_packed(path) ? unpacked(path, kMostJson) : bytes_of(path, kMostJson + 1);
-    if (text.size() > kMostJson)
-        refuse(printable(path), fmt::format("more than {} MiB of JSON; make a GeoPackage of it "
-                                            "with a field \"{}\"",
-                                            kMostJson >> 20, kLocation));
+    if (is_json(path)) {
+        VSIStatBufL status{};
+        VSIStatL(path.c_str(), &status);
+        refuse_long_json(path, static_cast<std::uint64_t>(status.st_size));
+    }
+    if (!is_json(path) || json_kind(path) != JsonKind::Stac)
+        return read_layer(path, crs, tiles_crs);
+    const std::string text =
+        is_packed(path) ? unpacked(path, kMostJson) : bytes_of(path, kMostJson + 1);
+    refuse_long_json(path, text.size());
     return read_stac(path, text, crs, tiles_crs);
 }
 

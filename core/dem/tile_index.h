@@ -50,6 +50,10 @@ bool is_index_name(const std::string& path);
 /// Whether a file is an index. Opens only files whose ending is that of one.
 bool is_tile_index(const std::string& path);
 
+/// Why a file that looks like an index is none: polygons without a field `location`. Empty for
+/// others.
+std::string why_no_index(const std::string& path);
+
 /// Reads an index. Opens no tile. Names of tiles relative to the index are resolved; addresses
 /// become names of GDAL ("https://..." "/vsicurl/https://..."). Whether tiles may be remote is for
 /// who opens them (refuse_remote_tiles()).

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include "base/log.h"
 #include "dem/fixture.h"
@@ -380,6 +382,44 @@ TEST(IndexMosaic, FilesBesideAnIndexAreJoinedWithItsTiles) {
     options.bounds = Bounds{1, 2, 3, 4};
     EXPECT_EQ(error_of([&] { Source::open(named[0], options); }),
               "exit 2: --bounds: it says where one file is, but an index has its own");
+}
+
+/// Bytes that the process has taken from the heap.
+std::size_t heap_bytes() {
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+TEST(IndexMosaic, AHundredThousandTilesOpenInThreeSecondsAndLittleMemory) {
+    constexpr int kSide = 316;
+    const std::string first = write_raster(folder() / "t_0_0.tif", tile(0, 0, 10, 10));
+    std::vector<IndexRow> rows;
+    for (int row = 0; row < kSide; ++row)
+        for (int column = 0; column < kSide; ++column) {
+            const double west = 500000 + 300.0 * column, north = 5200000 - 300.0 * row;
+            rows.push_back({fmt::format("a/folder/of/some/length/t_{}_{}.tif", column, row),
+                            {west, north - 300, west + 300, north}});
+        }
+    rows.front().location = first;
+    const std::string index = write_index(folder() / "i.gpkg", "GPKG", rows);
+    using Clock = std::chrono::steady_clock;
+    Source::open(first);  // GDAL and PROJ are loaded
+    const std::size_t before = heap_bytes();
+    const auto began = Clock::now();
+    const Source source = Source::open(index);
+    const double took_s = std::chrono::duration<double>(Clock::now() - began).count();
+    const double each = double(heap_bytes() - before) / double(rows.size());
+    fmt::print("[ measured ] {} tiles opened in {:.2f} s, {:.0f} bytes each\n", rows.size(), took_s,
+               each);
+    EXPECT_LT(took_s, 3);
+    EXPECT_LT(each, 1024);
+    EXPECT_EQ(source.tiles().opened, 1);
+    EXPECT_EQ(source.grid().columns(), 10 * kSide);
+    // A window costs what is in it.
+    const auto read = Clock::now();
+    for (int i = 0; i < 1000; ++i)
+        source.read({3 * i, 3 * i, 20, 20}, 20, 20);
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - read).count(), 3);
 }
 
 TEST(IndexMosaic, AFolderIsItsRastersWithoutTheirIndex) {
