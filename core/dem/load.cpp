@@ -44,10 +44,13 @@ void report_tiles(const Source& source, Description& about) {
     };
     warn(tiles.missing, "are missing: their posts are voids");
     warn(tiles.broken, "cannot be read: their posts are voids");
-    if (tiles.differing.count == 0) return;
-    guess(about, fmt::format("{} of {} tiles differ from the first, and are read as they say",
-                             tiles.differing.text(), tiles.tiles));
-    log::info(fmt::format("{}: {}", about.path, printable(about.guesses.back())));
+    const auto say = [&](const NamedTiles& some, const char* what) {
+        if (some.count == 0) return;
+        guess(about, fmt::format("{} of {} tiles {}", some.text(), tiles.tiles, what));
+        log::info(fmt::format("{}: {}", about.path, printable(about.guesses.back())));
+    };
+    say(tiles.differing, "differ from the first, and are read as they say");
+    say(tiles.stepped, "differ in height from the tiles below; the later one is on top");
 }
 
 }  // namespace

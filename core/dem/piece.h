@@ -36,9 +36,10 @@ struct Resampling {
 
 /// One raster: where it is, what its numbers mean, and how they are read.
 struct Piece {
-    std::string path;  ///< by which GDAL opens it
-    Grid grid;         ///< its own
-    Window place;      ///< its posts among those of the DEM, after resampling
+    std::string path;       ///< by which GDAL opens it
+    std::size_t files = 1;  ///< of the DEM
+    Grid grid;              ///< its own
+    Window place;           ///< its posts among those of the DEM, after resampling
     std::optional<Resampling> resampling;
 
     BandScale band_scale;

@@ -160,6 +160,14 @@ std::string Rasters::difference(int number, const Piece& piece) const {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+void Rasters::note_step(int number, float most_m) const {
+    constexpr float kAlike_m = 1;  // two surveys of one ground
+    if (!(most_m > kAlike_m) || entries_[static_cast<std::size_t>(number)].index < 0) return;
+    const std::lock_guard lock(noting_);
+    float& known_m = steps_m_[number];
+    known_m = std::max(known_m, most_m);
+}
+
 TileReport Rasters::report() const {
     TileReport report;
     for (int i = 0; i < count(); ++i) {
@@ -174,6 +182,9 @@ TileReport Rasters::report() const {
         report.broken.add(fmt::format("{} ({})", tile(number).name, why), kNamed);
     for (const auto& [number, what] : differing_)
         report.differing.add(fmt::format("{} ({})", tile(number).name, what), kNamed);
+    for (const auto& [number, step_m] : steps_m_)
+        report.stepped.add(fmt::format("{} (by up to {:.0f} m)", tile(number).name, step_m),
+                           kNamed);
     return report;
 }
 

@@ -67,6 +67,9 @@ class Rasters {
         }
     }
 
+    /// Notes by how much a tile of an index differs from what it lies over [m].
+    void note_step(int number, float most_m) const;
+
     /// What the tiles of indexes turned out to be, as far as they have been read.
     TileReport report() const;
 
@@ -94,6 +97,7 @@ class Rasters {
     mutable std::array<std::mutex, 64> opening_;
     mutable std::mutex noting_;
     mutable std::map<int, std::string> broken_, differing_;  // by number, why
+    mutable std::map<int, float> steps_m_;                   // by number
 };
 
 }  // namespace relevo::dem

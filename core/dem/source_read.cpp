@@ -20,13 +20,19 @@ Window own_window(const Piece& piece, const Window& part) {
 /// Puts heights over those that are there; voids show what is below.
 /// @param part  where they are on the DEM
 /// @param window  what `height_m` is of
-void put_over(const float* heights, const Window& part, const Window& window,
-              Array2d<float>& height_m) {
+/// @returns by how much a height differs at most from that below it [m]
+float put_over(const float* heights, const Window& part, const Window& window,
+               Array2d<float>& height_m) {
+    float most_m = 0;
     for (int row = 0; row < part.rows; ++row) {
         float* const to = &height_m.at(part.column - window.column, part.row + row - window.row);
-        for (int column = 0; column < part.columns; ++column, ++heights)
+        for (int column = 0; column < part.columns; ++column, ++heights) {
+            const float off_m = std::abs(*heights - to[column]);
+            most_m = off_m > most_m ? off_m : most_m;  // not of NaN
             to[column] = std::isnan(*heights) ? to[column] : *heights;
+        }
     }
+    return most_m;
 }
 
 /// Heights of a part of a piece. @param height_m  with room for them, row after row
@@ -80,7 +86,7 @@ void Source::Impl::read_large(const RasterPart& large, const Window& window,
         std::vector<float> heights(static_cast<std::size_t>(slice.columns) *
                                    static_cast<std::size_t>(slice.rows));
         read_piece(*piece, dataset, slice, heights.data());
-        put_over(heights.data(), slice, window, height_m);
+        rasters->note_step(large.raster, put_over(heights.data(), slice, window, height_m));
     };
     const auto read_slices = [&](int first, int last) {
         rasters->read(large.raster, *piece, [&](void* dataset) {
@@ -111,7 +117,8 @@ Array2d<float> Source::Impl::read_stored(const Window& window) const {
         });
         // In their order: the later is on top.
         for (const RasterPart& part : parts)
-            put_over(part.height_m.data(), part.window, window, height_m);
+            rasters->note_step(part.raster,
+                               put_over(part.height_m.data(), part.window, window, height_m));
         parts.clear();
         posts = 0;
     };

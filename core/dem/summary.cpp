@@ -130,7 +130,9 @@ nlohmann::ordered_json tiles_json(const TileReport& tiles) {
             {"broken", tiles.broken.count},
             {"broken_names", tiles.broken.first},
             {"differing", tiles.differing.count},
-            {"differing_names", tiles.differing.first}};
+            {"differing_names", tiles.differing.first},
+            {"stepped", tiles.stepped.count},
+            {"stepped_names", tiles.stepped.first}};
 }
 
 /// "509, 3 missing, 1 broken"

@@ -156,7 +156,8 @@ JsonKind json_kind(const std::string& path) {
     const auto has = [&](std::string_view key) { return head.find(key) != head.npos; };
     if (!has("\"feature")) return JsonKind::Other;
     if (has("\"stac_version\"")) return JsonKind::Stac;
-    return has("\"location\"") ? JsonKind::Layer : JsonKind::Other;
+    // Points may have a property of that name, too: a town.
+    return has("\"location\"") && has("polygon\"") ? JsonKind::Layer : JsonKind::Other;
 }
 
 /// Refuses JSON that takes minutes to read.

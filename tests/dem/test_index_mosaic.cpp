@@ -290,6 +290,18 @@ TEST(IndexMosaic, TilesUnlikeTheFirstAreReadAsTheySayAndNamed) {
     EXPECT_THAT(source.tiles().differing.first, ElementsAre("b (heights in ft, nodata -5)"));
 }
 
+TEST(IndexMosaic, OverlappingTilesThatDisagreeAreNamed) {
+    const Source source = Source::open(index_of(tiles()));
+    EXPECT_EQ(source.tiles().stepped.count, 0);
+    std::vector<std::string> said;
+    log::set_sink([&](log::Level, std::string_view text) { said.emplace_back(text); });
+    load(source, 1 << 20);
+    log::set_sink({});
+    EXPECT_THAT(said, testing::Contains(HasSubstr(
+                          ": 2 (over (by up to 1000 m), over_that (by up to 2000 m)) of 14 tiles "
+                          "differ in height from the tiles below; the later one is on top")));
+}
+
 TEST(IndexMosaic, ATileIsReadOnlyInsideOfItsOutline) {
     const Paths paths{write_raster(folder() / "a.tif", tile(0, 0, 20, 20)),
                       write_raster(folder() / "b.tif", tile(20, 0, 20, 20)),
