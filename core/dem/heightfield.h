@@ -68,6 +68,8 @@ struct TileReport {
     NamedTiles missing;       ///< there is no such file; they are voids
     NamedTiles broken;     ///< "name (why)": they cannot be read, or not all of them; voids there
     NamedTiles differing;  ///< "name (in what)": unlike the tile that was opened first
+    /// "name (by up to 12 m)": some of their heights are more than 1 m off those of a tile below
+    NamedTiles stepped;
 
     bool has_voids() const { return missing.count + broken.count > 0; }
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -49,19 +50,28 @@ std::string differing(const std::vector<Piece>& pieces, const Text& text) {
 /// What each file was taken to mean, with its name where not all files are alike in it.
 void gather(const std::vector<Piece>& pieces, std::vector<std::string> Description::*list,
             Description& about) {
-    std::vector<std::string>& result = about.*list;
-    result.clear();
+    constexpr std::size_t kMostNamed = 8;  // of thousands, one line says how many
+    std::map<std::string, std::vector<const Piece*>> said_by;
+    std::vector<std::string> sentences;  // each once, in order
     for (const Piece& piece : pieces)
         for (const std::string& sentence : piece.about.*list) {
-            const auto says = [&](const Piece& other) {
-                const std::vector<std::string>& lines = other.about.*list;
-                return contains(lines, sentence);
-            };
-            const bool all = std::ranges::all_of(pieces, says);
-            const std::string line =
-                all ? sentence : fmt::format("{}: {}", piece.about.path, sentence);
-            if (!contains(result, line)) result.push_back(line);
+            std::vector<const Piece*>& by = said_by[sentence];
+            if (by.empty()) sentences.push_back(sentence);
+            if (by.empty() || by.back() != &piece) by.push_back(&piece);
         }
+    std::vector<std::string>& result = about.*list;
+    result.clear();
+    for (const std::string& sentence : sentences) {
+        const std::vector<const Piece*>& by = said_by[sentence];
+        const std::string& first = by.front()->about.path;
+        if (by.size() == pieces.size())
+            result.push_back(sentence);
+        else if (by.size() > kMostNamed)
+            result.push_back(fmt::format("{} and {} more: {}", first, by.size() - 1, sentence));
+        else
+            for (const Piece* piece : by)
+                result.push_back(fmt::format("{}: {}", piece->about.path, sentence));
+    }
 }
 
 /// The two files that are furthest from each other, by their middles.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -124,7 +125,11 @@ void Rasters::open_tile(int number, Slot& slot) const {
         }
         slot.state.store(State::Open, std::memory_order_release);
     } catch (const Error& error) {
-        note_broken(number, error);
+        // What is_there() cannot know of the net.
+        if (std::string_view(error.what()).ends_with(": no such file"))
+            slot.state = State::Missing;
+        else
+            note_broken(number, error);
     }
 }
 
