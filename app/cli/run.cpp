@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/object_store.h"
+#include "base/output_file.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -160,10 +162,7 @@ class Run {
         std::string first;
         for (const scene::Shot& shot : shots_) {
             const std::vector<fs::path> names = files_of(shot);
-            const auto taken = std::ranges::find_if(names, [](const fs::path& name) {
-                std::error_code missing;
-                return fs::exists(fs::symlink_status(name, missing));
-            });
+            const auto taken = std::ranges::find_if(names, is_taken);
             if (taken != names.end() && there_++ == 0) first = taken->string();
         }
         if (there_ == 0 || arguments_.overwrite) return {};
@@ -176,6 +175,10 @@ class Run {
     /// Removes the pictures from the list that exist and can be kept.
     /// @returns why other files cannot be kept; empty if all can
     std::string leave_out_made() {
+        for (const scene::Shot& shot : shots_)
+            if (object_store_of(shot.output.native()))
+                bad_usage(fmt::format("--resume: {}: reads pictures of this machine only",
+                                      printable(shot.output.string())));
         std::vector<session::Wanted> wanted;
         std::set<std::string> remote;
         for (const scene::Shot& shot : shots_) {
@@ -224,13 +227,8 @@ class Run {
     void check_folders() {
         std::set<fs::path> folders;
         for (const scene::Shot& shot : shots_) {
-            const fs::path folder = shot.output.parent_path();
-            if (!folders.insert(folder).second) continue;
-            std::error_code error;
-            if (!folder.empty()) fs::create_directories(folder, error);
-            if (error)
-                bad_input(fmt::format("run: {}: the folder cannot be made, {}",
-                                      printable(folder.string()), error.message()));
+            if (!folders.insert(shot.output.parent_path()).second) continue;
+            make_folder_of(shot.output, "run");
             files_.open_alone(shot.output, arguments_.overwrite || parts_.contains(shot.output),
                               "run");
         }
@@ -333,6 +331,7 @@ class Run {
         std::set<fs::path> folders;
         for (const scene::Shot& shot : shots_) {
             if (!folders.insert(shot.output.parent_path()).second) continue;
+            if (object_store_of(shot.output.native())) continue;
             fs::path there = fs::absolute(shot.output).parent_path();
             std::error_code missing;
             while (there.has_relative_path() && !fs::exists(there, missing))

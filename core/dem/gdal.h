@@ -7,6 +7,7 @@
 #include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <cpl_vsi_error.h>
 #include <gdal.h>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
@@ -40,6 +41,7 @@ RELEVO_GDAL(CPLParseXMLString);
 RELEVO_GDAL(CPLPopErrorHandler);
 RELEVO_GDAL(CPLProjectRelativeFilename);
 RELEVO_GDAL(CPLPushErrorHandlerEx);
+RELEVO_GDAL(CPLSetConfigOption);
 RELEVO_GDAL(CPLSetErrorHandler);
 RELEVO_GDAL(CPLSetThreadLocalConfigOption);
 RELEVO_GDAL(CPLTestBool);
@@ -50,7 +52,9 @@ RELEVO_GDAL(CSLFetchNameValue);
 RELEVO_GDAL(CSLSetNameValue);
 
 RELEVO_GDAL(VSIAllocFilesystemPluginCallbacksStruct);
+RELEVO_GDAL(VSIErrorReset);
 RELEVO_GDAL(VSIFCloseL);
+RELEVO_GDAL(VSIFOpenExL);
 RELEVO_GDAL(VSIFOpenL);
 RELEVO_GDAL(VSIFReadL);
 RELEVO_GDAL(VSIFSeekL);
@@ -58,8 +62,11 @@ RELEVO_GDAL(VSIFWriteL);
 RELEVO_GDAL(VSIFileFromMemBuffer);
 RELEVO_GDAL(VSIFree);
 RELEVO_GDAL(VSIFreeFilesystemPluginCallbacksStruct);
+RELEVO_GDAL(VSIGetLastErrorMsg);
 RELEVO_GDAL(VSIInstallPluginHandler);
+RELEVO_GDAL(VSINetworkStatsGetAsSerializedJSON);
 RELEVO_GDAL(VSIReadDirRecursive);
+RELEVO_GDAL(VSIStatExL);
 RELEVO_GDAL(VSIStatL);
 RELEVO_GDAL(VSIUnlink);
 

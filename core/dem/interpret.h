@@ -23,8 +23,8 @@ void guess(Description& about, const std::string& sentence);
 [[noreturn]] void refuse(const std::string& path, const std::string& what);
 
 /// What to do about a reason that GDAL or the system gives, as the end of a message: "; the file is
-/// damaged or incomplete" where neither access nor the machine's means are at fault.
-std::string remedy_for(const std::string& reason);
+/// damaged or incomplete" where neither access, the machine's means nor the net are at fault.
+std::string remedy_for(const std::string& path, const std::string& reason);
 
 /// What GDAL opens as a raster, without a word where it opens nothing.
 Dataset gdal_open(const std::string& path);

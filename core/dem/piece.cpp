@@ -408,13 +408,14 @@ Dataset Piece::open() const {
     const std::array<const char*, 2> driver = {about.driver.c_str(), nullptr};
     GdalMessages messages;
     const WithoutListing without_listing(files);
+    const RemoteSiblings siblings(path);
     Dataset dataset(GDALOpenEx(path.c_str(),
                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                               driver.data(), nullptr, nullptr));
+                               driver.data(), nullptr, siblings.list()));
     if (!dataset) {
         refuse_unreadable(path);
         const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(reason)));
+        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(path, reason)));
     }
     return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
 }
@@ -446,8 +447,8 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
         // Some drivers say that a block is broken, fill it and carry on.
         if (result != CE_None || messages.any_failure()) {
             const std::string reason = messages.failure(path);
-            refuse(path,
-                   fmt::format("its heights cannot be read, {}{}", reason, remedy_for(reason)));
+            refuse(path, fmt::format("its heights cannot be read, {}{}", reason,
+                                     remedy_for(path, reason)));
         }
     };
     const GDALRasterBandH band = band_of(resampling ? 1 : about.band);

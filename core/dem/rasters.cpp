@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -125,21 +124,15 @@ void Rasters::open_tile(int number, Slot& slot) const {
         }
         slot.state.store(State::Open, std::memory_order_release);
     } catch (const Error& error) {
-        // What is_there() cannot know of the net.
-        if (std::string_view(error.what()).ends_with(": no such file"))
-            slot.state = State::Missing;
-        else
-            note_broken(number, error);
+        note_broken(number, error);
     }
 }
 
 void Rasters::note_broken(int number, const Error& error) const {
-    // What the machine lacks is no fault of the tile.
-    const std::string why = error.what();
-    if (why.find("ulimit -n") != why.npos || why.find("--memory") != why.npos) throw error;
+    if (is_no_fault_of_a_file(error)) throw error;
     at(number).state.store(State::Broken, std::memory_order_release);
     const std::lock_guard lock(noting_);
-    broken_.emplace(number, why);
+    broken_.emplace(number, error.what());
 }
 
 std::string Rasters::difference(int number, const Piece& piece) const {

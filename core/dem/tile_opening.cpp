@@ -17,8 +17,6 @@ namespace {
 
 /// Tiles that are there but cannot be opened, before the index is given up.
 constexpr std::size_t kMostBroken = 100;
-/// The same on the net, where each takes a connection.
-constexpr std::size_t kMostBrokenRemote = 16;
 
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code unknown;
@@ -41,8 +39,9 @@ std::size_t first_open(const TileIndex& index, const LoadOptions& options,
             piece.emplace(open_tile_piece(index, tile, options, index.tiles.size(), opened));
             return i;
         } catch (const Error& error) {
+            if (is_no_fault_of_a_file(error)) throw;
             if (broken++ == 0) first_reason = error.what();
-            if (broken == (is_remote(tile.location) ? kMostBrokenRemote : kMostBroken)) break;
+            if (broken == kMostBroken) break;
         }
     }
     if (broken > 0)
@@ -77,12 +76,18 @@ void refuse_elsewhere(const TileIndex& index, const IndexedTile& tile, const Pie
 }  // namespace
 
 bool is_there(const std::string& location) {
-    if (is_remote(location)) return true;
+    if (is_remote(location)) return !location.starts_with("/vsi") || remote_exists(location);
     const bool may_be_gdals =
         location.starts_with("/vsi") || location.find(':') != std::string::npos;
     if (may_be_gdals && !location.starts_with("/vsi")) return true;
     VSIStatBufL status{};
     return VSIStatL(location.c_str(), &status) == 0;
+}
+
+bool is_no_fault_of_a_file(const Error& error) {
+    const std::string_view text = error.what();
+    const auto has = [&](std::string_view words) { return text.find(words) != text.npos; };
+    return has("ulimit -n") || has("--memory") || has("try again");  // as remedy_for() says
 }
 
 bool is_named_index(const std::string& name) {

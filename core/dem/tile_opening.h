@@ -2,14 +2,20 @@
 
 #include <string>
 
+#include "base/error.h"
 #include "dem/mosaic.h"
 
 // Opens the tiles of an index. Inside of the layer only.
 
 namespace relevo::dem {
 
-/// Whether there is a file of a name; of the net true, as only opening it tells.
+/// Whether there is a file of a name, also on the net.
+/// @throws Error (BadInput) where the net does not answer
 bool is_there(const std::string& location);
+
+/// Whether an error is due to what the machine lacks, or to the net: trying again may help, and a
+/// void in place of the heights would be wrong.
+bool is_no_fault_of_a_file(const Error& error);
 
 /// Whether a name on the command line is that of an index, on the net too.
 bool is_named_index(const std::string& name);
