@@ -103,6 +103,7 @@ std::vector<fs::path> files_of(std::span<const std::string> paths) {
         const std::vector<std::string> rasters = rasters_of_quietly(path);
         std::vector<std::vector<fs::path>> found(rasters.size());
         parallel_for(0, static_cast<int>(rasters.size()), 1, [&](int first, int last) {
+            const WithoutListing without_listing(rasters.size());
             for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
                 found[i] = files_of(rasters[i]);
         });

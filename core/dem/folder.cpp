@@ -130,7 +130,9 @@ struct Contents {
 Contents contents_of(const std::string& folder) {
     Contents found;
     std::error_code error;
-    for (const fs::path& entry : sorted_entries(folder)) {
+    const std::vector<fs::path> entries = sorted_entries(folder);
+    const WithoutListing without_listing(entries.size());
+    for (const fs::path& entry : entries) {
         const fs::file_status status = fs::status(entry, error);
         const bool is_folder = fs::is_directory(status);
         found.folders += is_folder;
