@@ -1,16 +1,23 @@
 #include "dem/files_of.h"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/folder.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
+#include "dem/remote.h"
+#include "dem/tile_opening.h"
 
 namespace relevo::dem {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kDeepest = 16;  ///< virtual rasters of virtual rasters
 
@@ -39,8 +46,7 @@ class Collector {
   public:
     void add(const std::string& name, int depth) {
         if (!seen_.insert(name).second || depth > kDeepest) return;
-        if (std::filesystem::path file = file_behind(name); !file.empty())
-            files_.push_back(std::move(file));
+        if (fs::path file = file_behind(name); !file.empty()) files_.push_back(std::move(file));
         std::string path = name;
         Dataset dataset;
         try {
@@ -53,26 +59,58 @@ class Collector {
             const std::string source = *entry;
             if (lower(source).rfind(".vrt") == source.size() - 4)
                 add(source, depth + 1);
-            else if (std::filesystem::path file = file_behind(source); !file.empty())
+            else if (fs::path file = file_behind(source); !file.empty())
                 files_.push_back(std::move(file));
         }
         CSLDestroy(entries);
     }
-    std::vector<std::filesystem::path> take() { return std::move(files_); }
+    std::vector<fs::path> take() { return std::move(files_); }
 
   private:
     std::set<std::string> seen_;
-    std::vector<std::filesystem::path> files_;
+    std::vector<fs::path> files_;
 };
+
+/// An index and its tiles, of which none is opened.
+std::vector<fs::path> files_of_index(const std::string& path) {
+    std::vector<fs::path> files{file_behind(path)};
+    try {
+        for (const IndexedTile& tile : read_tile_index(path).tiles)
+            if (!is_remote(tile.location))
+                if (fs::path file = file_behind(tile.location); !file.empty())
+                    files.push_back(std::move(file));
+    } catch (const Error&) {
+        // What reads it says so.
+    }
+    return files;
+}
+
+std::vector<fs::path> files_of(const std::string& raster) {
+    Collector collector;
+    collector.add(raster, 0);
+    return collector.take();
+}
 
 }  // namespace
 
-std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
-    Collector collector;
-    for (const std::string& path : paths)
-        for (const std::string& raster : rasters_of_quietly(path))
-            collector.add(raster, 0);
-    return collector.take();
+std::vector<fs::path> files_of(std::span<const std::string> paths) {
+    std::vector<fs::path> files;
+    for (const std::string& path : paths) {
+        if (is_named_index(path)) {
+            std::ranges::move(files_of_index(path), std::back_inserter(files));
+            continue;
+        }
+        const std::vector<std::string> rasters = rasters_of_quietly(path);
+        std::vector<std::vector<fs::path>> found(rasters.size());
+        parallel_for(0, static_cast<int>(rasters.size()), 1, [&](int first, int last) {
+            const WithoutListing without_listing(rasters.size());
+            for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
+                found[i] = files_of(rasters[i]);
+        });
+        for (std::vector<fs::path>& some : found)
+            std::ranges::move(some, std::back_inserter(files));
+    }
+    return files;
 }
 
 void add_named(std::span<const std::string> paths, FilesInUse& files) {

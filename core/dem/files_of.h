@@ -12,7 +12,8 @@ namespace relevo::dem {
 /// Every file on this machine that the rasters are read from: themselves, what lies beside them
 /// (georeference, overviews, statistics), the sources of virtual rasters, whatever their depth, the
 /// archives that hold any of them. Names that cannot be opened give what is there of their name.
-/// Opens each raster, and reads no heights.
+/// Opens each raster, and reads no heights. Of an index itself, first, and the tiles that are
+/// there, none of which is opened.
 /// @param paths  as Source::open() takes them
 std::vector<std::filesystem::path> files_of(std::span<const std::string> paths);
 

@@ -51,6 +51,14 @@ void spare_blocks() {
         GDALSetCacheMax64(kBlockBytes / 2);
 }
 
+WithoutListing::WithoutListing(std::size_t files) : many_(files > 1000) {
+    if (many_) CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
+}
+
+WithoutListing::~WithoutListing() {
+    if (many_) CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", nullptr);
+}
+
 GdalMessages::GdalMessages() {
     prepare_gdal();
     // GDAL keeps a stack of handlers for each thread.

@@ -360,6 +360,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     constexpr std::size_t kManyFiles = 16;  // a look at each takes 5 to 30 ms
 
     std::string path = given;
+    const WithoutListing without_listing(files);
     Dataset dataset = open_dataset(path);
     GdalMessages messages;  // what follows asks the file for things that it may not have
     Description about;
@@ -385,6 +386,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     const double metres = settle_scale(given, band, where.crs, about);
 
     Piece piece{.path = path,
+                .files = files,
                 .grid = Grid(columns, rows, where.affine, std::move(where.crs)),
                 .place = {0, 0, columns, rows},
                 .encoding = options.encoding,
@@ -405,6 +407,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
 Dataset Piece::open() const {
     const std::array<const char*, 2> driver = {about.driver.c_str(), nullptr};
     GdalMessages messages;
+    const WithoutListing without_listing(files);
     const RemoteSiblings siblings(path);
     Dataset dataset(GDALOpenEx(path.c_str(),
                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
