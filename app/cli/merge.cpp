@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-    std::string folder, output, stac;
+    std::string folder, output, stac, base;
     bool overwrite = false, allow_missing = false;
 };
 
@@ -55,6 +55,7 @@ void run(const Arguments& arguments) {
     if (!plan)
         bad_input(fmt::format("merge: {}: has no {}; expected a folder that --tiles has made",
                               printable(arguments.folder), output::kPlanFile));
+    if (!arguments.base.empty() && arguments.stac.empty()) bad_usage("--href-base: needs --stac");
     FilesInUse files;
     files.add_input(fs::path(arguments.folder) / output::kPlanFile, "the plan");
     std::vector<OutputFile*> results;
@@ -72,7 +73,9 @@ void run(const Arguments& arguments) {
                                       printable(result->path().string())));
     const std::vector<output::PlannedTile> tiles = whole_tiles(arguments, *plan);
     if (vrt) vrt->write(output::mosaic_text(arguments.output, arguments.folder, *plan, tiles));
-    if (stac) stac->write(output::stac_text(arguments.stac, arguments.folder, *plan, tiles));
+    if (stac)
+        stac->write(
+            output::stac_text(arguments.stac, arguments.folder, arguments.base, *plan, tiles));
     OutputFile::finish_all(results);
     log::info(fmt::format("{} of {} tiles are there, of {}", tiles.size(), plan->tiles.size(),
                           printable(plan->command)));
@@ -87,6 +90,9 @@ void add_merge(Verb app) {
     verb.add_option("FOLDER", arguments->folder, "Folder that --tiles has filled").required();
     verb.add_option("-o,--output", arguments->output, "VRT to write, over all tiles");
     verb.add_option("--stac", arguments->stac, "STAC ItemCollection to write, JSON");
+    verb.add_option("--href-base", arguments->base,
+                    "Where the collection says that the tiles are, a URL or a folder; default: "
+                    "names relative to the collection");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--allow-missing", arguments->allow_missing,
                   "Write them over the tiles that are there");

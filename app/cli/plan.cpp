@@ -163,8 +163,13 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
         fmt::print("writing             {} before compression\n",
                    bytes_text(estimate.result_bytes));
     }
+    // No wider than the DEM is beyond a tile.
     const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
-    const double sides = plan.halo_m / (plan.side * std::min(spacing_m.x, spacing_m.y));
+    const double side_m = plan.side * std::min(spacing_m.x, spacing_m.y),
+                 beyond_m = std::max(posts.grid().columns() * spacing_m.x,
+                                     posts.grid().rows() * spacing_m.y) -
+                            side_m;
+    const double sides = std::min(plan.halo_m, beyond_m) / side_m;
     constexpr double kWide = 2;
     if (sides > kWide)
         log::warning(

@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "dem/files_of.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {

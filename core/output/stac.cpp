@@ -172,7 +172,8 @@ Json bands_of(GDALDatasetH dataset) {
     return bands;
 }
 
-Json item_of(const fs::path& path, const fs::path& folder, const TilePlan& plan,
+/// @param href  of the tile's file
+Json item_of(const std::string& href, const fs::path& folder, const TilePlan& plan,
              const PlannedTile& tile) {
     const fs::path file = folder / tile.name;
     const dem::GdalMessages messages;
@@ -193,7 +194,7 @@ Json item_of(const fs::path& path, const fs::path& folder, const TilePlan& plan,
     item["properties"] = properties;
     item["links"] = Json::array();
     item["assets"] = {{"data",
-                       {{"href", name_from(path, file)},
+                       {{"href", href},
                         {"type", "image/tiff; application=geotiff; profile=cloud-optimized"},
                         {"roles", {"data"}},
                         {"bands", bands_of(dataset.get())}}}};
@@ -202,12 +203,16 @@ Json item_of(const fs::path& path, const fs::path& folder, const TilePlan& plan,
 
 }  // namespace
 
-std::string stac_text(const fs::path& path, const fs::path& folder, const TilePlan& plan,
-                      const std::vector<PlannedTile>& tiles) {
+std::string stac_text(const fs::path& path, const fs::path& folder, const std::string& base,
+                      const TilePlan& plan, const std::vector<PlannedTile>& tiles) {
     dem::prepare_gdal();
+    const auto href = [&](const PlannedTile& tile) {
+        if (base.empty()) return name_from(path, folder / tile.name);
+        return base + (base.ends_with('/') ? "" : "/") + tile.name;
+    };
     Json items = Json::array();
     for (const PlannedTile& tile : tiles)
-        items.push_back(item_of(path, folder, plan, tile));
+        items.push_back(item_of(href(tile), folder, plan, tile));
     const Json collection{{"type", "FeatureCollection"},
                           {"stac_version", "1.1.0"},
                           {"features", items},

@@ -15,9 +15,11 @@ namespace relevo::output {
 /// An outline across 180 degrees is its bounding box in two parts.
 /// @param path    of the collection, which nobody writes here
 /// @param folder  of the tiles, which are there
+/// @param base    of their names in the collection; empty: the collection's folder
 /// @throws Error (Failed) where a tile cannot be read
 /// Source: github.com/radiantearth/stac-spec, v1.1.0; stac-extensions/projection, v2.0.0.
 std::string stac_text(const std::filesystem::path& path, const std::filesystem::path& folder,
-                      const TilePlan& plan, const std::vector<PlannedTile>& tiles);
+                      const std::string& base, const TilePlan& plan,
+                      const std::vector<PlannedTile>& tiles);
 
 }  // namespace relevo::output

@@ -81,11 +81,11 @@ TileOnDisk tile_on_disk(const fs::path& folder, const TilePlan& plan, const Plan
         GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
     if (!dataset)
         return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
-    if (const std::string why = other_reason(dataset.get(), plan, tile); !why.empty())
-        return {State::Other, why};
     for (int band = 1; band <= GDALGetRasterCount(dataset.get()); ++band)
         if (!is_readable(GDALGetRasterBand(dataset.get(), band)) || messages.any_failure())
             return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
+    if (const std::string why = other_reason(dataset.get(), plan, tile); !why.empty())
+        return {State::Other, why};
     return {State::Whole, {}};
 }
 

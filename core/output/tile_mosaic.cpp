@@ -34,7 +34,7 @@ std::string source_text(const std::string& name, const dem::Window& tile, const 
                         int band, const std::string& type) {
     const std::string size = fmt::format("xSize=\"{}\" ySize=\"{}\"", tile.columns, tile.rows);
     return fmt::format(
-        "<SimpleSource><SourceFilename relativeToVRT=\"0\">{}</SourceFilename>"
+        "<SimpleSource><SourceFilename relativeToVRT=\"1\">{}</SourceFilename>"
         "<SourceBand>{}</SourceBand><SourceProperties RasterXSize=\"{}\" RasterYSize=\"{}\" "
         "DataType=\"{}\" BlockXSize=\"512\" BlockYSize=\"512\"/>"
         "<SrcRect xOff=\"0\" yOff=\"0\" {}/><DstRect xOff=\"{}\" yOff=\"{}\" {}/></SimpleSource>",
@@ -105,9 +105,13 @@ std::string mosaic_text(const fs::path& path, const fs::path& folder, const Tile
     const dem::GdalCrs crs(plan.grid.crs().text());
     if (crs.known()) GDALSetSpatialRef(mosaic.get(), crs.handle());
     copy_metadata(first.get(), mosaic.get());
-    const auto whole = [&](const PlannedTile& tile) {
-        return fs::absolute(folder / tile.name).string();
+    // A dataset with a name would write itself.
+    const auto name_it = [&](const std::string& name) {
+        GDALSetDescription(mosaic.get(), name.c_str());
     };
+    const auto is_unnamed = [&](const auto&) { name_it(""); };
+    const std::unique_ptr<const fs::path, decltype(is_unnamed)> unname(&path, is_unnamed);
+    name_it(fs::absolute(path).string());
     for (int band = 1; band <= GDALGetRasterCount(first.get()); ++band) {
         GDALRasterBandH const from = GDALGetRasterBand(first.get(), band);
         const GDALDataType type = GDALGetRasterDataType(from);
@@ -115,18 +119,15 @@ std::string mosaic_text(const fs::path& path, const fs::path& folder, const Tile
         GDALRasterBandH const to = GDALGetRasterBand(mosaic.get(), band);
         describe_band(from, to);
         for (const PlannedTile& tile : tiles)
-            if (GDALSetMetadataItem(
-                    to, "source_0",
-                    source_text(whole(tile), tile.window, all, band, GDALGetDataTypeName(type))
-                        .c_str(),
-                    "new_vrt_sources") != CE_None)
+            if (GDALSetMetadataItem(to, "source_0",
+                                    source_text(name_from(path, folder / tile.name), tile.window,
+                                                all, band, GDALGetDataTypeName(type))
+                                        .c_str(),
+                                    "new_vrt_sources") != CE_None)
                 refuse();
     }
-    // With a name its text has names relative to that; a dataset with a name would write itself.
-    GDALSetDescription(mosaic.get(), fs::absolute(path).c_str());
     char** const text = GDALGetMetadata(mosaic.get(), "xml:VRT");
     const std::string xml = text && *text ? *text : "";
-    GDALSetDescription(mosaic.get(), "");
     if (xml.empty()) refuse();
     return xml;
 }

@@ -78,8 +78,8 @@ std::string merged(const fs::path& folder) {
     return vrt;
 }
 
-/// 4 x 4 tiles of a command over a DEM, in 1, 2 and 7 processes, against the raster in one piece.
-void expect_tiles_equal_the_whole(const Words& command, int side) {
+/// Tiles of a command over a DEM, in 1, 2 and 7 processes, against the raster in one piece.
+void expect_tiles_equal_the_whole(const Words& command, int side, std::size_t count = 16) {
     const fs::path where = scratch_dir("tiles");
     const std::string whole = (where / "whole.tif").string();
     const Result run = relevo(joined(joined({"-q", "sun"}, command), {"-o", whole}));
@@ -90,7 +90,7 @@ void expect_tiles_equal_the_whole(const Words& command, int side) {
         const fs::path folder = where / fmt::format("in {}", shards);
         make_tiles(command, folder, side, shards);
         const auto tiles = tiles_in(folder);
-        EXPECT_EQ(tiles.size(), 16u);
+        EXPECT_EQ(tiles.size(), count);
         EXPECT_TRUE(are_same(values_of(merged(folder)), expected)) << shards << " processes";
         if (first.empty()) first = tiles;
         EXPECT_TRUE(tiles == first) << shards << " processes";
@@ -145,9 +145,10 @@ TEST(SunTiles, OfADemBeyondMemoryAreThoseOfTheWhole) {
     expect_tiles_equal_the_whole(joined({"hours", hills, "--memory", "1", "--date", "2026-12-21",
                                          "--step", "20", "--bands", "hours,first"},
                                         kUtc),
-                                 176);
-    expect_tiles_equal_the_whole({"shadow", hills, "--memory", "1", "--sun", "260,-0.2"}, 176);
-    expect_tiles_equal_the_whole({"sky-view", hills, "--memory", "1", "--directions", "8"}, 176);
+                                 176, 12);
+    expect_tiles_equal_the_whole({"shadow", hills, "--memory", "1", "--sun", "260,-0.2"}, 176, 12);
+    expect_tiles_equal_the_whole({"sky-view", hills, "--memory", "1", "--directions", "8"}, 176,
+                                 12);
 }
 
 TEST(SunTiles, ATaskReadsOnlyGroundThatCanShade) {
@@ -296,9 +297,11 @@ TEST(SunTiles, TheMosaicHasTheGridOfTheWholeAndRelativeNames) {
         EXPECT_NEAR(transform[i], expected[i], 1e-9) << i;
     EXPECT_EQ(mosaic->GetRasterBand(1)->GetDescription(), std::string("direct sun"));
     const std::vector<float> values = values_of((moved / "mosaic.vrt").string());
-    EXPECT_EQ(values[101], 255);  // of the tile that is not there
-    EXPECT_NE(values[100], 255);
-    EXPECT_NE(values[202], 255);
+    const auto at = [&](int column) { return values[static_cast<std::size_t>(column + 403 * 50)]; };
+    EXPECT_NE(at(100), 255);
+    EXPECT_EQ(at(101), 255);  // of the tile that is not there
+    EXPECT_EQ(at(201), 255);
+    EXPECT_NE(at(202), 255);
 }
 
 TEST(SunTiles, StacItemsSayWhereAndWhen) {
@@ -344,9 +347,13 @@ TEST(SunTiles, StacItemsSayWhereAndWhen) {
     EXPECT_GT(area, 0);
     const auto& asset = item["assets"]["data"];
     EXPECT_EQ(asset["roles"], nlohmann::json({"data"}));
-    EXPECT_EQ(asset["bands"][0]["name"], "hours of direct sun");
+    EXPECT_EQ(asset["bands"][0]["name"], "sun hours");
     EXPECT_TRUE(fs::exists(stac.parent_path() / asset["href"].get<std::string>()));
-    // GDAL's own reader of such collections.
+    // GDAL's own reader of such collections, which in version 3.6 knows no relative names.
+    ASSERT_EQ(relevo({"-q", "merge", folder.string(), "--stac", stac.string(), "--overwrite",
+                      "--href-base", folder.string()})
+                  .status,
+              0);
     const Dataset mosaic = opened("STACIT:\"" + stac.string() + "\"");
     ASSERT_TRUE(mosaic);
     EXPECT_EQ(mosaic->GetRasterXSize(), 403);

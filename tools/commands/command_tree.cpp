@@ -85,6 +85,7 @@ const std::vector<Row>& rows() {
           "--over",
           "--clip",
           "--tiles",
+          "--href-base",
           "NAME"}},
     };
     return all;
