@@ -25,7 +25,7 @@ SlurmctldPort={ctld_port}
 SlurmdPort={d_port}
 SlurmUser=root
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket,cred_expire=4
+AuthInfo=socket={folder}/munge.socket,cred_expire=5
 CredType=cred/munge
 ProctrackType=proctrack/pgid
 TaskPlugin=task/none
@@ -133,8 +133,8 @@ def hours(dem, folder, step):
     return ["sun", "hours", dem, "--date", "2026-12-21", "--tz", "UTC", "--step", step, "--tiles", 101, "-o", folder]
 
 
-def plan(relevo, dem, folder, step, *more):
-    return run(relevo, "plan", *hours(dem, folder, step), "--cpus", 1, "--memory", 64, *more)
+def plan(relevo, *words):
+    return run(relevo, "plan", *words)
 
 
 def split_into(script, tasks):
@@ -145,7 +145,7 @@ def split_into(script, tasks):
 
 def check_parallel(relevo, dem, folder):
     lines = folder / "tasks it's.txt"
-    plan(relevo, dem, folder / "out", 10, "--parallel", lines)
+    plan(relevo, *hours(dem, folder / "out", 10), "--parallel", lines)
     line = lines.read_text()
     lines.write_text("".join(line.replace("--shard 1/1", f"--shard {task}/7") for task in range(1, 8)))
     run("parallel", "--will-cite", "-j", 2, "-a", lines)
@@ -153,50 +153,98 @@ def check_parallel(relevo, dem, folder):
     return tiles(folder / "out")
 
 
-def check_tasks(slurm, relevo, dem, folder, tasks, until):
-    script, out = folder / f"submit {tasks}.sh", folder / f"out {tasks}"
-    plan(relevo, dem, out, 10, "--slurm", script)
-    split_into(script, tasks)
-    said = slurm.call("sh", script, f"--output={folder}/%x_%A_%a.log").stdout.split()
-    job, merge = said[1], said[3]
-    wait_for(f"{tasks} tasks", until, lambda: slurm.states(merge).get("N/A") == "COMPLETED")
-    if not (out / "mosaic.vrt").exists():
-        sys.exit("the merge has made no VRT")
-    return job, tiles(out)
+class Planned:
+    """A command that Slurm does: its script, its results, and its jobs."""
+
+    def __init__(self, slurm, relevo, script, tasks, *words):
+        self.slurm = slurm
+        self.script = script
+        plan(relevo, *words, "--cpus", 1, "--memory", 64, "--slurm", script)
+        split_into(script, tasks)
+
+    def submit(self):
+        said = self.slurm.call("sh", self.script, f"--output={self.script}.%a.log").stdout.split()
+        self.job, self.merge = said[1], said[3]
+
+    def state(self, task):
+        return self.slurm.states(self.job).get(str(task))
+
+    def is_merged(self):
+        return self.slurm.states(self.merge).get("N/A") == "COMPLETED"
 
 
-def check_killed(slurm, relevo, dem, folder, until):
-    """A task is requeued while it runs: it goes on where it was."""
-    script, out = folder / "killed.sh", folder / "killed"
-    plan(relevo, dem, out, 1, "--slurm", script)
-    job, _, merge = slurm.call("sh", script, f"--output={folder}/%x_%A_%a.log").stdout.split()[1:]
-    wait_for("some tiles", until, lambda: len(tiles(out)) >= 2)
-    if slurm.states(job).get("1") != "RUNNING":
+def fail_a_task(planned, tries, tile):
+    """The second task ends with status 1, without one of its tiles."""
+    text = planned.script.read_text()
+    planned.script.write_text(text.replace("status=$?\n", f"status=$?\n[ $SLURM_ARRAY_TASK_ID = 1 ] || "
+                                           f"{{ echo >> '{tries}'; rm -f '{tile}'; status=1; }}\n"))
+
+
+def kill_a_task(slurm, planned, out, until):
+    """Requeues a task while it runs. Returns when its tiles were made that were there."""
+    wait_for("some tiles", until, lambda: len(list(out.glob("r*.tif"))) >= 2)
+    if planned.state(1) != "RUNNING":
         sys.exit("the task has ended too early to be killed")
-    before = {name: (out / name).stat().st_mtime_ns for name in tiles(out)}
-    slurm.call("scontrol", "requeue", f"{job}_1")
-    wait_for("the requeued task", until, lambda: slurm.states(merge).get("N/A") == "COMPLETED")
-    if any((out / name).stat().st_mtime_ns != when for name, when in before.items()):
-        sys.exit("a tile that was there was made again")
-    return tiles(out)
+    there = {path: path.stat().st_mtime_ns for path in out.glob("r*.tif")}
+    slurm.call("scontrol", "requeue", f"{planned.job}_1")
+    return there
 
 
-def check_failing(slurm, relevo, dem, folder, until):
-    """A task fails three times: the merge does not run, and names what is missing when it is run by hand."""
-    script, out = folder / "failing.sh", folder / "failing"
-    plan(relevo, dem, out, 10, "--slurm", script)
-    split_into(script, 2)
-    tries = folder / "tries"
-    text = script.read_text()
-    text = text.replace("status=$?\n", f"status=$?\n[ $SLURM_ARRAY_TASK_ID = 1 ] || {{ echo >> '{tries}'; "
-                                       f"rm -f '{out}/r0003_c0001.tif'; status=1; }}\n")
-    script.write_text(text)
-    said = slurm.call("sh", script, f"--output={folder}/%x_%A_%a.log").stdout.split()
-    wait_for("three tries", until, lambda: slurm.states(said[1]).get("2") == "FAILED")
-    if tries.read_text() != "\n" * 3:
-        sys.exit(f"expected three tries but there were {len(tries.read_text())}")
-    wait_for("the merge to be given up", until, lambda: slurm.states(said[3]).get("N/A") in ("CANCELLED", None))
-    merge = run(relevo, "merge", out, check=False)
+def job_of_pictures(dem, folder):
+    job = folder / "job.json"
+    job.write_text(f"""{{"format": 1, "dem": {{"files": ["{dem}"]}}, "picture": {{"size": [64, 48]}},
+        "time": {{"at": "0:00", "date": "2026-06-21"}}, "effects": {{"only": []}},
+        "sweep": [{{"times": {{"from": "8:00", "to": "19:00", "step": "2h"}}}}],
+        "output": "{folder}/out/{{time:%H%M}}.png"}}""")
+    return ["run", job, "--device", "software"]
+
+
+def check_pictures(relevo, dem, folder):
+    def made():
+        return {path.name: path.read_bytes() for path in (folder / "out").glob("*.png")}
+
+    of_tasks = made()
+    run(relevo, *job_of_pictures(dem, folder), "--overwrite")
+    if len(of_tasks) != 6 or of_tasks != made():
+        sys.exit("pictures of tasks are others than those of one process")
+
+
+def check_slurm(relevo, dem, folder, until):
+    slurm = Slurm(folder)
+    try:
+        slurm.start(until)
+        whole = {tasks: Planned(slurm, relevo, folder / f"submit {tasks}.sh", tasks,
+                                *hours(dem, folder / f"out {tasks}", 10)) for tasks in (1, 2, 7)}
+        killed = Planned(slurm, relevo, folder / "killed.sh", 1, *hours(dem, folder / "killed", 1))
+        failing = Planned(slurm, relevo, folder / "failing.sh", 2, *hours(dem, folder / "failing", 10))
+        (folder / "pictures").mkdir()
+        pictures = Planned(slurm, relevo, folder / "pictures.sh", 2, *job_of_pictures(dem, folder / "pictures"))
+        fail_a_task(failing, folder / "tries", folder / "failing/r0003_c0001.tif")
+        for planned in (killed, failing):
+            planned.submit()
+        there = kill_a_task(slurm, killed, folder / "killed", until)
+        for planned in (*whole.values(), pictures):
+            planned.submit()
+        for planned in (*whole.values(), pictures, killed):
+            wait_for(f"{planned.script} and its merge", until, planned.is_merged)
+        if any(path.stat().st_mtime_ns != when for path, when in there.items()):
+            sys.exit("a tile that was there was made again")
+        wait_for("three tries", until, lambda: failing.state(2) == "FAILED")
+        wait_for("the merge to be given up", until,
+                 lambda: slurm.states(failing.merge).get("N/A") in ("CANCELLED", None))
+    finally:
+        slurm.stop()
+    if (folder / "tries").read_text() != "\n" * 3:
+        sys.exit("expected three tries of the task that fails")
+
+
+def check_results(relevo, dem, folder, expected):
+    run(relevo, *hours(dem, folder / "slow", 1))
+    for made, of in [(f"out {tasks}", expected) for tasks in (1, 2, 7)] + [("killed", tiles(folder / "slow"))]:
+        if tiles(folder / made) != of or not (folder / made / "mosaic.vrt").exists():
+            sys.exit(f"{made}: the tiles are others than those of one process, or there is no VRT")
+    check_pictures(relevo, dem, folder / "pictures")
+    merge = run(relevo, "merge", folder / "failing", check=False)
     if merge.returncode != 1 or "r0003_c0001.tif: is missing" not in merge.stderr:
         sys.exit(f"the merge does not name what is missing: {merge.stderr}")
 
@@ -219,20 +267,8 @@ def main():
             sys.exit("the tiles of GNU parallel are others than those of one process")
         print(f"{len(expected)} tiles of 7 tasks are those of one process")
         return
-    slurm = Slurm(folder)
-    try:
-        slurm.start(until)
-        for tasks in (1, 2, 7):
-            _, made = check_tasks(slurm, relevo, dem, folder, tasks, until)
-            if made != expected:
-                sys.exit(f"the tiles of {tasks} tasks are others than those of one process")
-        killed = check_killed(slurm, relevo, dem, folder, until)
-        run(relevo, *hours(dem, folder / "slow", 1))
-        if killed != tiles(folder / "slow"):
-            sys.exit("the tiles of a killed task are others than those of one process")
-        check_failing(slurm, relevo, dem, folder, until)
-    finally:
-        slurm.stop()
+    check_slurm(relevo, dem, folder, until)
+    check_results(relevo, dem, folder, expected)
     print(f"{len(expected)} tiles of 1, 2 and 7 tasks, and of a killed one, are those of one process")
 
 
