@@ -204,7 +204,7 @@ def check_pictures(relevo, dem, folder):
         return {path.name: path.read_bytes() for path in (folder / "out").glob("*.png")}
 
     of_tasks = made()
-    run(relevo, *job_of_pictures(dem, folder), "--overwrite")
+    run(relevo, *job_of_pictures(dem, folder), "--memory", 64, "--overwrite")
     if len(of_tasks) != 6 or of_tasks != made():
         sys.exit("pictures of tasks are others than those of one process")
 
