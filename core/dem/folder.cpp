@@ -18,6 +18,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
+#include "dem/tile_index.h"
 
 namespace relevo::dem {
 namespace {
@@ -142,7 +143,8 @@ Contents contents_of(const std::string& folder) {
         } else {
             refuse_unreadable(entry.string());
             const std::string driver = ends_like(entry, kArchives) ? "archive" : driver_of(entry);
-            if (driver.empty()) {
+            // An index lies beside the tiles that it names.
+            if (driver.empty() || is_tile_index(entry.string())) {
                 found.others.push_back(entry);
             } else {
                 found.rasters.push_back({entry, driver, fs::file_size(entry, error)});

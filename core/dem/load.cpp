@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "dem/interpret.h"
 #include "dem/unearthly.h"
 
@@ -31,9 +32,28 @@ std::string stored_text(const Description& about, double stored) {
     return fmt::format("{:.17g}", stored);
 }
 
+/// Says what the tiles of indexes turned out to be while all heights were read.
+void report_tiles(const Source& source, Description& about) {
+    about.tiles = source.tiles();
+    const TileReport& tiles = about.tiles;
+    const auto warn = [&](const NamedTiles& some, const char* what) {
+        if (some.count == 0) return;
+        about.warnings.push_back(fmt::format("{} of {} tiles {}", some.text(), tiles.tiles, what));
+        about.assumptions.push_back(about.warnings.back());
+        log::warning(fmt::format("{}: {}", about.path, printable(about.warnings.back())));
+    };
+    warn(tiles.missing, "are missing: their posts are voids");
+    warn(tiles.broken, "cannot be read: their posts are voids");
+    if (tiles.differing.count == 0) return;
+    guess(about, fmt::format("{} of {} tiles differ from the first, and are read as they say",
+                             tiles.differing.text(), tiles.tiles));
+    log::info(fmt::format("{}: {}", about.path, printable(about.guesses.back())));
+}
+
 }  // namespace
 
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar) {
+    report_tiles(source, about);
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(
