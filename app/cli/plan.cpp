@@ -140,8 +140,7 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work) {
 void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
                       const dem::Posts& posts, const std::vector<output::PlannedTile>& todo) {
     const RasterEstimate& estimate = plan.estimate;
-    fmt::print("tiles               {} of {} x {} posts, {} there already\n", plan.tiles, plan.side,
-               plan.side, plan.there);
+    fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
     fmt::print(
         "halo                {:.1f} km: ground so far off can change a figure (relief "
         "{:.0f} m)\n",
@@ -165,7 +164,10 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
     }
     // No wider than the DEM is beyond a tile.
     const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
-    const double side_m = plan.side * std::min(spacing_m.x, spacing_m.y),
+    int side = 1;
+    for (const output::PlannedTile& tile : todo)
+        side = std::max({side, tile.window.columns, tile.window.rows});
+    const double side_m = side * std::min(spacing_m.x, spacing_m.y),
                  beyond_m = std::max(posts.grid().columns() * spacing_m.x,
                                      posts.grid().rows() * spacing_m.y) -
                             side_m;

@@ -46,7 +46,7 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work);
 struct RasterPlan {
     RasterEstimate estimate;
     std::size_t tiles = 0, there = 0;
-    int side = 0;       ///< of a tile [posts]
+    std::string kind;   ///< of the tiles: TileArguments::description()
     double halo_m = 0;  ///< how far off ground can change a figure
     std::string folder;
     std::vector<std::string> words;

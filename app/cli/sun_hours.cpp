@@ -170,19 +170,23 @@ void run(const Arguments& arguments) {
     warn_of_beyond(raster, posts, options, light::suns_of(posts.grid(), begin, end),
                    arguments.raster.highest_m);
     options.done = raster.done();
-    options.part = raster.window();
     Summary sum;
-    const light::SunHoursPlan plan(posts, begin, end, options);
-    if (!raster.each_part([&](const dem::Window& part) -> PartFigures {
-            light::SunHours hours = plan.part(part);
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        options.part = window;
+        options.around = around;
+        const auto plan = std::make_shared<light::SunHoursPlan>(of, begin, end, options);
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            light::SunHours hours = plan->part(part);
             if (options.irradiation)
                 hours.definition += "; " + session::definition_of(*options.irradiation);
             sum.add(hours);
             for (std::size_t k = 0; k < arguments.bands.size(); ++k)
                 raster.put(k, part, session::hours_values(arguments.bands[k], hours));
             return {hours.holes, std::move(hours.definition)};
-        }))
-        return;
+        };
+    };
+    if (!raster.make_all(maker_of)) return;
     sum.say_more_than_level();
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(

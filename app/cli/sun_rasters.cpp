@@ -105,7 +105,7 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
 OutputFile* RasterArguments::open(FilesInUse& files) const {
     output::check_creation_options(creation_options);
     tiles.check();
-    if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles N");
+    if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
     dem::add_named(dem.paths, files);
     return nullptr;
@@ -134,7 +134,7 @@ RasterGround RasterArguments::load() const {
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     const std::int64_t part_posts =
         posts.in_memory() ? 0 : options.max_posts / session::kPostsAPart;
-    return {std::move(posts), window, part_posts, options.max_posts};
+    return {std::move(posts), window, part_posts, options};
 }
 
 output::RasterMetadata RasterArguments::about(const RasterGround& ground, const dem::Window& raster,
@@ -181,6 +181,12 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
 void RasterRun::choose_tiles() {
     const dem::Posts& posts = ground_.posts;
     const Verb& verb = *arguments_.verb;
+    if (arguments_.tiles.halo_km) {
+        far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
+                     arguments_.output.path);
+        wanted_.metadata.emplace_back("FAR_GROUND", far_->description());
+        wanted_.halo_m = *arguments_.tiles.halo_km * 1000;
+    }
     output::RasterMetadata meaning = wanted_.metadata;
     for (const output::RasterBand& band : wanted_.bands) {
         meaning.emplace_back("band", band.name);
@@ -193,11 +199,10 @@ void RasterRun::choose_tiles() {
                                      .grid = posts.grid(),
                                      .statistics = posts.about().statistics,
                                      .stamp = output::stamp_of(arguments_.dem.paths),
-                                     .tiles = output::tiles_of(posts.grid(), ground_.window,
-                                                               *arguments_.tiles.side)},
+                                     .tiles = arguments_.tiles.of(posts.grid(), ground_.window)},
                     arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
     todo_ = folder_->todo();
-    if (!arguments_.dry_run) folder_->write_plan(posts);
+    if (!arguments_.dry_run) folder_->write_plan(posts, far_ ? &*far_ : nullptr);
     // The middle of a DEM says more of how long it takes than its corner.
     if (is_dry())
         std::rotate(todo_.begin(), todo_.begin() + static_cast<std::ptrdiff_t>(todo_.size() / 2),
@@ -213,11 +218,16 @@ std::function<void(double)> RasterRun::done() {
     };
 }
 
-bool RasterRun::each_part(const std::function<PartFigures(const dem::Window&)>& body) {
-    ready_s_ = passed_s_ = seconds_since(began_);
+bool RasterRun::make_all(const MakerOf& maker_of) {
     try {
+        PartMaker make_part;
+        if (!far_) make_part = maker_of(ground_.posts, nullptr, window_);
+        ready_s_ = passed_s_ = seconds_since(began_);
         for (const output::PlannedTile& tile : todo_)
-            make(tile, body);
+            if (far_)
+                make_far(tile, maker_of);
+            else
+                make(tile, tile.window, make_part);
     } catch (const Enough&) {
     }
     bar_.reset();
@@ -230,42 +240,50 @@ bool RasterRun::each_part(const std::function<PartFigures(const dem::Window&)>& 
     return !is_dry();
 }
 
-void RasterRun::make(const output::PlannedTile& tile,
-                     const std::function<PartFigures(const dem::Window&)>& body) {
-    raster_ = tile.window;
+void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_of) {
+    const FarGround::Site site = far_->site_of(tile.window);
+    make(tile, site.tile, maker_of(*site.posts, site.around, site.tile));
+}
+
+/// @param raster  the tile's window of the posts that it is made from
+void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
+                     const PartMaker& make_part) {
+    raster_ = raster;
     std::optional<OutputFile> own;
     if (folder_ && !is_dry()) {
         own.emplace(folder_->open(tile, files_));
-        writer_.emplace(*own, ground_.grid_of(raster_), wanted_.type, wanted_.bands,
+        writer_.emplace(*own, ground_.grid_of(tile.window), wanted_.type, wanted_.bands,
                         arguments_.creation_options);
     }
     output::RasterMetadata metadata = wanted_.metadata;
-    if (writer_) look_beyond(raster_, metadata);
+    if (writer_) look_beyond(tile.window, metadata);
     PartFigures sum;
-    for (const dem::Window& part : ground_.parts_of(raster_)) {
+    for (const dem::Window& part : far_ ? std::vector{raster} : ground_.parts_of(raster)) {
         part_share_ = posts_of(part) / posts_;
-        PartFigures figures = body(part);
+        PartFigures figures = make_part(part);
         sum.holes += figures.holes;
         sum.definition = std::move(figures.definition);
-        if (writer_) inner_voids_ += inner_voids_of(part);
     }
     if (!writer_) return;
+    inner_voids_ += inner_voids_of(tile.window);
     if (folder_) {
         metadata.emplace_back(output::kCommandKey, folder_->plan().command);
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
     }
-    writer_->finish(arguments_.about(ground_, raster_, sum, metadata));
+    writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
     writer_.reset();
 }
 
-std::int64_t RasterRun::inner_voids_of(const dem::Window& part) const {
+std::int64_t RasterRun::inner_voids_of(const dem::Window& raster) const {
     const dem::Posts& posts = ground_.posts;
     std::vector<float> buffer;
-    const dem::Posts::View view = posts.view(part, buffer);
     std::int64_t count = 0;
-    for (int row = part.row; row < part.row + part.rows; ++row)
-        for (int column = part.column; column < part.column + part.columns; ++column)
-            count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+    for (const dem::Window& part : ground_.parts_of(raster)) {
+        const dem::Posts::View view = posts.view(part, buffer);
+        for (int row = part.row; row < part.end_row(); ++row)
+            for (int column = part.column; column < part.end_column(); ++column)
+                count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+    }
     return count;
 }
 
@@ -307,10 +325,12 @@ RasterEstimate RasterRun::estimate() const {
     const int bytes_a_value = wanted_.type == output::RasterType::Float ? 4 : 1;
     const RasterMemory memory =
         raster_memory(ground_.posts, most, largest, wanted_.bytes_a_post, bytes_a_value,
-                      wanted_.bands.size(), ground_.max_posts);
+                      wanted_.bands.size(), ground_.options.max_posts);
+    constexpr double kMiB = 1 << 20, kBytesAPost = 8;  // as posts in memory
+    const double far_mib = far_ ? far_->kept_posts(largest) * kBytesAPost / kMiB : 0;
     found.posts = posts_;
-    found.memory_mib = memory.all_mib;
-    found.heights_mib = memory.heights_mib;
+    found.memory_mib = memory.all_mib + far_mib;
+    found.heights_mib = memory.heights_mib + far_mib;
     found.ready_s = ready_s_;
     found.computing_s = ready_s_ + (passed_s_ - ready_s_) / std::max(share_, 1e-9);
     found.sampled_share = share_;
@@ -325,14 +345,14 @@ void RasterRun::tell_plan(const RasterEstimate& estimate) const {
     RasterPlan plan{.estimate = estimate,
                     .tiles = folder_->plan().tiles.size(),
                     .there = folder_->there(),
-                    .side = *arguments_.tiles.side,
+                    .kind = arguments_.tiles.description(),
                     .halo_m = wanted_.halo_m,
                     .folder = arguments_.output.path,
                     .words = arguments_.plan.words(*arguments_.verb),
                     .overwrite = arguments_.output.overwrite};
     if (!arguments_.dem.values.has("--memory"))
         plan.words.insert(plan.words.begin() + 2,
-                          fmt::format("--memory={}", dem::mib_of_posts(ground_.max_posts)));
+                          fmt::format("--memory={}", dem::mib_of_posts(ground_.options.max_posts)));
     tell_raster_plan(arguments_.plan, plan, ground_.posts, todo_);
 }
 

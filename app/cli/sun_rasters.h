@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "cli/far_ground.h"
 #include "cli/plan.h"
 #include "cli/raster_estimate.h"
 #include "cli/sun_options.h"
@@ -22,7 +23,7 @@ struct RasterGround {
     dem::Posts posts;
     dem::Window window;           ///< that is asked for
     std::int64_t part_posts = 0;  ///< that are computed at once; 0: all of a raster
-    std::int64_t max_posts = 0;   ///< dem::LoadOptions::max_posts
+    dem::LoadOptions options{};   ///< with which it was read
 
     dem::Window whole() const { return {0, 0, posts.grid().columns(), posts.grid().rows()}; }
     dem::Grid grid_of(const dem::Window& raster) const;
@@ -46,7 +47,17 @@ struct PartFigures {
     std::string definition;
 };
 
-/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest, --tiles, --shard, --resume.
+/// Makes a part of a raster: a window of the posts that it is made from.
+using PartMaker = std::function<PartFigures(const dem::Window& part)>;
+/// What a verb has core find before any part is made.
+/// @param posts   whose parts are made: all of a DEM, or a tile with its halo. Outlive the result
+/// @param around  a wider and coarser DEM, as light::SunPlan takes it; may be null
+/// @param window  posts of which parts will be asked for
+using MakerOf = std::function<PartMaker(const dem::Posts& posts, const dem::Posts* around,
+                                        const dem::Window& window)>;
+
+/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest, --tiles, --halo, --shard,
+/// --resume.
 struct RasterArguments {
     DemArguments dem;
     double terrestrial_refraction = 0.13;
@@ -82,9 +93,7 @@ class RasterRun {
     RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,
               const RasterGround& ground, RasterWanted wanted);
 
-    /// Posts that are asked for in each_part(); empty where all is there already, which has been
-    /// said then.
-    const dem::Window& window() const { return window_; }
+    /// Whether all is there already, which has been said then.
     bool is_done() const { return window_.is_empty(); }
 
     /// Terrain beyond the DEM that could change figures is told of, and written into the files.
@@ -92,9 +101,9 @@ class RasterRun {
     /// @param would  as light::Beyond::text()
     void warn_of(std::function<std::optional<light::Beyond>(const dem::Window&)> look,
                  std::string would);
-    /// Calls `body` with one part after the other. Files get their names once they are whole.
+    /// Makes one part after the other. Files get their names once they are whole.
     /// @return whether they have: not those of a dry run, which says what it has found out
-    bool each_part(const std::function<PartFigures(const dem::Window&)>& body);
+    bool make_all(const MakerOf& maker_of);
     /// What the options of core's functions want to be told by.
     std::function<void(double)> done();
     template <typename T>
@@ -105,8 +114,9 @@ class RasterRun {
 
   private:
     void choose_tiles();
-    void make(const output::PlannedTile& tile,
-              const std::function<PartFigures(const dem::Window&)>& body);
+    void make(const output::PlannedTile& tile, const dem::Window& raster,
+              const PartMaker& make_part);
+    void make_far(const output::PlannedTile& tile, const MakerOf& maker_of);
     void look_beyond(const dem::Window& raster, output::RasterMetadata& metadata);
     bool is_dry() const { return arguments_.dry_run || arguments_.plan.on; }
     void say_what_was_made() const;
@@ -119,11 +129,12 @@ class RasterRun {
     FilesInUse& files_;
     OutputFile* file_;
     RasterWanted wanted_;
+    std::optional<FarGround> far_;
     std::optional<TileFolder> folder_;
     std::vector<output::PlannedTile> todo_;
     dem::Window window_;
     double posts_ = 0;    ///< of all that is to be made
-    dem::Window raster_;  ///< that is being made
+    dem::Window raster_;  ///< that is being made, of the posts that it is made from
     std::function<std::optional<light::Beyond>(const dem::Window&)> look_;
     std::string would_;
     bool warned_ = false;

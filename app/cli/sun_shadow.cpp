@@ -196,29 +196,34 @@ double halo_m(const dem::Posts& posts, const std::vector<Asked>& suns, double re
 
 /// Puts the light of all suns where it belongs.
 /// @param definition  gets what it is
-/// @return RasterRun::each_part()
+/// @return RasterRun::make_all()
 bool light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
                light::ShadowOptions options, RasterRun& raster, std::vector<Counts>& counts,
                std::string& definition) {
     options.done = raster.done();
-    light::SunPlan plan(posts, {options.refraction, options.air}, raster.window(), options.soft);
-    plan.add_suns(posts.grid().center(), directions_of(suns));
-    return raster.each_part([&](const dem::Window& part) -> PartFigures {
-        options.part = part;
-        std::int64_t holes = 0;
-        for (std::size_t k = 0; k < suns.size(); ++k) {
-            const light::Shadows shadows = light::shadows(plan, plan.suns()[k], options);
-            counts[k].lit += shadows.lit_posts;
-            counts[k].shaded += shadows.shaded_posts;
-            holes = shadows.holes;
-            if (options.soft)
-                raster.put(k, part, shadows.lit);
-            else
-                raster.put(k, part, session::mask_of(shadows.lit));
-            definition = shadows.definition;
-        }
-        return {holes, definition};
-    });
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(
+            of, light::LightPath{options.refraction, options.air}, window, options.soft, around);
+        plan->add_suns(posts.grid().center(), directions_of(suns));
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            options.part = part;
+            std::int64_t holes = 0;
+            for (std::size_t k = 0; k < suns.size(); ++k) {
+                const light::Shadows shadows = light::shadows(*plan, plan->suns()[k], options);
+                counts[k].lit += shadows.lit_posts;
+                counts[k].shaded += shadows.shaded_posts;
+                holes = shadows.holes;
+                if (options.soft)
+                    raster.put(k, part, shadows.lit);
+                else
+                    raster.put(k, part, session::mask_of(shadows.lit));
+                definition = shadows.definition;
+            }
+            return {holes, definition};
+        };
+    };
+    return raster.make_all(maker_of);
 }
 
 void run(const Arguments& arguments) {

@@ -56,11 +56,14 @@ void run_sky_view(const Arguments& arguments) {
                                   .done = raster.done()};
     double sum = 0, posts = 0;
     std::string definition;
-    light::SunPlan plan(ground.posts, {refraction, {}}, raster.window());
-    light::add_sky_view_directions(plan, options.directions);
-    if (!raster.each_part([&](const dem::Window& part) -> PartFigures {
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(of, light::LightPath{refraction, {}},
+                                                           window, false, around);
+        light::add_sky_view_directions(*plan, options.directions);
+        return [&, plan](const dem::Window& part) -> PartFigures {
             options.part = part;
-            const light::SkyView view = light::sky_view(plan, options);
+            const light::SkyView view = light::sky_view(*plan, options);
             const auto seen =
                 static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
             if (seen > 0) sum += view.mean * seen;
@@ -68,8 +71,9 @@ void run_sky_view(const Arguments& arguments) {
             definition = view.definition;
             raster.put(0, part, view.share);
             return {view.holes, view.definition};
-        }))
-        return;
+        };
+    };
+    if (!raster.make_all(maker_of)) return;
     fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
@@ -96,22 +100,26 @@ void run_horizons(const Arguments& arguments) {
     warn_of_beyond(raster, arguments, ground.posts);
     const std::function<void(double)> done = raster.done();
     const std::string definition = light::horizons_definition(refraction);
-    light::SunPlan plan(ground.posts, {refraction, {}}, raster.window());
-    light::add_horizon_directions(plan, azimuth_rad);
-    const auto make = [&](const dem::Window& part) -> PartFigures {
-        std::int64_t holes = 0;
-        for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
-            Array2d<float> elevation = light::horizon_elevations(plan, plan.suns()[k], part);
-            for (float& value : elevation) {
-                if (k == 0) holes += std::isnan(value);
-                value = static_cast<float>(degrees(double{value}));
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(of, light::LightPath{refraction, {}},
+                                                           window, false, around);
+        light::add_horizon_directions(*plan, azimuth_rad);
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            std::int64_t holes = 0;
+            for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
+                Array2d<float> elevation = light::horizon_elevations(*plan, plan->suns()[k], part);
+                for (float& value : elevation) {
+                    if (k == 0) holes += std::isnan(value);
+                    value = static_cast<float>(degrees(double{value}));
+                }
+                raster.put(k, part, elevation);
+                done(1);
             }
-            raster.put(k, part, elevation);
-            done(1);
-        }
-        return {holes, definition};
+            return {holes, definition};
+        };
     };
-    if (!raster.each_part(make)) return;
+    if (!raster.make_all(maker_of)) return;
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
                arguments.directions, 360.0 / arguments.directions, definition);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -62,10 +63,15 @@ std::string name_in(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 void TileArguments::add_to(Verb verb) {
-    verb.add_option("--tiles", side,
-                    "Write tiles of N x N posts, a GeoTIFF each, into the folder that -o names")
-        .type_name("N")
-        .check(in_range(64, 1 << 20))
+    verb.add_option("--tiles", tiles,
+                    "Write tiles into the folder that -o names, a GeoTIFF each: of N x N posts, or "
+                    "those of an index, as gdaltindex and STAC have it")
+        .type_name("N|INDEX")
+        .group("Tiles");
+    verb.add_option("--halo", halo_km,
+                    "Posts only so many km around a tile, ground beyond as means, exact to 0.1 "
+                    "degrees (all posts)")
+        .check(in_range(0.1, 1000.0))
         .group("Tiles");
     verb.add_option("--shard", shard,
                     "Make one part of the tiles: I/N, or array in an array task of a scheduler")
@@ -75,8 +81,25 @@ void TileArguments::add_to(Verb verb) {
 }
 
 void TileArguments::check() const {
-    if (!given() && !shard.empty()) bad_usage("--shard: needs --tiles N");
-    if (!given() && resume) bad_usage("--resume: needs --tiles N");
+    if (!given() && !shard.empty()) bad_usage("--shard: needs --tiles");
+    if (!given() && resume) bad_usage("--resume: needs --tiles");
+    if (!given() && halo_km) bad_usage("--halo: needs --tiles");
+}
+
+std::vector<output::PlannedTile> TileArguments::of(const dem::Grid& grid,
+                                                   const dem::Window& window) const {
+    const auto side = parse_number(tiles);
+    if (!side) return output::tiles_of_index(grid, window, tiles);
+    constexpr double kLeast = 64, kMost = 1 << 20;
+    if (!(*side >= kLeast && *side <= kMost && *side == std::floor(*side)))
+        bad_usage(fmt::format("--tiles: {}: expected a whole number from {} to {}, or an index",
+                              tiles, kLeast, kMost));
+    return output::tiles_of(grid, window, static_cast<int>(*side));
+}
+
+std::string TileArguments::description() const {
+    return parse_number(tiles) ? fmt::format("of {0} x {0} posts", tiles)
+                               : "of " + printable(tiles);
 }
 
 std::string meaning_of(const std::string& command, const std::vector<GivenOption>& given,
@@ -151,7 +174,7 @@ void TileFolder::take(const std::vector<output::PlannedTile>& wanted, bool keep)
     }
 }
 
-void TileFolder::write_plan(const dem::Posts& posts) const {
+void TileFolder::write_plan(const dem::Posts& posts, const FarGround* far) const {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error)
@@ -159,6 +182,7 @@ void TileFolder::write_plan(const dem::Posts& posts) const {
                               error.message()));
     if (has_plan_) return;
     if (!posts.in_memory()) output::write_posts_facts(folder_, posts);
+    if (far) far->write(folder_);
     output::write_plan(folder_, plan_);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/files_in_use.h"
+#include "cli/far_ground.h"
 #include "cli/verb.h"
 #include "output/raster_writer.h"
 #include "output/tile_plan.h"
@@ -14,16 +15,21 @@
 /// Rasters as tiles in a folder: which there are, and which a run makes.
 namespace relevo::cli {
 
-/// --tiles, --shard, --resume.
+/// --tiles, --halo, --shard, --resume.
 struct TileArguments {
-    std::optional<int> side;
-    std::string shard;
+    std::string tiles, shard;
     bool resume = false;
+    std::optional<double> halo_km;
 
     void add_to(Verb verb);
-    bool given() const { return side.has_value(); }
+    bool given() const { return !tiles.empty(); }
     /// @throws Error (Usage) for --shard or --resume without --tiles
     void check() const;
+    /// The tiles of a window, and what they are, for people: "of 512 x 512 posts".
+    /// @throws Error (Usage) for a number that no tile has, (BadInput) as output::tiles_of() and
+    ///     output::tiles_of_index()
+    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window) const;
+    std::string description() const;
 };
 
 /// What a command means for figures, in lines: options that change them, and what they were found
@@ -50,7 +56,8 @@ class TileFolder {
 
     /// Writes the plan unless the folder has it.
     /// @param posts  of the DEM
-    void write_plan(const dem::Posts& posts) const;
+    /// @param far    of it; null: all ground is posts
+    void write_plan(const dem::Posts& posts, const FarGround* far) const;
     /// Opens the file of a tile.
     OutputFile open(const output::PlannedTile& tile, FilesInUse& files) const;
 

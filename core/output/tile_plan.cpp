@@ -13,8 +13,10 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "dem/clip.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
+#include "dem/tile_index.h"
 #include "output/raster_writer.h"
 
 namespace relevo::output {
@@ -90,6 +92,17 @@ dem::Grid thinned_grid(const dem::Posts& posts, const Array2d<float>& thinned_m)
     return {thinned_m.width(), thinned_m.height(), affine, posts.grid().crs()};
 }
 
+/// The posts of a window that are in a rectangle, if there are any.
+std::optional<dem::Window> window_within(const dem::Grid& grid, const dem::Clip& clip,
+                                         const dem::Window& window) {
+    try {
+        const dem::Window found = common(dem::window_of(grid, clip, "--tiles"), window);
+        return found.is_empty() ? std::nullopt : std::optional(found);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
 /// Has all of a folder's files follow one rule: what this program has made for itself is replaced.
 OutputFile own_file(const fs::path& path) {
     return {path, /*overwrite=*/true, "plan"};
@@ -113,6 +126,29 @@ std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& wind
             tiles.push_back(
                 {fmt::format("r{:0{}}_c{:0{}}.tif", row + 1, digits, column + 1, digits),
                  common(window, {column * side, row * side, side, side})});
+    return tiles;
+}
+
+std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,
+                                        const std::string& path) {
+    const dem::TileIndex index = dem::read_tile_index(path);
+    std::vector<PlannedTile> tiles;
+    for (const dem::IndexedTile& tile : index.tiles) {
+        const dem::Extent& box = tile.extent;
+        dem::Clip clip{box.west, box.south, box.east, box.north, std::nullopt, tile.name};
+        if (tile.crs >= 0 && index.crs[std::size_t(tile.crs)].text() != grid.crs().text())
+            clip.crs = index.crs[std::size_t(tile.crs)];
+        const std::optional<dem::Window> posts = window_within(grid, clip, window);
+        if (!posts) continue;
+        if (tile.name + ".tif" == kPostsFile)
+            bad_input(
+                fmt::format("--tiles: {}: a tile has the name \"{}\", which is taken; rename "
+                            "it",
+                            printable(path), tile.name));
+        tiles.push_back({tile.name + ".tif", *posts});
+    }
+    if (tiles.empty())
+        bad_input(fmt::format("--tiles: {}: no tile has a post of the DEM", printable(path)));
     return tiles;
 }
 
@@ -158,8 +194,8 @@ void write_plan(const fs::path& folder, const TilePlan& plan) {
     file.finish();
 }
 
-std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const TilePlan& plan) {
-    const std::string path = (folder / kPostsFile).string();
+std::optional<Array2d<float>> read_heights(const fs::path& file) {
+    const std::string path = file.string();
     std::error_code missing;
     if (!fs::exists(path, missing)) return std::nullopt;
     dem::prepare_gdal();
@@ -172,24 +208,34 @@ std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const Ti
                               printable(path), messages.failure(path)));
     };
     if (!dataset) refuse();
-    const int columns = GDALGetRasterXSize(dataset.get()), rows = GDALGetRasterYSize(dataset.get());
-    if (columns > dem::Posts::kThinned || rows > dem::Posts::kThinned) refuse();
-    dem::PostsFacts facts{plan.statistics, Array2d<float>(columns, rows)};
-    if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, 0, columns, rows,
-                     facts.thinned_m.data(), columns, rows, GDT_Float32, 0, 0) != CE_None)
+    Array2d<float> height_m(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()));
+    if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, 0, height_m.width(),
+                     height_m.height(), height_m.data(), height_m.width(), height_m.height(),
+                     GDT_Float32, 0, 0) != CE_None)
         refuse();
-    return facts;
+    return height_m;
+}
+
+void write_heights(const fs::path& path, const dem::Grid& grid, const Array2d<float>& height_m,
+                   const std::string& definition) {
+    OutputFile file = own_file(path);
+    RasterWriter writer(file, grid, RasterType::Float, {{"height", "m"}});
+    writer.put(0, 0, 0, height_m);
+    writer.finish({{"DEFINITION", definition}});
+}
+
+std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const TilePlan& plan) {
+    std::optional<Array2d<float>> thinned_m = read_heights(folder / kPostsFile);
+    if (!thinned_m) return std::nullopt;
+    return dem::PostsFacts{plan.statistics, std::move(*thinned_m)};
 }
 
 void write_posts_facts(const fs::path& folder, const dem::Posts& posts) {
     const dem::PostsFacts facts = posts.facts();
-    OutputFile file = own_file(folder / kPostsFile);
-    RasterWriter writer(file, thinned_grid(posts, facts.thinned_m), RasterType::Float,
-                        {{"height", "m"}});
-    writer.put(0, 0, 0, facts.thinned_m);
-    writer.finish({{"DEFINITION", fmt::format("every {}th post of the DEM, each way, from the "
-                                              "first on; for the tasks of this folder",
-                                              posts.thinning())}});
+    write_heights(folder / kPostsFile, thinned_grid(posts, facts.thinned_m), facts.thinned_m,
+                  fmt::format("every {}th post of the DEM, each way, from the first on; for the "
+                              "tasks of this folder",
+                              posts.thinning()));
 }
 
 }  // namespace relevo::output

@@ -25,6 +25,13 @@ struct PlannedTile {
 /// @throws Error (BadInput) for more than ten million tiles
 std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& window, int side);
 
+/// Tiles of an index: the posts of a window that lie in the outline of each, under its name. Those
+/// outside of the window are not there.
+/// @param path  an OGR tile index or STAC Items, as dem::read_tile_index()
+/// @throws Error (BadInput) as dem::read_tile_index(), and where no tile has a post of the window
+std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,
+                                        const std::string& path);
+
 /// The I-th of N contiguous shares of a list, whose sizes differ by one at most.
 /// @param number  from 1
 /// @return the first one and the one after the last
@@ -55,6 +62,13 @@ inline constexpr const char *kCommandKey = "RELEVO_COMMAND", *kDigestKey = "RELE
 std::optional<TilePlan> read_plan(const std::filesystem::path& folder);
 /// Replaces what is there. @throws Error as OutputFile
 void write_plan(const std::filesystem::path& folder, const TilePlan& plan);
+
+/// Heights that a folder's tasks share. Nothing where there is no such file.
+/// @throws Error (BadInput) where it cannot be read, here and below
+std::optional<Array2d<float>> read_heights(const std::filesystem::path& path);
+/// Replaces what is there.
+void write_heights(const std::filesystem::path& path, const dem::Grid& grid,
+                   const Array2d<float>& height_m, const std::string& definition);
 
 /// What was found of a DEM's posts. Nothing where the folder has none.
 /// @throws Error (BadInput) where the file cannot be read

@@ -180,6 +180,65 @@ TEST(SunTiles, ATaskReadsOnlyGroundThatCanShade) {
     EXPECT_NE(last.err.find("long.tif"), std::string::npos) << last.err;
 }
 
+/// Hills on a plain, in posts of 5 m: far ones are seen from everywhere.
+std::string far_hills() {
+    Raster raster;
+    raster.columns = 1500;
+    raster.rows = 1200;
+    raster.geotransform = {{500000, 5, 0, 5300000, 0, -5}};
+    raster.value = [](int column, int row, int) {
+        const auto hill = [&](double x, double y, double up, double width) {
+            const double dx = (column - x) / width, dy = (row - y) / width;
+            return up * std::exp(-dx * dx - dy * dy);
+        };
+        return 400 + hill(150, 200, 500, 150) + hill(1350, 900, 600, 180) +
+               hill(1300, 100, 400, 120) + hill(200, 1100, 450, 140) + hill(700, 1150, 300, 90) +
+               40 * std::sin(column / 17.0) * std::sin(row / 23.0);
+    };
+    return write_raster(scratch_dir("dem") / "far.tif", raster);
+}
+
+TEST(SunTiles, FarGroundAsMeansIsWithinItsBounds) {
+    const std::string dem = far_hills();
+    const fs::path where = scratch_dir("far");
+    const Words window{"--clip", "503000,5296500,504500,5298000"};
+    const auto apart = [&](const Words& command, const std::string& name) {
+        const fs::path folder = where / name;
+        const std::string whole = (where / (name + ".tif")).string();
+        const Words all = joined(joined({"-q", "sun"}, command), joined({dem}, window));
+        EXPECT_EQ(relevo(joined(all, {"-o", whole})).status, 0);
+        const Result run = relevo(joined(
+            all, {"-o", folder.string(), "--tiles", "150", "--halo", "0.9", "--memory", "64"}));
+        EXPECT_EQ(run.status, 0) << run.err;
+        const std::vector<float> expected = values_of(whole), found = values_of(merged(folder));
+        EXPECT_EQ(found.size(), expected.size());
+        double mean = 0, worst = 0;
+        for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i) {
+            const double off = std::abs(double{found[i]} - double{expected[i]});
+            mean += off / static_cast<double>(expected.size());
+            worst = std::max(worst, off);
+        }
+        fmt::print("[ accuracy ] {} with far ground as means: mean {:.4f}, worst {:.3f}\n", name,
+                   mean, worst);
+        return std::pair(mean, worst);
+    };
+    const auto horizons = apart({"horizons", "--directions", "8"}, "horizons");
+    EXPECT_LE(horizons.first, 0.02);  // degrees
+    EXPECT_LE(horizons.second, 0.1);
+    EXPECT_GT(horizons.second, 0);
+    for (const char* date : {"2026-06-21", "2026-12-21"})
+        EXPECT_LE(apart(joined({"hours", "--date", date}, kUtc), date).second, 3 / 60.0);
+    EXPECT_LE(
+        apart(joined({"hours", "--from", "2026-11-01", "--to", "2027-02-08"}, kUtc), "days").second,
+        100 * 3 / 60.0);
+    EXPECT_LE(apart({"sky-view"}, "sky").second, 0.003);
+    EXPECT_LE(apart({"shadow", "--sun", "123,6"}, "shadow").first, 0.001);
+    const Dataset tile = opened((where / "sky/r0003_c0005.tif").string());
+    ASSERT_TRUE(tile);
+    EXPECT_EQ(tile->GetMetadataItem("FAR_GROUND"),
+              std::string("ground beyond 0.9 km of a tile is means of 3 x 3 posts"));
+}
+
 /// The tiles of a shadow, of which most tests need no more.
 const Words kShadow{"shadow", "--sun", "123,8"};
 Words shadow_of(const std::string& dem) {
@@ -247,7 +306,7 @@ TEST(SunTiles, NothingIsReplacedUnasked) {
     EXPECT_EQ(error(relevo({"sun", "shadow", bundled_dem(), "--sun", "1,8", "-o",
                             (folder / "x.tif").string(), "--resume"}),
                     2),
-              "relevo: error: --resume: needs --tiles N\n");
+              "relevo: error: --resume: needs --tiles\n");
     EXPECT_EQ(error(relevo({"-q", "merge", scratch_dir("empty").string()}), 3),
               fmt::format("relevo: error: merge: {}: has no plan.json; expected a folder that "
                           "--tiles has made\n",

@@ -164,7 +164,7 @@ TEST(Plan, SaysWhatATaskTakesAndWritesWhatDoesIt) {
         planned(where, {"--parallel", lines.string()}).err.find("exists") != std::string::npos,
         true);
     EXPECT_EQ(relevo({"plan", "sun", "shadow", bundled_dem(), "--sun", "123,8", "-o", "x"}).err,
-              "relevo: error: plan: needs --tiles N\n");
+              "relevo: error: plan: needs --tiles\n");
 }
 
 class PlanOfAJob : public JobTest {};
