@@ -14,9 +14,9 @@
 namespace relevo::cli {
 namespace {
 
-/// Cells of means between a tile and its far ground, so that these are no wider than a degree. With
-/// 60 horizons are within 0.1 degrees (tests/light/test_nested.cpp).
-constexpr double kCellsAHalo = 60;
+/// Cells of means between a tile and its far ground. With 60 horizons are within 0.1 degrees, but
+/// for what sweeps are off anyway (tests/light/test_nested.cpp, tests/cli/test_sun_tiles.cpp).
+constexpr double kCellsAHalo = 100;
 constexpr const char* kMeansFile = "plan_means.tif";
 
 dem::Source open_quietly(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
