@@ -286,6 +286,8 @@ void add_verbs(CLI::App& app) {
     add_view(line);
     add_capture(line);
     add_run(line);
+    add_plan(line);
+    add_merge(line);
     add_film(line);
     add_compare(line);
     add_info(line);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
 #include "dem/gdal_support.h"
@@ -96,6 +97,7 @@ struct Posts::Impl {
     View view(const Window& window, std::vector<float>& buffer) const;
     void take(const Heightfield& in_memory);
     void take(const Source& on_demand, std::int64_t max_posts);
+    void take(const Source& on_demand, std::int64_t max_posts, const PostsFacts& facts);
 
   private:
     template <typename Body>
@@ -186,6 +188,24 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
     settle_holes();
     spare_blocks();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
+}
+
+/// Without reading any post.
+void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts, const PostsFacts& facts) {
+    refuse_endless_sides(on_demand);
+    source = &on_demand;
+    about = on_demand.description();
+    about.statistics = facts.statistics;
+    thinned_m = facts.thinned_m;
+    if (thinned_m.width() != thinned(grid().columns()) ||
+        thinned_m.height() != thinned(grid().rows()) || about.statistics.valid == 0)
+        bad_input(about.path + ": what is known of its posts is of another DEM");
+    // One block, as high as the highest post.
+    while (block < std::max(grid().columns(), grid().rows()))
+        block *= 2;
+    block_highest_m = Array2d<float>(1, 1, about.statistics.max_m);
+    spare_blocks();
+    tiles = std::make_unique<TileCache>(on_demand, max_posts);
 }
 
 /// @param slab_posts  that memory has room for
@@ -285,11 +305,15 @@ Posts::Posts(const Source& source, std::int64_t max_posts) : impl_(std::make_uni
     impl_->take(source, max_posts);
 }
 
-Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options) {
+Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options,
+                  const PostsFacts* facts) {
     auto impl = std::make_unique<Impl>();
     impl->own_source.emplace(Source::open(paths, options));
     const Grid& grid = impl->own_source->grid();
-    if (std::int64_t{grid.columns()} * grid.rows() > options.max_posts) {
+    const bool beyond_memory = std::int64_t{grid.columns()} * grid.rows() > options.max_posts;
+    if (beyond_memory && facts) {
+        impl->take(*impl->own_source, options.max_posts, *facts);
+    } else if (beyond_memory) {
         impl->take(*impl->own_source, options.max_posts);
         check_heights(impl->about, impl->spikes, options);
     } else {
@@ -299,6 +323,17 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
         impl->take(*impl->own_field);
     }
     return Posts(std::move(impl));
+}
+
+PostsFacts Posts::facts() const {
+    const Impl& impl = *impl_;
+    assert(!impl.unrolled);
+    PostsFacts facts{impl.about.statistics,
+                     Array2d<float>(impl.thinned(grid().columns()), impl.thinned(grid().rows()))};
+    for (int row = 0; row < facts.thinned_m.height(); ++row)
+        for (int column = 0; column < facts.thinned_m.width(); ++column)
+            facts.thinned_m.at(column, row) = impl.thinned_at(column, row);
+    return facts;
 }
 
 Posts Posts::unrolled(const Posts& posts, int first, int columns) {
