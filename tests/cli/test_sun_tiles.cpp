@@ -244,7 +244,7 @@ TEST(SunTiles, FarGroundAsMeansIsWithinItsBounds) {
     EXPECT_GT(horizons.mean, 0);
     for (const char* date : {"2026-06-21", "2026-12-21"})
         EXPECT_LE(apart(joined({"hours", "--date", date, "--step", "10"}, kUtc), date)
-                      .most_of_thousand(999),
+                      .most_of_thousand(995),
                   3 / 60.0);
     EXPECT_LE(apart(joined({"hours", "--from", "2026-11-01", "--to", "2027-02-08"}, kUtc), "days")
                   .most_of_thousand(999),
