@@ -113,7 +113,8 @@ TEST(TileIndexVerb, APictureIsOldOnceATileHasChanged) {
     const Country country;
     std::ofstream(country.dir / "job.json")
         << R"({"format": 1, "dem": {"files": ["index.gpkg"]}, "picture": {"size": [64, 48]}, )"
-           R"("time": {"at": "2026-06-21T10:00Z"}, "shots": [{}], "output": "p.png"})";
+           R"("time": {"at": "2026-06-21T10:00Z"}, "shots": [{}], "output": "p.png", )"
+           R"("camera": {"orbit": {"azimuth": 180, "elevation": 35}}})";
     const auto resumed = [&] {
         return relevo({"run", (country.dir / "job.json").string(), "--resume"});
     };
