@@ -48,14 +48,16 @@ int FarGround::means_for(const dem::Posts& posts, double halo_m, std::int64_t ma
 }
 
 FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptions& options,
-                     const dem::Posts& posts, double halo_m, const std::filesystem::path& folder)
+                     const dem::Posts& posts, double halo_m, const std::filesystem::path& folder,
+                     bool is_planned)
     : posts_(posts),
       source_(open_quietly(paths, options)),
       halo_m_(halo_m),
       means_(means_for(posts, halo_m, options.max_posts)) {
     const int columns = posts.grid().columns(), rows = posts.grid().rows();
     const dem::Window all{0, 0, columns, rows};
-    std::optional<Array2d<float>> kept = output::read_heights(folder / kMeansFile);
+    std::optional<Array2d<float>> kept;
+    if (is_planned) kept = output::read_heights(folder / kMeansFile);
     const int width = std::max(2, columns / means_), height = std::max(2, rows / means_);
     if (!kept || kept->width() != width || kept->height() != height)
         kept = source_.read(all, width, height);

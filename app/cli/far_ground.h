@@ -21,8 +21,10 @@ class FarGround {
     /// Takes the means that a plan has kept, or finds them.
     /// @param paths, options  of the DEM
     /// @param posts           all of it; outlives this
+    /// @param is_planned      the folder's plan is of this DEM, and so are the means that it keeps
     FarGround(const std::vector<std::string>& paths, const dem::LoadOptions& options,
-              const dem::Posts& posts, double halo_m, const std::filesystem::path& folder);
+              const dem::Posts& posts, double halo_m, const std::filesystem::path& folder,
+              bool is_planned);
 
     /// Keeps the means for other tasks.
     void write(const std::filesystem::path& folder) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
+#include "base/object_store.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/files_of.h"
@@ -107,9 +109,30 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
     tiles.check();
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
+    const std::filesystem::path folder = output.path;
+    if (object_store_of((folder / "plan.json").native()))
+        bad_usage(fmt::format("-o: {}: tiles are made in a folder of this machine, and read there",
+                              printable(output.path)));
     dem::add_named(dem.paths, files);
+    if (output.overwrite)
+        for (const std::filesystem::path& path : dem::files_of(dem.paths))
+            files.add_input(path, "a file that the DEM is read from,");
+    files.check_planned({folder / "plan.json", folder / "plan.tif", folder / "plan_means.tif"},
+                        "-o");
     return nullptr;
 }
+
+namespace {
+
+/// Of all files that the DEM is read from, also those that a name stands for.
+std::string stamp_of_dem(const std::vector<std::string>& paths) {
+    std::vector<std::string> files = paths;
+    for (const std::filesystem::path& file : dem::files_of(paths))
+        files.push_back(file.string());
+    return output::stamp_of(files);
+}
+
+}  // namespace
 
 RasterGround RasterArguments::load() const {
     if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
@@ -118,13 +141,14 @@ RasterGround RasterArguments::load() const {
     if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
     dem::LoadOptions options = dem.options();
     std::optional<dem::PostsFacts> facts;
+    bool is_planned = false;
     if (tiles.given()) {
         if (!dem.values.has("--memory"))
             options.max_posts = std::min(options.max_posts, posts_of_allocation());
         say_allocation(options.max_posts);
         const auto known = output.overwrite ? std::nullopt : output::read_plan(output.path);
-        if (known && known->stamp == output::stamp_of(dem.paths))
-            facts = output::read_posts_facts(output.path, *known);
+        is_planned = known && known->stamp == stamp_of_dem(dem.paths);
+        if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
     log::HeldNotices notices;
     dem::Posts posts = dem::Posts::load(dem.paths, options, facts ? &*facts : nullptr);
@@ -134,7 +158,7 @@ RasterGround RasterArguments::load() const {
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     const std::int64_t part_posts =
         posts.in_memory() ? 0 : options.max_posts / session::kPostsAPart;
-    return {std::move(posts), window, part_posts, options};
+    return {std::move(posts), window, part_posts, options, is_planned};
 }
 
 output::RasterMetadata RasterArguments::about(const RasterGround& ground, const dem::Window& raster,
@@ -183,7 +207,7 @@ void RasterRun::choose_tiles() {
     const Verb& verb = *arguments_.verb;
     if (arguments_.tiles.halo_km) {
         far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
-                     arguments_.output.path);
+                     arguments_.output.path, ground_.is_planned);
         wanted_.metadata.emplace_back("FAR_GROUND", far_->description());
         wanted_.halo_m = *arguments_.tiles.halo_km * 1000;
     }
@@ -198,7 +222,7 @@ void RasterRun::choose_tiles() {
                                      .dems = arguments_.dem.paths,
                                      .grid = posts.grid(),
                                      .statistics = posts.about().statistics,
-                                     .stamp = output::stamp_of(arguments_.dem.paths),
+                                     .stamp = stamp_of_dem(arguments_.dem.paths),
                                      .tiles = arguments_.tiles.of(posts.grid(), ground_.window)},
                     arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
     todo_ = folder_->todo();

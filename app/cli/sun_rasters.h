@@ -24,6 +24,7 @@ struct RasterGround {
     dem::Window window;           ///< that is asked for
     std::int64_t part_posts = 0;  ///< that are computed at once; 0: all of a raster
     dem::LoadOptions options{};   ///< with which it was read
+    bool is_planned = false;      ///< the folder's plan is of this DEM as it is
 
     dem::Window whole() const { return {0, 0, posts.grid().columns(), posts.grid().rows()}; }
     dem::Grid grid_of(const dem::Window& raster) const;

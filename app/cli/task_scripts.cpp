@@ -103,8 +103,8 @@ std::string slurm_script(const TaskList& tasks) {
         "tasks=${{tasks%%;*}}\n",
         kTries, kTries - 1);
     text += fmt::format(
-        "merge=$(sbatch --parsable \"--dependency=afterok:$tasks\" --kill-on-invalid-dep=yes "
-        "\"$@\" "
+        "merge=$(sbatch --parsable \"$@\" \"--dependency=afterok:$tasks\" "
+        "--kill-on-invalid-dep=yes "
         "<<'RELEVO_MERGE'\n"
         "#!/bin/sh\n"
         "#SBATCH --job-name=relevo-merge\n"

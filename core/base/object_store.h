@@ -13,7 +13,9 @@ class ObjectStore {
 
     /// Whether a name is that of an object. Asks no net.
     virtual bool has_name(std::string_view name) const = 0;
-    /// @throws Error (BadInput) where the store cannot be asked, or nothing can be written to it
+    /// @throws Error (BadInput) where nothing can be written to it
+    virtual void check_writable(const std::string& name) const = 0;
+    /// @throws Error (BadInput) where the store does not say
     virtual bool exists(const std::string& name) const = 0;
     /// Makes an object of a file from its beginning to its end, whole or not at all.
     /// @throws Error (Failed) `NAME: cannot be written, why`

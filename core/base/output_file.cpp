@@ -86,7 +86,6 @@ struct OutputFile::Impl {
     std::optional<PartialName> part;     ///< after `folder`, which it needs to its end
     Descriptor file;                     ///< where the result is gathered
     const ObjectStore* store = nullptr;  ///< that the path names an object of
-    bool object_existed = false;
 
     [[noreturn]] void refuse(const std::string& what) const {
         bad_input(fmt::format("{}: {}: {}", who, printable(path.string()), what));
@@ -171,8 +170,9 @@ void OutputFile::Impl::open_special(const struct stat& target) {
 
 /// What is on the way to the store lies in a folder of this machine.
 void OutputFile::Impl::open_object() {
-    object_existed = store->exists(path.native());
-    if (object_existed && !overwrite) refuse("exists; pass --overwrite to replace it");
+    store->check_writable(path.native());
+    if (!overwrite && store->exists(path.native()))
+        refuse("exists; pass --overwrite to replace it");
     std::error_code error;
     const std::filesystem::path scratch = std::filesystem::temp_directory_path(error);
     if (error) refuse(fmt::format("no folder for temporary files, {}", error.message()));
@@ -320,7 +320,7 @@ void OutputFile::finish_all(const std::vector<OutputFile*>& files) {
             }
     } catch (...) {
         for (const Impl* impl : named)
-            if (!impl->replaced_mode && !impl->object_existed) impl->take_back();
+            if (!impl->replaced_mode && !(impl->store && impl->overwrite)) impl->take_back();
         throw;
     }
 }
@@ -446,7 +446,7 @@ bool OutputFile::replaces(const std::filesystem::path& other) const {
 }
 
 bool OutputFile::replaces_any() const {
-    return impl_->replaced_mode.has_value() || impl_->object_existed;
+    return impl_->replaced_mode.has_value() || (impl_->store && impl_->overwrite);
 }
 
 bool OutputFile::same_as(const OutputFile& other) const {

@@ -52,6 +52,7 @@ RELEVO_GDAL(CSLFetchNameValue);
 RELEVO_GDAL(CSLSetNameValue);
 
 RELEVO_GDAL(VSIAllocFilesystemPluginCallbacksStruct);
+RELEVO_GDAL(VSICurlPartialClearCache);
 RELEVO_GDAL(VSIErrorReset);
 RELEVO_GDAL(VSIFCloseL);
 RELEVO_GDAL(VSIFOpenExL);

@@ -37,18 +37,29 @@ class GdalObjectStore : public ObjectStore {
         return begins_with_one_of(name, kStores) || begins_with_one_of(name, kReadOnly);
     }
 
-    bool exists(const std::string& name) const override {
+    void check_writable(const std::string& name) const override {
         if (begins_with_one_of(name, kReadOnly))
             bad_input(
                 fmt::format("{}: cannot be written, GDAL only reads there; a name of an object "
                             "store begins with /vsis3/, /vsigs/ or /vsiaz/",
                             printable(name)));
+    }
+
+    bool exists(const std::string& name) const override {
         prepare_gdal();
         allow_remote();
-        return remote_exists(name);
+        const Presence presence = remote_presence(name);
+        if (presence == Presence::Hidden)
+            bad_input(
+                fmt::format("{}: the store does not say whether it exists (HTTP response "
+                            "code: 403); pass --overwrite to replace what may be there",
+                            printable(name)));
+        return presence == Presence::There;
     }
 
     void put(int descriptor, const std::string& name) const override {
+        prepare_gdal();
+        allow_remote();
         const GdalMessages messages;
         VSILFILE* const object = VSIFOpenExL(name.c_str(), "wb", /*bSetError=*/1);
         std::string fault = object ? copy(descriptor, object) : "";

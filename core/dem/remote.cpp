@@ -45,13 +45,16 @@ bool is_remote(std::string_view name) {
     return false;
 }
 
-bool remote_exists(const std::string& name) {
+Presence remote_presence(const std::string& name) {
     VSIErrorReset();
     VSIStatBufL status{};
     if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_SET_ERROR_FLAG) == 0)
-        return true;
+        return Presence::There;
     const std::string reason = VSIGetLastErrorMsg();
-    if (reason.empty() || reason.ends_with(" 404") || reason.ends_with(" 403")) return false;
+    // GDAL remembers what is missing, and then gives no reason.
+    if (reason.empty() || reason.ends_with(" 404")) return Presence::Missing;
+    if (reason.ends_with(" 403")) return Presence::Hidden;
+    VSICurlPartialClearCache(name.c_str());
     refuse(name, fmt::format("cannot be asked for, {}; try again", reason));
 }
 
@@ -81,7 +84,7 @@ RemoteSiblings::RemoteSiblings(const std::string& path) {
     names_.push_back(path.substr(slash + 1));
     const std::string stem = path.substr(0, dot);
     for (const std::string& name : {path + ".ovr", path + ".msk", path + ".aux.xml", stem + ".tfw"})
-        if (remote_exists(name)) names_.push_back(name.substr(slash + 1));
+        if (remote_presence(name) == Presence::There) names_.push_back(name.substr(slash + 1));
     for (const std::string& name : names_)
         list_.push_back(name.c_str());
     list_.push_back(nullptr);

@@ -15,10 +15,10 @@ bool is_remote(std::string_view name);
 /// Whether a name begins as that of a GDAL file system over files of this machine: "/vsizip/...".
 bool is_local_file_system(std::string_view name);
 
-/// Whether a remote file is there. That one may not see it (403) counts as no: stores say so of
-/// what is not there to whoever may not list it.
+/// What a store says of a name. Hidden is 403: one may not see it, or not know that it is missing.
+enum class Presence { There, Missing, Hidden };
 /// @throws Error (BadInput) `NAME: cannot be asked for, why` where there is no answer
-bool remote_exists(const std::string& name);
+Presence remote_presence(const std::string& name);
 
 /// What GDAL has asked of stores and servers since the process began, and what came of it.
 struct NetworkUse {
@@ -31,7 +31,7 @@ std::optional<NetworkUse> network_use();
 /// far as they are there. GDAL asks for forty names by itself, each twice.
 class RemoteSiblings {
   public:
-    /// @throws Error (BadInput) as remote_exists(): without its mask a DEM would be another
+    /// @throws Error (BadInput) as remote_presence(): without its mask a DEM would be another
     explicit RemoteSiblings(const std::string& path);
     /// As GDALOpenEx takes them; null: GDAL is to look.
     const char* const* list() const;

@@ -193,6 +193,8 @@ TileIndex read_stac(const std::string& path, const std::string& text, const std:
     json root;
     try {
         root = json::parse(text, callback);
+    } catch (const json::out_of_range&) {
+        reader.tiles().fail("a number too large for a program, expected JSON of a STAC catalogue");
     } catch (const json::parse_error& error) {
         reader.tiles().fail(
             fmt::format("no well-formed JSON at byte {}; the file is damaged or "

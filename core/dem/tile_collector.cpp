@@ -110,8 +110,10 @@ int TileCollector::number_of(const geo::Crs& crs) {
 std::string TileCollector::unique_name(const std::string& location) {
     const std::string stem = stem_of(location);
     std::string name = stem;
-    for (std::size_t i = 2; !names_.insert(name).second; ++i)
-        name = fmt::format("{}_{}", stem, i);
+    // Of thousands of folders each may have a dem.tif.
+    for (std::size_t& next = next_number_.try_emplace(stem, 2).first->second;
+         !names_.insert(name).second; ++next)
+        name = fmt::format("{}_{}", stem, next);
     return name;
 }
 

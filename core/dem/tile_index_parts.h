@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -50,6 +51,7 @@ class TileCollector {
     std::optional<geo::Crs> own_crs_;
     std::map<std::string, geo::Crs> known_;
     std::unordered_set<std::string> names_;
+    std::unordered_map<std::string, std::size_t> next_number_;  // of a name that is taken
     std::unordered_set<std::string> locations_;
     std::size_t row_ = 0;
 };

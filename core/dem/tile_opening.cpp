@@ -1,6 +1,8 @@
 #include "dem/tile_opening.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -76,10 +78,26 @@ void refuse_elsewhere(const TileIndex& index, const IndexedTile& tile, const Pie
 }  // namespace
 
 bool is_there(const std::string& location) {
-    if (is_remote(location)) return !location.starts_with("/vsi") || remote_exists(location);
+    if (is_remote(location)) {
+        if (!location.starts_with("/vsi")) return true;
+        const Presence presence = remote_presence(location);
+        if (presence == Presence::Hidden)
+            refuse(printable(location),
+                   "may not be read (HTTP response code: 403), and may be missing; try again with "
+                   "the right to list or read it");
+        return presence == Presence::There;
+    }
     const bool may_be_gdals =
         location.starts_with("/vsi") || location.find(':') != std::string::npos;
     if (may_be_gdals && !location.starts_with("/vsi")) return true;
+    if (!location.starts_with("/vsi")) {
+        std::error_code error;
+        const std::filesystem::file_status found = std::filesystem::status(location, error);
+        if (found.type() == std::filesystem::file_type::none)
+            refuse(printable(location),
+                   fmt::format("cannot be asked for, {}; try again", error.message()));
+        return std::filesystem::exists(found);
+    }
     VSIStatBufL status{};
     return VSIStatL(location.c_str(), &status) == 0;
 }
@@ -87,7 +105,9 @@ bool is_there(const std::string& location) {
 bool is_no_fault_of_a_file(const Error& error) {
     const std::string_view text = error.what();
     const auto has = [&](std::string_view words) { return text.find(words) != text.npos; };
-    return has("ulimit -n") || has("--memory") || has("try again");  // as remedy_for() says
+    // As remedy_for() says, and what is wrong with the disk or with the rights to read it.
+    return has("ulimit -n") || has("--memory") || has("try again") || has(std::strerror(EIO)) ||
+           has(std::strerror(ESTALE)) || has(std::strerror(EACCES));
 }
 
 bool is_named_index(const std::string& name) {

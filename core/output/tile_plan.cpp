@@ -140,7 +140,7 @@ std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window
             clip.crs = index.crs[std::size_t(tile.crs)];
         const std::optional<dem::Window> posts = window_within(grid, clip, window);
         if (!posts) continue;
-        if (tile.name + ".tif" == kPostsFile)
+        if (tile.name + ".tif" == kPostsFile || tile.name == "plan_means")
             bad_input(
                 fmt::format("--tiles: {}: a tile has the name \"{}\", which is taken; rename "
                             "it",

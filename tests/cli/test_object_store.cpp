@@ -104,6 +104,28 @@ TEST_F(ObjectStore, AnObjectIsReplacedWhenAskedFor) {
     EXPECT_GT(store.objects().at("/bucket/shadow.tif").size(), 1000u);
 }
 
+// Stores say 403 of what is not there to whoever may not list it: of what is there, too.
+TEST_F(ObjectStore, NothingIsReplacedUnaskedWhereTheStoreDoesNotSayWhatExists) {
+    ObjectStoreServer store([](const Request& request, int) {
+        return request.method == "PUT" ? Fault{} : ObjectStoreServer::status(403);
+    });
+    store.put("/bucket/shadow.tif", "old");
+    const Result refused = shadow(store, bundled_dem(), kResult);
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_THAT(refused.err, HasSubstr(kResult + ": the store does not say whether it exists"));
+    EXPECT_EQ(store.objects().at("/bucket/shadow.tif"), "old");
+    EXPECT_EQ(shadow(store, bundled_dem(), kResult, {"--overwrite"}).status, 0);
+    EXPECT_NE(store.objects().at("/bucket/shadow.tif"), "old");
+}
+
+TEST_F(ObjectStore, TilesAreMadeOnThisMachine) {
+    const ObjectStoreServer store;
+    const Result refused = shadow(store, bundled_dem(), "/vsis3/bucket/tiles", {"--tiles", "200"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, HasSubstr("-o: /vsis3/bucket/tiles: tiles are made in a folder of "
+                                       "this machine"));
+}
+
 TEST_F(ObjectStore, TheDemIsNotReplaced) {
     ObjectStoreServer store;
     store.put("/bucket/dem.tif", content_);

@@ -217,6 +217,19 @@ struct Off {
     }
 };
 
+// The DEM is a folder of files that are called as the tiles are.
+TEST(SunTiles, TheDemsOwnFilesAreNotReplaced) {
+    const std::string folder = (scratch_dir() / "dem").string();
+    fs::create_directories(folder);
+    const std::string dem = folder + "/r0001_c0001.tif";
+    fs::copy_file(bundled_dem(), dem);
+    const Result run = relevo({"-q", "sun", "shadow", "--sun", "123,8", folder, "--tiles", "1000",
+                               "-o", folder, "--overwrite"});
+    EXPECT_EQ(run.status, 3) << run.err;
+    EXPECT_NE(run.err.find("would be overwritten"), std::string::npos) << run.err;
+    EXPECT_EQ(fs::file_size(dem), fs::file_size(bundled_dem()));
+}
+
 TEST(SunTiles, FarGroundAsMeansIsWithinItsBounds) {
     const std::string dem = far_hills();
     const fs::path where = scratch_dir("far");

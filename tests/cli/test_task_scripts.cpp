@@ -97,7 +97,7 @@ TEST(TaskScripts, TheScriptForSlurmSubmitsTasksAndTheirMerge) {
     EXPECT_EQ(run.out, "tasks 40 merge 41\n");
     EXPECT_EQ(read_text(odd.where / "options0", "test"), "--parsable\n--partition=a b\n");
     EXPECT_EQ(read_text(odd.where / "options1", "test"),
-              "--parsable\n--dependency=afterok:40\n--kill-on-invalid-dep=yes\n--partition=a b\n");
+              "--parsable\n--partition=a b\n--dependency=afterok:40\n--kill-on-invalid-dep=yes\n");
     const std::string job = read_text(odd.where / "job0", "test");
     for (const char* line : {"#SBATCH --array=1-3\n", "#SBATCH --cpus-per-task=2\n",
                              "#SBATCH --mem=1250M\n", "#SBATCH --time=35\n"})
