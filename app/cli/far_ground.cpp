@@ -54,6 +54,8 @@ FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptio
       source_(open_quietly(paths, options)),
       halo_m_(halo_m),
       means_(means_for(posts, halo_m, options.max_posts)) {
+    const dem::TileReport& tiles = posts.about().tiles;
+    source_.allow_voids(tiles.missing.count + tiles.broken.count);
     const int columns = posts.grid().columns(), rows = posts.grid().rows();
     const dem::Window all{0, 0, columns, rows};
     std::optional<Array2d<float>> kept;

@@ -51,7 +51,8 @@ TaskList tasks_of(const PlanArguments& arguments, const PlannedWork& work) {
                   .tasks = 1,
                   .threads = arguments.threads > 0 ? arguments.threads : work.threads,
                   .memory_mib = work.memory_mib,
-                  .task_s = 0};
+                  .task_s = 0,
+                  .rasters = work.rasters};
     const double all_s = work.computing_s * work.threads / list.threads;
     const double wanted = std::floor(all_s / (60.0 * arguments.task_minutes));
     const double most =
@@ -189,6 +190,7 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
                            .merge_words = {"merge", "--output=" + (folder / "mosaic.vrt").string(),
                                            "--stac=" + (folder / "mosaic.json").string(),
                                            "--overwrite", "--", plan.folder},
+                           .rasters = plan.tiles * plan.bands,
                            .overwrite = plan.overwrite});
 }
 

@@ -35,7 +35,8 @@ struct PlannedWork {
     int threads = 1;
     double memory_mib = 0;
     std::vector<std::string> words, merge_words;
-    bool overwrite = false;  ///< scripts
+    std::size_t rasters = 0;  ///< that are merged: tiles times bands
+    bool overwrite = false;   ///< scripts
 };
 
 /// Prints the tasks, and writes the scripts that are asked for.
@@ -45,7 +46,7 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work);
 /// A raster in tiles that is planned.
 struct RasterPlan {
     RasterEstimate estimate;
-    std::size_t tiles = 0, there = 0;
+    std::size_t tiles = 0, there = 0, bands = 1;
     std::string kind;   ///< of the tiles: TileArguments::description()
     double halo_m = 0;  ///< how far off ground can change a figure
     std::string folder;

@@ -146,7 +146,7 @@ RasterGround RasterArguments::load() const {
         if (!dem.values.has("--memory"))
             options.max_posts = std::min(options.max_posts, posts_of_allocation());
         say_allocation(options.max_posts);
-        const auto known = output.overwrite ? std::nullopt : output::read_plan(output.path);
+        const auto known = output::read_plan(output.path);
         is_planned = known && known->stamp == stamp_of_dem(dem.paths);
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
@@ -222,6 +222,8 @@ void RasterRun::choose_tiles() {
                                      .dems = arguments_.dem.paths,
                                      .grid = posts.grid(),
                                      .statistics = posts.about().statistics,
+                                     .content = posts.content(),
+                                     .dem_tiles = posts.about().tiles,
                                      .stamp = stamp_of_dem(arguments_.dem.paths),
                                      .tiles = arguments_.tiles.of(posts.grid(), ground_.window)},
                     arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
@@ -294,7 +296,13 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
         metadata.emplace_back(output::kCommandKey, folder_->plan().command);
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
     }
-    writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
+    try {
+        writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
+    } catch (const Error&) {
+        // A task that was requeued, and the one before it, which still runs.
+        if (!folder_ || !arguments_.tiles.resume || !folder_->is_whole(tile)) throw;
+        log::info(fmt::format("{}: another process has made it meanwhile", printable(tile.name)));
+    }
     writer_.reset();
 }
 
@@ -369,6 +377,7 @@ void RasterRun::tell_plan(const RasterEstimate& estimate) const {
     RasterPlan plan{.estimate = estimate,
                     .tiles = folder_->plan().tiles.size(),
                     .there = folder_->there(),
+                    .bands = wanted_.bands.size(),
                     .kind = arguments_.tiles.description(),
                     .halo_m = wanted_.halo_m,
                     .folder = arguments_.output.path,

@@ -97,7 +97,7 @@ class RasterRun {
     /// Whether all is there already, which has been said then.
     bool is_done() const { return window_.is_empty(); }
 
-    /// Terrain beyond the DEM that could change figures is told of, and written into the files.
+    /// Warns of terrain beyond the DEM that could change figures, and writes it into the metadata.
     /// @param look   for it, around a raster; a dry run does not
     /// @param would  as light::Beyond::text()
     void warn_of(std::function<std::optional<light::Beyond>(const dem::Window&)> look,

@@ -77,7 +77,8 @@ std::string slurm_script(const TaskList& tasks) {
         "#!/bin/sh\n"
         "# Written by relevo plan. Submits {0} tasks, and a job that merges what they made:\n"
         "#   sh THIS_FILE [options of sbatch]\n"
-        "# After a failure, once its cause is removed: the same again; what is there is kept.\n"
+        "# After a failure remove its cause and run this script again: tiles that are there are "
+        "kept.\n"
         "set -eu\n"
         "tasks=$(sbatch --parsable \"$@\" <<'RELEVO_TASK'\n"
         "#!/bin/sh\n"
@@ -109,14 +110,15 @@ std::string slurm_script(const TaskList& tasks) {
         "#!/bin/sh\n"
         "#SBATCH --job-name=relevo-merge\n"
         "#SBATCH --cpus-per-task=1\n"
-        "#SBATCH --mem=1024M\n"
-        "#SBATCH --time=60\n"
+        "#SBATCH --mem={}M\n"
+        "#SBATCH --time={}\n"
         "{} || exit 1\n"
         "exec {}\n"
         "RELEVO_MERGE\n"
         ")\n"
         "echo \"tasks $tasks merge ${{merge%%;*}}\"\n",
-        go_there(tasks), shell_line(tasks.program, tasks.merge));
+        1024 + tasks.rasters / 10, 60 + tasks.rasters / 1000, go_there(tasks),
+        shell_line(tasks.program, tasks.merge));
     return text;
 }
 

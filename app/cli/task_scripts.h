@@ -16,7 +16,8 @@ struct TaskList {
     std::size_t tasks = 1;
     int threads = 1;  ///< of a task
     double memory_mib = 0;
-    double task_s = 0;  ///< of a task
+    double task_s = 0;        ///< of a task
+    std::size_t rasters = 0;  ///< tiles that are merged, times their bands
 };
 
 /// A word as a POSIX shell reads it, whatever is in it. A line break is ${nl}, so that the word
@@ -29,7 +30,7 @@ std::string shell_line(const std::string& program, const std::vector<std::string
 
 /// A shell script that submits an array of tasks, and a job that merges once all have succeeded.
 /// Its own arguments go to sbatch: `sh FILE --partition=long`. A task that fails is tried three
-/// times, one whose node fails is requeued; both keep what is there.
+/// times. One whose node fails is requeued. Each time the tiles that are there are kept.
 std::string slurm_script(const TaskList& tasks);
 
 /// A task a line: `parallel < FILE`.

@@ -51,9 +51,10 @@ std::string digest_of(const output::TilePlan& plan) {
     std::string text = plan.digest;
     for (const double number : plan.grid.affine().geotransform())
         text += fmt::format("\n{}", number);
-    return sha256_of_text(text + fmt::format("\n{} {}\n{}\n{} {} {} {}", plan.grid.columns(),
-                                             plan.grid.rows(), plan.grid.crs().text(), found.min_m,
-                                             found.max_m, found.valid, found.holes));
+    return sha256_of_text(text + fmt::format("\n{} {}\n{}\n{} {} {} {} {:016x}",
+                                             plan.grid.columns(), plan.grid.rows(),
+                                             plan.grid.crs().text(), found.min_m, found.max_m,
+                                             found.valid, found.holes, plan.content));
 }
 
 std::string name_in(const fs::path& folder, const std::string& name) {
@@ -184,6 +185,10 @@ void TileFolder::write_plan(const dem::Posts& posts, const FarGround* far) const
     if (!posts.in_memory()) output::write_posts_facts(folder_, posts);
     if (far) far->write(folder_);
     output::write_plan(folder_, plan_);
+}
+
+bool TileFolder::is_whole(const output::PlannedTile& tile) const {
+    return output::tile_on_disk(folder_, plan_, tile).state == output::TileOnDisk::State::Whole;
 }
 
 OutputFile TileFolder::open(const output::PlannedTile& tile, FilesInUse& files) const {

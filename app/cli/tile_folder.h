@@ -48,7 +48,7 @@ class TileFolder {
   public:
     /// Reads the folder's plan, or takes this one, and looks for tiles that are there already.
     /// @param plan      of this run, its digest of the meaning alone; gets that of the DEM, too
-    /// @param is_plan   nothing is made: what is there stays
+    /// @param is_plan   tiles are counted and not made, those that are there stay
     /// @throws Error (Usage) for a --shard that is none, (BadInput) where the folder has a plan or
     ///     tiles of something else, and tiles without --resume or --overwrite
     TileFolder(std::filesystem::path folder, output::TilePlan plan, const TileArguments& arguments,
@@ -60,6 +60,9 @@ class TileFolder {
     void write_plan(const dem::Posts& posts, const FarGround* far) const;
     /// Opens the file of a tile.
     OutputFile open(const output::PlannedTile& tile, FilesInUse& files) const;
+
+    /// Whether a tile is there and whole by now, made by another process.
+    bool is_whole(const output::PlannedTile& tile) const;
 
     const std::filesystem::path& path() const { return folder_; }
     const output::TilePlan& plan() const { return plan_; }

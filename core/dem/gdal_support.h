@@ -1,10 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace relevo::dem {
+
+/// An open GDALDatasetH, which is a void*; serves one thread at a time.
+struct CloseDataset {
+    void operator()(void* dataset) const;
+};
+using Dataset = std::unique_ptr<void, CloseDataset>;
 
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
 /// keeps its cache of blocks to 256 MiB (unless GDAL_CACHEMAX is set), and keeps GDAL from writing

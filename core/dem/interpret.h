@@ -3,18 +3,13 @@
 #include <memory>
 #include <string>
 
+#include "dem/gdal_support.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 
 // What a file means: the questions that Source::open() asks GDAL. Inside of the layer only.
 
 namespace relevo::dem {
-
-/// An open GDALDatasetH, which is a void*; serves one thread at a time.
-struct CloseDataset {
-    void operator()(void* dataset) const;
-};
-using Dataset = std::unique_ptr<void, CloseDataset>;
 
 /// Notes a choice that the file did not make itself, and that is a guess.
 void guess(Description& about, const std::string& sentence);

@@ -35,6 +35,7 @@ std::string stored_text(const Description& about, double stored) {
 /// Says what the tiles of indexes turned out to be while all heights were read.
 void report_tiles(const Source& source, Description& about) {
     about.tiles = source.tiles();
+    source.allow_voids(about.tiles.missing.count + about.tiles.broken.count);
     const TileReport& tiles = about.tiles;
     const auto warn = [&](const NamedTiles& some, const char* what) {
         if (some.count == 0) return;

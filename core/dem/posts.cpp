@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
+#include "dem/content_sum.h"
 #include "dem/gdal_support.h"
 #include "dem/load.h"
 #include "dem/survey.h"
@@ -77,8 +78,9 @@ struct Posts::Impl {
     int block = kLeastBlock;
     Array2d<float> block_highest_m;
     std::unique_ptr<TileCache> tiles;
-    Array2d<float> thinned_m;  // of posts that are not in memory
-    Spikes spikes;             // of such posts, where they matter
+    Array2d<float> thinned_m;   // of posts that are not in memory
+    Spikes spikes;              // of such posts, where they matter
+    std::uint64_t content = 0;  // of such posts
     std::once_flag outside_once;
     Array2d<std::uint8_t> outside;  // of thinned posts, made where it is asked for; empty: none is
 
@@ -103,7 +105,7 @@ struct Posts::Impl {
     template <typename Body>
     void for_blocks(const Window& slab, const Body& body);
     void find_highest(const View& view, const Window& slab);
-    void go_through(std::int64_t slab_posts);
+    std::optional<Collar> go_through(std::int64_t slab_posts);
     template <typename HeightAt>
     void keep_thinned(const Window& slab, const HeightAt& height_at);
     void settle_holes();
@@ -179,12 +181,21 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
     };
     while (blocks() > max_posts / 4)
         block *= 2;
-    block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
-                                     blocks_of(grid().rows(), block), -kInfinity);
-    const int step = thinning();
-    thinned_m = Array2d<float>((grid().columns() - 1) / step + 1, (grid().rows() - 1) / step + 1,
-                               std::numeric_limits<float>::quiet_NaN());
-    go_through(std::min(max_posts / 2, kMaxSlab));
+    std::optional<Collar> collar;
+    // Once more where a tile has broken on the way, of which a part was read.
+    std::int64_t before = 0;
+    do {
+        before = source->broken_while_read();
+        about.statistics = {};
+        spikes = {};
+        content = 0;
+        block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
+                                         blocks_of(grid().rows(), block), -kInfinity);
+        thinned_m = Array2d<float>(thinned(grid().columns()), thinned(grid().rows()),
+                                   std::numeric_limits<float>::quiet_NaN());
+        collar = go_through(std::min(max_posts / 2, kMaxSlab));
+    } while (source->broken_while_read() != before);
+    report_heights(*source, about, collar);
     settle_holes();
     spare_blocks();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
@@ -196,6 +207,9 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts, const Po
     source = &on_demand;
     about = on_demand.description();
     about.statistics = facts.statistics;
+    about.tiles = facts.tiles;
+    on_demand.allow_voids(facts.tiles.missing.count + facts.tiles.broken.count);
+    content = facts.content;
     thinned_m = facts.thinned_m;
     if (thinned_m.width() != thinned(grid().columns()) ||
         thinned_m.height() != thinned(grid().rows()) || about.statistics.valid == 0)
@@ -209,7 +223,7 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts, const Po
 }
 
 /// @param slab_posts  that memory has room for
-void Posts::Impl::go_through(std::int64_t slab_posts) {
+std::optional<Collar> Posts::Impl::go_through(std::int64_t slab_posts) {
     const int columns = grid().columns(), rows = grid().rows();
     // Whole blocks or, where one is more than there is room for, parts of them.
     int side = std::min(block, kSlab_rows);
@@ -246,6 +260,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 keep_thinned(slab, [&](int, int) { return blank.height_m; });
                 about.statistics +=
                     statistics(blank.height_m, std::int64_t{own_columns} * own_rows);
+                content += content_of(blank.height_m, {column, row, own_columns, own_rows});
             } else {
                 const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
                 const View read{height_m.data(), height_m.width(), slab.column, slab.row};
@@ -253,6 +268,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 keep_thinned(slab, [&](int c, int r) { return *read.at(c, r); });
                 if (collar_steps) collar_steps->add(height_m, {0, 0, slab.columns, slab.rows});
                 about.statistics += statistics(height_m, {0, 0, own_columns, own_rows});
+                content += content_of(read, {column, row, own_columns, own_rows});
                 // Those at the seams of slabs are too few to matter.
                 if (look_for_spikes)
                     spikes += find_spikes(height_m, grid().post_spacing_m(),
@@ -263,7 +279,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
         }
         row += count;
     }
-    report_heights(*source, about, collar_steps ? collar_steps->collar() : std::nullopt);
+    return collar_steps ? collar_steps->collar() : std::nullopt;
 }
 
 Posts::View Posts::Impl::Unrolled::view(const Window& window, std::vector<float>& buffer) const {
@@ -329,11 +345,20 @@ PostsFacts Posts::facts() const {
     const Impl& impl = *impl_;
     assert(!impl.unrolled);
     PostsFacts facts{impl.about.statistics,
-                     Array2d<float>(impl.thinned(grid().columns()), impl.thinned(grid().rows()))};
+                     Array2d<float>(impl.thinned(grid().columns()), impl.thinned(grid().rows())),
+                     content(), impl.about.tiles};
     for (int row = 0; row < facts.thinned_m.height(); ++row)
         for (int column = 0; column < facts.thinned_m.width(); ++column)
             facts.thinned_m.at(column, row) = impl.thinned_at(column, row);
     return facts;
+}
+
+std::uint64_t Posts::content() const {
+    const Impl& impl = *impl_;
+    assert(!impl.unrolled);
+    if (!impl.field) return impl.content;
+    const Array2d<float>& all = impl.field->height_m;
+    return content_of({all.data(), all.width(), 0, 0}, {0, 0, all.width(), all.height()});
 }
 
 Posts Posts::unrolled(const Posts& posts, int first, int columns) {

@@ -17,7 +17,9 @@ namespace relevo::dem {
 /// What is known of a DEM once all of its posts have been read.
 struct PostsFacts {
     Statistics statistics;
-    Array2d<float> thinned_m;  ///< Posts::thinned_m(), every Posts::thinning()-th post each way
+    Array2d<float> thinned_m;   ///< Posts::thinned_m(), every Posts::thinning()-th post each way
+    std::uint64_t content = 0;  ///< Posts::content()
+    TileReport tiles;
 };
 
 /// Every post of a DEM, whether memory holds them all or not, for figures that means would falsify.
@@ -50,6 +52,8 @@ class Posts {
                       const PostsFacts* facts = nullptr);
     /// Of posts that are not unrolled().
     PostsFacts facts() const;
+    /// A hash of all heights and their places (ContentSum). Of posts that are not unrolled().
+    std::uint64_t content() const;
 
     /// The posts of a grid that goes round the Earth, starting at another column and repeated as
     /// often as wanted: column 0 is `first` of the others.

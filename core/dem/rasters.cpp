@@ -90,7 +90,7 @@ const Piece& Rasters::sample(int number) const {
 
 bool Rasters::is_void(int number) const {
     const State state = at(number).state.load(std::memory_order_acquire);
-    return state == State::Missing || (state == State::Broken && !at(number).piece);
+    return state == State::Missing || state == State::Broken;
 }
 
 const Piece* Rasters::open(int number) const {
@@ -99,16 +99,13 @@ const Piece* Rasters::open(int number) const {
         const std::lock_guard lock(opening_[static_cast<std::size_t>(number) % opening_.size()]);
         if (slot.state == State::Unopened) open_tile(number, slot);
     }
-    return slot.piece.get();
+    return if_open(number);
 }
 
 void Rasters::open_tile(int number, Slot& slot) const {
     const RasterEntry& entry = entries_[static_cast<std::size_t>(number)];
     const TileIndex& index = indexes_[static_cast<std::size_t>(entry.index)].index;
-    if (!is_there(tile(number).location)) {
-        slot.state = State::Missing;
-        return;
-    }
+    if (!is_there(tile(number).location)) return note_missing(number, slot);
     try {
         Dataset dataset;
         auto piece = std::make_unique<Piece>(
@@ -124,15 +121,42 @@ void Rasters::open_tile(int number, Slot& slot) const {
         }
         slot.state.store(State::Open, std::memory_order_release);
     } catch (const Error& error) {
-        note_broken(number, error);
+        note_broken(number, error, /*was_open=*/false);
     }
 }
 
-void Rasters::note_broken(int number, const Error& error) const {
-    if (is_no_fault_of_a_file(error)) throw error;
-    at(number).state.store(State::Broken, std::memory_order_release);
+void Rasters::note_missing(int number, Slot& slot) const {
     const std::lock_guard lock(noting_);
+    check_allowed(number, "is missing");
+    ++voids_;
+    slot.state.store(State::Missing, std::memory_order_release);
+}
+
+void Rasters::note_broken(int number, const Error& error, bool was_open) const {
+    if (is_no_fault_of_a_file(error)) throw error;
+    const std::lock_guard lock(noting_);
+    if (broken_.contains(number)) return;
+    check_allowed(number, error.what());
+    ++voids_;
     broken_.emplace(number, error.what());
+    at(number).state.store(State::Broken, std::memory_order_release);
+    if (was_open) ++broken_while_read_;
+}
+
+/// With the lock of what is noted.
+void Rasters::check_allowed(int number, const std::string& why) const {
+    if (most_voids_ && voids_ >= *most_voids_)
+        refuse(
+            printable(
+                indexes_[static_cast<std::size_t>(entries_[static_cast<std::size_t>(number)].index)]
+                    .index.path),
+            fmt::format("the tile {} can no longer be read, {}; put it back and try again",
+                        printable(tile(number).name), why));
+}
+
+void Rasters::allow_voids(std::int64_t tiles) const {
+    const std::lock_guard lock(noting_);
+    most_voids_ = tiles;
 }
 
 std::string Rasters::difference(int number, const Piece& piece) const {
@@ -150,10 +174,9 @@ std::string Rasters::difference(int number, const Piece& piece) const {
                                     std::abs(piece.grid.affine().x_column),
                                     std::abs(piece.grid.affine().y_row)));
     const Window& reach = at(number).reach;
-    const Window grown{reach.column - 1, reach.row - 1, reach.columns + 2, reach.rows + 2};
     if (common(piece.place, reach).is_empty())
         words.emplace_back("lies elsewhere than the index says, so it is a void");
-    else if (common(piece.place, grown) != piece.place)
+    else if (!piece.resampling && common(piece.place, reach) != piece.place)
         words.emplace_back("reaches beyond its outline in the index, where it is not read");
     return fmt::format("{}", fmt::join(words, ", "));
 }

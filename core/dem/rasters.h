@@ -43,15 +43,19 @@ class Rasters {
     /// Opens a raster if it is not open yet; null for a tile that is missing or broken.
     const Piece* open(int number) const;
     /// The piece of a raster if it is open; null for a void, or for one that is not yet known.
-    const Piece* if_open(int number) const { return at(number).piece.get(); }
+    const Piece* if_open(int number) const {
+        const Slot& slot = at(number);
+        return slot.state.load(std::memory_order_acquire) == State::Open ? slot.piece.get()
+                                                                         : nullptr;
+    }
     /// A tile that is known to have no heights.
     bool is_void(int number) const;
     /// Of a tile that is not open: the piece that it is expected to be like.
     const Piece& sample(int number) const;
 
     /// Calls body(dataset) with a handle of a raster. Where the body throws for a tile of an index,
-    /// that tile is noted as broken, and this returns false.
-    /// @throws Error (BadInput) for files of their own
+    /// that tile is broken from then on, and this returns false.
+    /// @throws Error (BadInput) for files of their own, and as allow_voids() has it
     template <typename Body>
     bool read(int number, const Piece& piece, const Body& body) const {
         if (entries_[static_cast<std::size_t>(number)].index < 0) {
@@ -62,7 +66,7 @@ class Rasters {
             pool_.borrow(piece, body);
             return true;
         } catch (const Error& error) {
-            note_broken(number, error);
+            note_broken(number, error, /*was_open=*/true);
             return false;
         }
     }
@@ -70,7 +74,14 @@ class Rasters {
     /// Notes by how much a tile of an index differs from what it lies over [m].
     void note_step(int number, float most_m) const;
 
-    /// What the tiles of indexes turned out to be, as far as they have been read.
+    /// How many tiles have broken while they were read: what was read before is then of no use.
+    std::int64_t broken_while_read() const { return broken_while_read_; }
+
+    /// From now on no more tiles than these may be missing or broken: what is known of the DEM
+    /// would be wrong. One that is more is an error.
+    void allow_voids(std::int64_t tiles) const;
+
+    /// What is known of the tiles of indexes, as far as they have been read.
     TileReport report() const;
 
   private:
@@ -83,7 +94,9 @@ class Rasters {
     Slot& at(int number) const { return slots_[static_cast<std::size_t>(number)]; }
     const IndexedTile& tile(int number) const;
     void open_tile(int number, Slot& slot) const;
-    void note_broken(int number, const Error& error) const;
+    void note_missing(int number, Slot& slot) const;
+    void note_broken(int number, const Error& error, bool was_open) const;
+    void check_allowed(int number, const std::string& why) const;
     std::string difference(int number, const Piece& piece) const;
 
     std::vector<RasterEntry> entries_;
@@ -98,6 +111,9 @@ class Rasters {
     mutable std::mutex noting_;
     mutable std::map<int, std::string> broken_, differing_;  // by number, why
     mutable std::map<int, float> steps_m_;                   // by number
+    mutable std::int64_t voids_ = 0;
+    mutable std::optional<std::int64_t> most_voids_;
+    mutable std::atomic<std::int64_t> broken_while_read_ = 0;
 };
 
 }  // namespace relevo::dem

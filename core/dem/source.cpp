@@ -67,9 +67,14 @@ Array2d<float> Source::read(const Window& window, int columns, int rows) const {
            window.column + window.columns <= grid().columns() &&
            window.row + window.rows <= grid().rows());
     assert(columns > 0 && rows > 0 && columns <= window.columns && rows <= window.rows);
-    Array2d<float> height_m = columns == window.columns && rows == window.rows
-                                  ? impl_->read_stored(window)
-                                  : impl_->read_means(window, columns, rows);
+    const bool all = columns == window.columns && rows == window.rows;
+    Array2d<float> height_m;
+    // A tile that breaks is a void, whichever part of it came first.
+    std::int64_t before = 0;
+    do {
+        before = broken_while_read();
+        height_m = all ? impl_->read_stored(window) : impl_->read_means(window, columns, rows);
+    } while (broken_while_read() != before);
     if (impl_->leaves_earth) cut_to_earth(grid().part(window, columns, rows), height_m);
     return height_m;
 }
@@ -140,6 +145,14 @@ double Source::stored(int column, int row) const {
 
 TileReport Source::tiles() const {
     return impl_->rasters->report();
+}
+
+std::int64_t Source::broken_while_read() const {
+    return impl_->rasters->broken_while_read();
+}
+
+void Source::allow_voids(std::int64_t tiles) const {
+    impl_->rasters->allow_voids(tiles);
 }
 
 Array2d<float> Source::read() const {

@@ -103,8 +103,13 @@ class Source {
     };
     Blank blank(const Window& window) const;
 
-    /// What the tiles of indexes turned out to be, as far as they have been read.
+    /// What is known of the tiles of indexes, as far as they have been read.
     TileReport tiles() const;
+    /// How many of them have broken while they were read.
+    std::int64_t broken_while_read() const;
+    /// From now on no more tiles than these may be missing or broken; one that is more is an error
+    /// (BadInput) of what reads it, because what is known of the DEM would be wrong.
+    void allow_voids(std::int64_t tiles) const;
 
     /// Rows that are read best at once, those of the files' blocks; of many files, of a file.
     int block_rows() const;

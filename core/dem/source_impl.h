@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "dem/cell_parts.h"
 #include "dem/rasters.h"
 #include "dem/source.h"
 
@@ -35,6 +36,8 @@ struct Source::Impl {
     struct Span;
     struct Sums;
     static Span parts_over(int first, int end, double each, const Span& all);
+    static Parts parts_of_line(double begin, double each, const Span& parts, double per, int first,
+                               int count);
     void add_band(const Means& means, Sums& sums) const;
     void add_means(int number, const Means& means, const Span& columns, const Span& rows,
                    Sums& sums) const;

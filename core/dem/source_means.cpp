@@ -13,7 +13,7 @@ namespace relevo::dem {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-/// Of more than these, some seconds of reading, progress is told.
+/// Reading more posts takes seconds, and shows its progress.
 constexpr double kManyPosts = 1 << 28;
 
 }  // namespace
@@ -68,6 +68,20 @@ struct Source::Impl::Sums {
     }
 };
 
+/// The parts of a line with cells of a piece, of its posts [first, first + count) alone.
+/// @param begin  of the line, in posts of the piece
+/// @param per    cells in a post
+Parts Source::Impl::parts_of_line(double begin, double each, const Span& parts, double per,
+                                  int first, int count) {
+    const int from = static_cast<int>(std::lround(first * per));
+    const int to = static_cast<int>(std::lround((first + count) * per));
+    if (to <= from) return {};
+    Parts found = parts_within(begin - from / per, each, parts.begin, parts.end, per, to - from);
+    for (Part& part : found.parts)
+        part.first += static_cast<std::size_t>(from);
+    return found;
+}
+
 /// Adds what a raster has of some parts.
 // In one piece: one pass over the cells, whose buffers all of its loops share.
 void Source::Impl::add_means(int number, const Means& means, const Span& columns, const Span& rows,
@@ -81,10 +95,11 @@ void Source::Impl::add_means(int number, const Means& means, const Span& columns
     // Cells of the level in one post.
     const double per_column = level.columns / double(piece.place.columns);
     const double per_row = level.rows / double(piece.place.rows);
-    const auto across = parts_within(window.column - piece.place.column, columns_each,
-                                     columns.begin, columns.end, per_column, level.columns);
-    const auto down = parts_within(window.row - piece.place.row, rows_each, rows.begin, rows.end,
-                                   per_row, level.rows);
+    const Window own = common(piece.place, rasters->reach(number));
+    const auto across = parts_of_line(window.column - piece.place.column, columns_each, columns,
+                                      per_column, own.column - piece.place.column, own.columns);
+    const auto down = parts_of_line(window.row - piece.place.row, rows_each, rows, per_row,
+                                    own.row - piece.place.row, own.rows);
     if (across.parts.empty() || down.parts.empty()) return;
     const bool may_skip = piece.sparse && level.overview < 0;
     // What is not stored is skipped strip by strip. Tiles that rows of parts have in common are

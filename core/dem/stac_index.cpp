@@ -80,7 +80,8 @@ class StacReader {
         }
         if (!why.empty()) fail(why);
         if (const json* box = member(item, *asset, "proj:bbox"); box && !crs.empty())
-            return tiles_.add(href, corners(numbers(*box)), tiles_.crs_of(crs), crs);
+            return tiles_.add(href, corners(numbers(*box), /*in_degrees=*/false),
+                              tiles_.crs_of(crs), crs);
         // What a polygon of GeoJSON is in.
         tiles_.add(href, outline_of(item), wgs84_, crs);
     }
@@ -109,13 +110,13 @@ class StacReader {
     }
 
     /// The corners of [west, south, east, north], also with heights between; none of other lists.
-    static std::vector<glm::dvec2> corners(const std::vector<double>& box) {
+    static std::vector<glm::dvec2> corners(const std::vector<double>& box, bool in_degrees) {
         if (box.size() != 4 && box.size() != 6) return {};
-        const std::size_t east = box.size() / 2;
-        return {{box[0], box[1]},
-                {box[east], box[1]},
-                {box[east], box[east + 1]},
-                {box[0], box[east + 1]}};
+        const std::size_t second = box.size() / 2;
+        // RFC 7946, section 5.2: across the antimeridian west is greater than east.
+        const double east = box[second] + (in_degrees && box[second] < box[0] ? 360 : 0);
+        return {
+            {box[0], box[1]}, {east, box[1]}, {east, box[second + 1]}, {box[0], box[second + 1]}};
     }
 
     /// @param why  filled with what is wrong; empty where the Item states no posts
@@ -152,7 +153,8 @@ class StacReader {
         const auto geometry = item.find("geometry");
         if (geometry != item.end() && geometry->is_object() && geometry->contains("coordinates"))
             add_positions((*geometry)["coordinates"], vertices);
-        if (vertices.empty() && item.contains("bbox")) vertices = corners(numbers(item["bbox"]));
+        if (vertices.empty() && item.contains("bbox"))
+            vertices = corners(numbers(item["bbox"]), /*in_degrees=*/true);
         return vertices;
     }
 

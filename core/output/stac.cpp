@@ -26,10 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<void, Close>;
+using dem::Dataset;
 
 struct Outline {
     std::vector<glm::dvec2> ring;  ///< longitude and latitude [deg], counterclockwise, closed

@@ -19,10 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using State = TileOnDisk::State;
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-
 /// Of two transforms, to a thousandth of a post.
 bool is_same(const std::array<double, 6>& a, const std::array<double, 6>& b) {
     const double post = std::max(std::abs(b[1]) + std::abs(b[2]), std::abs(b[4]) + std::abs(b[5]));
@@ -77,8 +73,7 @@ TileOnDisk tile_on_disk(const fs::path& folder, const TilePlan& plan, const Plan
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const char* const drivers[] = {"GTiff", nullptr};
-    const std::unique_ptr<void, Close> dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
+    const dem::Dataset dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
     if (!dataset)
         return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
     for (int band = 1; band <= GDALGetRasterCount(dataset.get()); ++band)

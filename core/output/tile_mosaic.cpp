@@ -16,10 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<void, Close>;
+using dem::Dataset;
 
 std::string escaped(const std::string& text) {
     char* const made = CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML);

@@ -28,16 +28,20 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kMostTiles = 10'000'000;
 constexpr int kVersion = 1;  // of the file
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-
 Json json_of(const dem::Window& window) {
     return {window.column, window.row, window.columns, window.rows};
 }
 
 dem::Window window_of(const Json& json) {
     return {json.at(0), json.at(1), json.at(2), json.at(3)};
+}
+
+Json json_of(const dem::NamedTiles& tiles) {
+    return {{"count", tiles.count}, {"first", tiles.first}};
+}
+
+dem::NamedTiles named_of(const Json& json) {
+    return {.count = json.at("count"), .first = json.at("first")};
 }
 
 Json json_of(const TilePlan& plan) {
@@ -58,6 +62,10 @@ Json json_of(const TilePlan& plan) {
               {"posts_with_height", found.valid},
               {"voids", found.holes},
               {"outliers", found.outliers},
+              {"content", fmt::format("{:016x}", plan.content)},
+              {"tiles", plan.dem_tiles.tiles},
+              {"missing", json_of(plan.dem_tiles.missing)},
+              {"broken", json_of(plan.dem_tiles.broken)},
               {"stamp", plan.stamp}}},
             {"tiles", tiles}};
 }
@@ -76,6 +84,10 @@ TilePlan plan_of(const Json& json, const std::string& name) {
                                  .valid = dem.at("posts_with_height"),
                                  .holes = dem.at("voids"),
                                  .outliers = dem.at("outliers")},
+                  .content = std::stoull(dem.at("content").get<std::string>(), nullptr, 16),
+                  .dem_tiles = {.tiles = dem.at("tiles"),
+                                .missing = named_of(dem.at("missing")),
+                                .broken = named_of(dem.at("broken"))},
                   .stamp = dem.at("stamp"),
                   .tiles = {}};
     for (const Json& tile : json.at("tiles"))
@@ -183,7 +195,9 @@ std::optional<TilePlan> read_plan(const fs::path& folder) {
         bad_input(name + ": is of another version of relevo; use another folder");
     try {
         return plan_of(json, name);
-    } catch (const Json::exception&) {
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception&) {
         bad_input(name + ": is damaged; remove it, and plan again");
     }
 }
@@ -201,8 +215,7 @@ std::optional<Array2d<float>> read_heights(const fs::path& file) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const char* const drivers[] = {"GTiff", nullptr};
-    const std::unique_ptr<void, Close> dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
+    const dem::Dataset dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
     const auto refuse = [&] {
         bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
                               printable(path), messages.failure(path)));
@@ -227,7 +240,7 @@ void write_heights(const fs::path& path, const dem::Grid& grid, const Array2d<fl
 std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const TilePlan& plan) {
     std::optional<Array2d<float>> thinned_m = read_heights(folder / kPostsFile);
     if (!thinned_m) return std::nullopt;
-    return dem::PostsFacts{plan.statistics, std::move(*thinned_m)};
+    return dem::PostsFacts{plan.statistics, std::move(*thinned_m), plan.content, plan.dem_tiles};
 }
 
 void write_posts_facts(const fs::path& folder, const dem::Posts& posts) {

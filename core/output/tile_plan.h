@@ -47,6 +47,8 @@ struct TilePlan {
     std::vector<std::string> dems;  ///< as they were given
     dem::Grid grid;                 ///< of the DEM
     dem::Statistics statistics;     ///< of its posts
+    std::uint64_t content = 0;      ///< dem::Posts::content()
+    dem::TileReport dem_tiles;      ///< of an index: which of its tiles are missing or broken
     std::string stamp;              ///< stamp_of() of the DEM's files
     std::vector<PlannedTile> tiles;
 };
@@ -58,15 +60,16 @@ inline constexpr const char *kPlanFile = "plan.json", *kPostsFile = "plan.tif";
 /// Keys of a tile's metadata.
 inline constexpr const char *kCommandKey = "RELEVO_COMMAND", *kDigestKey = "RELEVO_DIGEST";
 
-/// @throws Error (BadInput) `plan: FOLDER/plan.json: what` for a file that is no plan
+/// Nothing where the folder has none.
+/// @throws Error (BadInput) `plan: FOLDER/plan.json: what` for a file of another kind
 std::optional<TilePlan> read_plan(const std::filesystem::path& folder);
-/// Replaces what is there. @throws Error as OutputFile
+/// Replaces the folder's plan. @throws Error as OutputFile
 void write_plan(const std::filesystem::path& folder, const TilePlan& plan);
 
 /// Heights that a folder's tasks share. Nothing where there is no such file.
 /// @throws Error (BadInput) where it cannot be read, here and below
 std::optional<Array2d<float>> read_heights(const std::filesystem::path& path);
-/// Replaces what is there.
+/// Replaces an existing file.
 void write_heights(const std::filesystem::path& path, const dem::Grid& grid,
                    const Array2d<float>& height_m, const std::string& definition);
 

@@ -347,18 +347,24 @@ TEST(SunTiles, NothingIsReplacedUnasked) {
 TEST(SunTiles, AChangedDemIsNoticed) {
     const fs::path where = scratch_dir("changed");
     const std::string dem = (where / "dem.tif").string();
-    const auto write = [&](double step) {
+    const auto write = [&](double step, double bump = 0) {
         Raster raster;
         raster.columns = raster.rows = 200;
-        raster.value = [step](int column, int row, int) { return 100 + step * column + row; };
+        raster.value = [=](int column, int row, int) {
+            return 100 + step * column + row + (column == 90 && row == 70 ? bump : 0);
+        };
         write_raster(dem, raster);
     };
     write(1);
     const Words command = shadow_of(dem);
     const fs::path folder = where / "out";
     ASSERT_EQ(relevo(in_tiles(command, folder)).status, 0);
+    write(1, 3);  // neither the lowest post nor the highest
+    Result run = relevo(in_tiles(command, folder, {"--resume"}));
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("is of another DEM"), std::string::npos) << run.err;
     write(2);
-    const Result run = relevo(in_tiles(command, folder, {"--resume"}));
+    run = relevo(in_tiles(command, folder, {"--resume"}));
     EXPECT_EQ(run.status, 3);
     EXPECT_NE(run.err.find("is of another DEM"), std::string::npos) << run.err;
 }

@@ -322,10 +322,50 @@ TEST(IndexMosaic, ATileIsReadOnlyInsideOfItsOutline) {
                             std::isnan(whole.at(column, row)));
             else
                 EXPECT_TRUE(std::isnan(read.at(column, row))) << column << " " << row;
+    const Array2d<float> means = source.read({0, 0, 60, 20}, 15, 5);  // 28 to 31 end at 30
+    for (int row = 0; row < 5; ++row)
+        for (int column = 0; column < 15; ++column) {
+            double sum = 0, count = 0;
+            for (int r = 4 * row; r < 4 * row + 4; ++r)
+                for (int c = 4 * column; c < 4 * column + 4; ++c)
+                    if (const float height = read.at(c, r); !std::isnan(height)) {
+                        sum += height;
+                        ++count;
+                    }
+            if (count >= 8)
+                EXPECT_NEAR(means.at(column, row), sum / count, 1e-3) << column << " " << row;
+            else
+                EXPECT_TRUE(std::isnan(means.at(column, row))) << column << " " << row;
+        }
     source.read({40, 100, 20, 20}, 20, 20);
     EXPECT_THAT(source.tiles().differing.first,
                 ElementsAre("b (reaches beyond its outline in the index, where it is not read)",
                             "c (lies elsewhere than the index says, so it is a void)"));
+}
+
+// Whoever knows what the DEM's highest post is must not be left with less ground.
+TEST(IndexMosaic, ATileThatGoesOnceAllHeightsAreKnownIsAnError) {
+    const Paths paths = tiles();
+    const std::string index = index_of(paths);
+    const auto read_all = [](const Source& source) { source.read(); };
+    {
+        const Source source = Source::open(index);
+        source.allow_voids(0);
+        read_all(source);
+    }
+    std::filesystem::resize_file(paths[5], 100);
+    std::filesystem::remove(paths[7]);
+    const Source as_found = Source::open(index);
+    Description about = as_found.description();
+    about.statistics = statistics(as_found.read());
+    report_heights(as_found, about, std::nullopt);
+    EXPECT_EQ(about.tiles.missing.count + about.tiles.broken.count, 2);
+    read_all(as_found);  // as it was
+    for (const int voids : {0, 1}) {
+        const Source source = Source::open(index);
+        source.allow_voids(voids);
+        EXPECT_THAT(error_of([&] { read_all(source); }), HasSubstr("can no longer be read, "));
+    }
 }
 
 std::string refusal(const std::string& index) {
