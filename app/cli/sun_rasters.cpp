@@ -277,7 +277,12 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
     raster_ = raster;
     std::optional<OutputFile> own;
     if (folder_ && !is_dry()) {
-        own.emplace(folder_->open(tile, files_));
+        try {
+            own.emplace(folder_->open(tile, files_));
+        } catch (const Error&) {
+            if (has_been_made(tile)) return;
+            throw;
+        }
         writer_.emplace(*own, ground_.grid_of(tile.window), wanted_.type, wanted_.bands,
                         arguments_.creation_options);
     }
@@ -299,11 +304,16 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
     try {
         writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
     } catch (const Error&) {
-        // A task that was requeued, and the one before it, which still runs.
-        if (!folder_ || !arguments_.tiles.resume || !folder_->is_whole(tile)) throw;
-        log::info(fmt::format("{}: another process has made it meanwhile", printable(tile.name)));
+        if (!has_been_made(tile)) throw;
     }
     writer_.reset();
+}
+
+/// By another process, since this one looked: a task that was requeued while it still runs.
+bool RasterRun::has_been_made(const output::PlannedTile& tile) const {
+    if (!folder_ || !arguments_.tiles.resume || !folder_->is_whole(tile)) return false;
+    log::info(fmt::format("{}: another process has made it meanwhile", printable(tile.name)));
+    return true;
 }
 
 std::int64_t RasterRun::inner_voids_of(const dem::Window& raster) const {

@@ -123,6 +123,7 @@ class RasterRun {
     void say_what_was_made() const;
     RasterEstimate estimate() const;
     void tell_plan(const RasterEstimate& estimate) const;
+    bool has_been_made(const output::PlannedTile& tile) const;
     std::int64_t inner_voids_of(const dem::Window& part) const;
 
     const RasterArguments& arguments_;

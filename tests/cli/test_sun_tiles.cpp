@@ -281,6 +281,19 @@ Words in_tiles(const Words& command, const fs::path& folder, const Words& more =
                   more);
 }
 
+// A task that was requeued, and the one before it, which still runs.
+TEST(SunTiles, TwoProcessesThatMakeTheSameTilesBothEndWell) {
+    const fs::path folder = scratch_dir("two");
+    const Words words = in_tiles(shadow_of(bundled_dem()), folder, {"--resume"});
+    const Words line = joined({"-c", "\"$0\" \"$@\" & \"$0\" \"$@\"; one=$?; wait $! && exit $one",
+                               (build_dir() / "bin/relevo").string()},
+                              words);
+    const Result both = run("/bin/sh", line);
+    EXPECT_EQ(both.status, 0) << both.err;
+    EXPECT_EQ(tiles_in(folder).size(), 16u);
+    merged(folder);
+}
+
 TEST(SunTiles, WhatIsThereIsKeptAndWhatIsMissingIsMade) {
     const fs::path folder = scratch_dir("out");
     const Words command = shadow_of(bundled_dem());
