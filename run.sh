@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 tools/install_packages.sh
 [ -f build/release/build.ninja ] || cmake --preset release >/dev/null
-cmake --build --preset release
+cmake --build --preset release --target relevo_program
 relevo=build/release/bin/relevo
 picture=build/first-picture.png
 $relevo -q capture build/release/share/relevo/data/dem/jacksboro.tif -o $picture --overwrite

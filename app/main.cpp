@@ -24,10 +24,12 @@
 #include "base/output_file.h"
 #include "base/text.h"
 #include "cli/command_line.h"
+#include "dem/object_stores.h"
 
 namespace {
 
 int run(int argc, char** argv) {
+    relevo::dem::use_object_stores();
     relevo::cli::run({argv + std::min(argc, 1), argv + argc});
     return 0;
 }

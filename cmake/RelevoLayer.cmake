@@ -1,12 +1,13 @@
 # Flags that every target of the project is compiled with. Warnings are for developers alone, as errors: a compiler that warns
-# of more than ours must not keep people from building, and looking for them takes a twentieth of the time.
+# of more than ours must not keep people from building, and looking for them takes a twentieth of the time. Others see
+# none: GCC 12 sees overruns in std::string at -O3 that are not there (its bug 105329).
 add_library(relevo_options INTERFACE)
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
     -Woverloaded-virtual -Wcast-qual -Wimplicit-fallthrough
     -Wno-missing-field-initializers  # designated initialisers leave members at their defaults
     -Wno-restrict                    # GCC 12 sees overlaps in std::string at -O3 (its bug 105329)
     -Werror)
-target_compile_options(relevo_options INTERFACE $<$<BOOL:${RELEVO_TESTS}>:${warnings}>
+target_compile_options(relevo_options INTERFACE $<IF:$<BOOL:${RELEVO_TESTS}>,${warnings},-w>
     # GCC compiles a tenth faster where it frees no memory before it has 1 GiB; its largest file takes 0.7.
     $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
 

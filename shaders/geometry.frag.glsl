@@ -9,7 +9,8 @@
 //@ include lib/finite.glsl
 //@ include lib/octahedral.glsl
 
-in vec2 post;
+flat in vec4 post_limits;
+in vec2 post_of_tile;
 in float height_m;
 in float height_from_eye_m;
 in vec3 vertex_normal;
@@ -34,6 +35,7 @@ layout(location = ORTHOGRAPHIC) out vec4 ground_place_out;
 #endif
 
 void main() {
+    vec2 post = post_limits.xy + min(post_of_tile, post_limits.zw);
 #ifdef ORTHOGRAPHIC
     ground_place_out = vec4(place_m, 1.0);
 #endif

@@ -5,7 +5,7 @@
 //@ include lib/octahedral.glsl
 //@ include lib/pixel.glsl
 
-in vec2 post;
+flat in vec2 post;
 in float height_m;
 in vec3 instance_normal;
 in vec4 instance_reflectance;

@@ -20,7 +20,7 @@ const float kDetailJitter = 0.2;  // share of the distance by which instances ch
 
 flat out vec4 instance_crown;  // of a shadow map, as instance_shadow.frag.glsl has them
 flat out vec4 instance_place;
-out vec2 post;
+flat out vec2 post;
 out float height_m;
 out vec3 instance_normal;
 out vec4 instance_reflectance;  // a: share of the sun's light past instances whose shadows are not drawn
@@ -123,7 +123,7 @@ void main() {
     ivec2 cell = ivec2(instance_cells.xy) + ivec2(int(instance_vertex.w), gl_InstanceID);
     vec4 chance = instances_random(cell, 0u);
     vec2 place = (vec2(cell) + 0.1 + 0.8 * chance.xy) / instance_detail.zw;
-    vec2 vertex = (place - vec2(net_v.w, net_uv.w)) / net_uuv.w;
+    vec2 vertex = (place - net_first_post()) / net_uuv.w;
     vec4 within = instance_rectangle();
     bool here = all(greaterThanEqual(place, within.xy)) && all(lessThan(place, within.zw));
 

@@ -10,7 +10,9 @@ layout(location = 0) in vec2 grid;  // 0..64, and a little beyond for the skirt
 
 const float kSkirt_px = 2.0;  // how far the skirt hangs down in the picture
 
-out vec2 post;
+// Interpolation rounds in proportion to values: of a column beyond 65,536 it would lose hundredths.
+flat out vec4 post_limits;  // xy: first; zw: from there to the last
+out vec2 post_of_tile;        // from the first
 out float height_m;
 out float height_from_eye_m;  // of the DEM's heights: near the eye small, and so exact
 out vec3 vertex_normal;
@@ -67,7 +69,8 @@ void main() {
     vec3 crossed = cross(beside - here, below - here);
     vertex_normal = normalize(dot(crossed, v.up) < 0.0 ? -crossed : crossed);
 #endif
-    post = v.post;
+    post_limits = vec4(net_first_post(), net_last_post());
+    post_of_tile = clamp(vertex, vec2(0.0), limit) * net_uuv.w;
     height_m = height.r;
 #ifdef DISPLACED
     height_m = nowhere ? kNowhere_m : height_m;

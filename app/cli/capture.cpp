@@ -22,6 +22,7 @@
 #include "cli/memory_use.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
+#include "dem/remote.h"
 #include "effect/search_path.h"
 #include "geo/format.h"
 #include "scene/panorama.h"
@@ -107,6 +108,8 @@ class Timings {
         json["stages_ms"] = stages_;
         json["whole_ms"] = milliseconds_since(began_);
         json["memory_mib"] = memory_of(session.scene().dem.memory);
+        if (const auto net = dem::network_use())
+            json["net"] = {{"requests", net->requests}, {"read_bytes", net->read_bytes}};
         nlohmann::ordered_json& passes = json["passes_ms"] = nlohmann::ordered_json::object();
         for (const auto& [name, ms] : passes_)
             passes[name] = ms;

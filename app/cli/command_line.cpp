@@ -22,6 +22,7 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/effects.h"
+#include "dem/remote.h"
 
 namespace relevo::cli {
 namespace {
@@ -285,6 +286,8 @@ void add_verbs(CLI::App& app) {
     add_view(line);
     add_capture(line);
     add_run(line);
+    add_plan(line);
+    add_merge(line);
     add_film(line);
     add_compare(line);
     add_info(line);
@@ -317,6 +320,9 @@ void run(std::vector<std::string> words) {
     CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
     add_verbs(app);
     parse(app, std::move(words));
+    if (const auto net = dem::network_use())
+        log::debug(fmt::format("{} requests to the net, {} bytes read, {} written", net->requests,
+                               net->read_bytes, net->written_bytes));
 }
 
 }  // namespace relevo::cli

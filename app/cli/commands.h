@@ -9,6 +9,8 @@ namespace relevo::cli {
 void add_capture(Verb app);
 void add_compare(Verb app);
 void add_run(Verb app);
+void add_plan(Verb app);
+void add_merge(Verb app);
 void add_film(Verb app);
 void add_view(Verb app);
 void add_doctor(Verb app);

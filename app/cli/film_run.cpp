@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_file.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/job_run.h"
@@ -38,7 +39,7 @@ class FilmRun {
         const std::string refusal = taken_name(output_, arguments_.overwrite);
         if (arguments_.dry_run) return tell(refusal);
         if (!refusal.empty()) bad_input(refusal);
-        make_folder();
+        make_folder_of(output_, "run");
         draw();
     }
 
@@ -98,15 +99,6 @@ class FilmRun {
         work_.notices.release();
         log::info(fmt::format("a film of {} would take {}", length(), time));
         if (!refusal.empty()) log::warning("would be refused: " + refusal);
-    }
-
-    void make_folder() const {
-        const fs::path folder = output_.parent_path();
-        std::error_code error;
-        if (!folder.empty()) fs::create_directories(folder, error);
-        if (error)
-            bad_input(fmt::format("run: {}: the folder cannot be made, {}",
-                                  printable(folder.string()), error.message()));
     }
 
     void draw() const {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_file.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "image/image.h"
@@ -106,9 +107,7 @@ std::string JobRun::estimated_time(const std::string& device) {
 }
 
 std::string taken_name(const std::filesystem::path& output, bool overwrite) {
-    std::error_code missing;
-    if (overwrite || !std::filesystem::exists(std::filesystem::symlink_status(output, missing)))
-        return {};
+    if (overwrite || !is_taken(output)) return {};
     return fmt::format("run: {}: exists; pass --overwrite to replace it",
                        printable(output.string()));
 }

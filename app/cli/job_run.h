@@ -8,6 +8,7 @@
 #include "base/files_in_use.h"
 #include "base/held_notices.h"
 #include "cli/format_arguments.h"
+#include "cli/plan.h"
 #include "cli/scene_arguments.h"
 #include "scene/job.h"
 #include "session/scene_inputs.h"
@@ -30,7 +31,9 @@ struct JobArguments {
     std::string output, device = "auto", shard, contact_sheet;
     int columns = 0;  ///< of the contact sheet; 0: chosen
     bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
-    bool audit = false, allow_blank = false;
+    bool audit = false, allow_blank = false, missing = false;
+    PlanArguments plan{};  ///< of `relevo plan run`
+    std::optional<Verb> verb{};
 };
 
 /// A job on its way: its pictures, and what they are made from.

@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/object_store.h"
+#include "base/output_file.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -29,11 +31,6 @@ namespace relevo::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<std::string> environment(const char* name) {
-    const char* const value = std::getenv(name);
-    return value ? std::optional<std::string>(value) : std::nullopt;
-}
 
 /// What the audits of a job's pictures come to.
 class Audits {
@@ -102,8 +99,11 @@ class Run {
         check_outputs();
         take_shard();
         const std::size_t all = shots_.size();
-        const std::string refusal = arguments_.resume ? leave_out_made() : what_is_in_the_way();
+        const bool keeps = arguments_.resume || arguments_.missing || arguments_.plan.on;
+        const std::string refusal = keeps ? leave_out_made() : what_is_in_the_way();
         made_ = all - shots_.size();
+        if (arguments_.missing) return tell_missing();
+        if (arguments_.plan.on) return tell_plan(refusal);
         if (arguments_.dry_run) return tell(refusal);
         if (!refusal.empty()) bad_input(refusal);
         check_folders();
@@ -122,7 +122,7 @@ class Run {
     /// Neighbours stay together: they share most of what is loaded.
     void take_shard() {
         if (arguments_.shard.empty()) return;
-        const Shard shard = parse_shard(arguments_.shard, environment);
+        const Shard shard = parse_shard(arguments_.shard, environment_variable);
         const auto at = [&](std::size_t number) {
             return shots_.begin() +
                    static_cast<std::ptrdiff_t>(shots_.size() * number / shard.count);
@@ -160,10 +160,7 @@ class Run {
         std::string first;
         for (const scene::Shot& shot : shots_) {
             const std::vector<fs::path> names = files_of(shot);
-            const auto taken = std::ranges::find_if(names, [](const fs::path& name) {
-                std::error_code missing;
-                return fs::exists(fs::symlink_status(name, missing));
-            });
+            const auto taken = std::ranges::find_if(names, is_taken);
             if (taken != names.end() && there_++ == 0) first = taken->string();
         }
         if (there_ == 0 || arguments_.overwrite) return {};
@@ -176,6 +173,10 @@ class Run {
     /// Removes the pictures from the list that exist and can be kept.
     /// @returns why other files cannot be kept; empty if all can
     std::string leave_out_made() {
+        for (const scene::Shot& shot : shots_)
+            if (object_store_of(shot.output.native()))
+                bad_usage(fmt::format("--resume: {}: reads pictures of this machine only",
+                                      printable(shot.output.string())));
         std::vector<session::Wanted> wanted;
         std::set<std::string> remote;
         for (const scene::Shot& shot : shots_) {
@@ -224,13 +225,8 @@ class Run {
     void check_folders() {
         std::set<fs::path> folders;
         for (const scene::Shot& shot : shots_) {
-            const fs::path folder = shot.output.parent_path();
-            if (!folders.insert(folder).second) continue;
-            std::error_code error;
-            if (!folder.empty()) fs::create_directories(folder, error);
-            if (error)
-                bad_input(fmt::format("run: {}: the folder cannot be made, {}",
-                                      printable(folder.string()), error.message()));
+            if (!folders.insert(shot.output.parent_path()).second) continue;
+            make_folder_of(shot.output, "run");
             files_.open_alone(shot.output, arguments_.overwrite || parts_.contains(shot.output),
                               "run");
         }
@@ -327,12 +323,56 @@ class Run {
             log::warning("would be refused: " + problem);
     }
 
+    /// Names the pictures that are not there, or not whole.
+    void tell_missing() const {
+        for (const scene::Shot& shot : shots_)
+            fmt::print("{}\n", shot.output.string());
+        if (shots_.empty()) {
+            log::info(fmt::format("all {} pictures are there", made_));
+            return;
+        }
+        failed(fmt::format(
+            "run: {} of {} pictures are missing or not whole, the first is {}; make "
+            "them with --resume",
+            shots_.size(), shots_.size() + made_, printable(shots_.front().output.string())));
+    }
+
+    /// Draws some of the pictures, and says what tasks make all.
+    void tell_plan(const std::string& refusal) {
+        if (!refusal.empty()) bad_input(refusal);
+        double computing_s = 0;
+        if (!shots_.empty()) computing_s = session::time_batch(shots_, options(), times_);
+        notices_.release();
+        constexpr double kMiB = 1024;  // of what getrusage counts
+        struct rusage used {};
+        getrusage(RUSAGE_SELF, &used);
+        const double memory_mib = static_cast<double>(used.ru_maxrss) / kMiB;
+        fmt::print("pictures            {}, {} there already\n", shots_.size() + made_, made_);
+        fmt::print("memory              some {:.0f} MiB a task, as for those drawn to measure\n",
+                   memory_mib);
+        fmt::print("computing           some {:.3g} processor hours\n",
+                   computing_s * thread_count() / 3600);
+        const std::vector<std::string> words = arguments_.plan.words(*arguments_.verb);
+        std::vector<std::string> check = words;
+        check.insert(std::ranges::find(check, "--"), "--missing");
+        tell_tasks(arguments_.plan, {.unit = "picture",
+                                     .left = shots_.size(),
+                                     .ready_s = 0,
+                                     .computing_s = computing_s,
+                                     .threads = thread_count(),
+                                     .memory_mib = memory_mib,
+                                     .words = words,
+                                     .merge_words = check,
+                                     .overwrite = arguments_.overwrite});
+    }
+
     /// Folders in which no file can be made, told without making any.
     std::vector<std::string> folder_problems() const {
         std::vector<std::string> problems;
         std::set<fs::path> folders;
         for (const scene::Shot& shot : shots_) {
             if (!folders.insert(shot.output.parent_path()).second) continue;
+            if (object_store_of(shot.output.native())) continue;
             fs::path there = fs::absolute(shot.output).parent_path();
             std::error_code missing;
             while (there.has_relative_path() && !fs::exists(there, missing))
@@ -367,6 +407,10 @@ class Run {
 void run_job(const JobArguments& arguments) {
     JobRun work;
     work.read(arguments);
+    if ((arguments.plan.on || arguments.missing) &&
+        (!arguments.contact_sheet.empty() || work.job.is_film()))
+        bad_usage(fmt::format("{}: makes one file, which cannot be split into tasks",
+                              printable(arguments.job)));
     if (!arguments.contact_sheet.empty())
         run_contact_sheet(arguments, work);
     else if (work.job.is_film())
@@ -378,6 +422,7 @@ void run_job(const JobArguments& arguments) {
 void add_run(Verb app) {
     const auto arguments = std::make_shared<JobArguments>();
     const Verb verb = app.add_verb("run", "Makes the pictures or the film of a job");
+    arguments->verb = verb;
     verb.add_option("JOB", arguments->job, "Job file, JSON: docs/jobs.md").required();
     arguments->scene.add_to(verb, /*with_file=*/false);
     arguments->scene.dem.dem_option.required(false);
@@ -390,7 +435,13 @@ void add_run(Verb app) {
                   "Skip pictures that exist, complete, of the same scene and from the same files");
     verb.add_option("--shard", arguments->shard,
                     "Make one part of the pictures: I/N, or array in an array task of a scheduler");
-    verb.add_flag("--dry-run", arguments->dry_run, "List the files and estimate the time");
+    if (PlanArguments::is_for(verb)) {
+        arguments->plan.add_to(verb);
+    } else {
+        verb.add_flag("--dry-run", arguments->dry_run, "List the files and estimate the time");
+        verb.add_flag("--missing", arguments->missing,
+                      "List the pictures that are missing or not whole; status 1 if there are any");
+    }
     verb.add_flag("--yes", arguments->yes, "Allow more than 100000 pictures");
     verb.add_flag("--sidecar", arguments->sidecar,
                   "Write a JSON sidecar for each picture: sun, camera, device, versions, DEM");

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <optional>
 #include <string>
+
+#include "base/allocation.h"
 
 namespace relevo::cli {
 
@@ -12,9 +12,6 @@ struct Shard {
     std::size_t number = 1;  ///< from 1
     std::size_t count = 1;
 };
-
-/// A variable of the environment; nothing where it is not set.
-using Environment = std::function<std::optional<std::string>(const char* name)>;
 
 /// Reads `2/4`; `array`, which takes both from the variables that Slurm, LSF, Grid Engine and AWS
 /// Batch set for the tasks of an array; or `array/4`, for PBS, which does not say how many there

@@ -85,7 +85,6 @@ struct Summary {
 
     double hours = 0, posts = 0, least = INFINITY, most = -INFINITY, level_hours = 0;
     double most_level_hours = 0, over_level = 0;  // the latter: posts
-    std::int64_t holes = 0;
     std::string definition;
 
     void add(const light::SunHours& part) {
@@ -101,7 +100,6 @@ struct Summary {
             }
         level_hours = part.level_hours;
         most_level_hours = part.most_level_hours;
-        holes += part.holes;
         definition = part.definition;
     }
 
@@ -128,10 +126,26 @@ light::SunHoursOptions options_of(const Arguments& arguments) {
     return options;
 }
 
+void warn_of_beyond(RasterRun& raster, const dem::Posts& posts,
+                    const light::SunHoursOptions& options, std::vector<light::SunOverDem> suns,
+                    const std::optional<double>& highest_m) {
+    raster.warn_of(
+        [&posts, options, suns = std::move(suns), highest_m](const dem::Window& window) {
+            return light::terrain_beyond(posts, window, suns,
+                                         {.refraction = options.refraction,
+                                          .air = options.air,
+                                          .soft = false,
+                                          .part = {},
+                                          .done = {}},
+                                         highest_m);
+        },
+        light::kHides);
+}
+
 void run(const Arguments& arguments) {
     check(arguments);
     FilesInUse files;
-    OutputFile& file = arguments.raster.open(files);
+    OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
     const dem::Posts& posts = ground.posts;
     const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
@@ -140,39 +154,39 @@ void run(const Arguments& arguments) {
     std::vector<output::RasterBand> bands;
     for (const std::string& word : arguments.bands)
         bands.push_back(session::hours_band(word));
-    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float, bands, 1,
-                     (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0));
-    options.done = raster.done();
-    raster.warn_of(
-        [&] {
-            return light::terrain_beyond(posts, ground.window,
-                                         light::suns_of(posts.grid(), begin, end),
-                                         {.refraction = options.refraction,
-                                          .air = options.air,
-                                          .soft = false,
-                                          .part = {},
-                                          .done = {}},
-                                         arguments.raster.highest_m);
-        },
-        light::kHides);
-    Summary sum;
-    options.part = ground.window;
-    const light::SunHoursPlan plan(posts, begin, end, options);
-    raster.each_part([&](const dem::Window& part) {
-        light::SunHours hours = plan.part(part);
-        sum.add(hours);
-        for (std::size_t k = 0; k < arguments.bands.size(); ++k)
-            raster.put(k, part, session::hours_values(arguments.bands[k], hours));
-    });
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = session::air_of_posts(arguments.refraction.name(), posts);
-    if (options.irradiation) sum.definition += "; " + session::definition_of(*options.irradiation);
-    if (!raster.finish(sum.definition, sum.holes,
-                       {{"TIME_FROM", from},
-                        {"TIME_TO", to},
-                        {"TIME_ZONE", days.zone.name()},
-                        {"REFRACTION", air}}))
-        return;
+    RasterRun raster(arguments.raster, file, files, ground,
+                     {.type = output::RasterType::Float,
+                      .bands = bands,
+                      .metadata = {{"TIME_FROM", from},
+                                   {"TIME_TO", to},
+                                   {"TIME_ZONE", days.zone.name()},
+                                   {"REFRACTION", air}},
+                      .calls = 1,
+                      .bytes_a_post = (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0),
+                      .halo_m = light::horizon_reach_m(posts, options.refraction)});
+    if (raster.is_done()) return;
+    warn_of_beyond(raster, posts, options, light::suns_of(posts.grid(), begin, end),
+                   arguments.raster.highest_m);
+    options.done = raster.done();
+    Summary sum;
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        options.part = window;
+        options.around = around;
+        const auto plan = std::make_shared<light::SunHoursPlan>(of, begin, end, options);
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            light::SunHours hours = plan->part(part);
+            if (options.irradiation)
+                hours.definition += "; " + session::definition_of(*options.irradiation);
+            sum.add(hours);
+            for (std::size_t k = 0; k < arguments.bands.size(); ++k)
+                raster.put(k, part, session::hours_values(arguments.bands[k], hours));
+            return {hours.holes, std::move(hours.definition)};
+        };
+    };
+    if (!raster.make_all(maker_of)) return;
     sum.say_more_than_level();
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(

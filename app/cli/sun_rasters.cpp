@@ -3,98 +3,24 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/allocation.h"
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
+#include "base/object_store.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
-#include "light/point/horizon.h"
-#include "light/sweep/sweep.h"
+#include "dem/files_of.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
-namespace {
-
-// Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how many
-// tiles of all bands it has at once then.
-constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
-constexpr double kTile = 512;  // posts a side
-
-}  // namespace
-
-bool RasterGround::whole() const {
-    return window == dem::Window{0, 0, posts.grid().columns(), posts.grid().rows()};
-}
-
-dem::Grid RasterGround::grid() const {
-    return whole() ? posts.grid() : posts.grid().part(window, window.columns, window.rows);
-}
-
-void RasterArguments::add_to(Verb verb) {
-    dem.add_to(verb);
-    verb.add_option(
-            "-k,--terrestrial-refraction", terrestrial_refraction,
-            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(-1.0, 0.9));
-    output.endings = {"tif", "tiff"};
-    verb.add_option("-o,--output", output.path,
-                    "Cloud-optimised GeoTIFF to write, on the DEM's grid")
-        .required();
-    verb.add_flag("--overwrite", output.overwrite, "Replace an existing file");
-    verb.add_option("--co", creation_options,
-                    "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
-        .one_word();
-    verb.add_option("--clip", clip,
-                    "Compute only the posts in W,S,E,N of the DEM's CRS; the terrain around still "
-                    "casts shadows")
-        .type_name("W,S,E,N");
-    verb.add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
-    verb.add_option("--highest", highest_m,
-                    "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        .check(in_range(-500.0, light::kHighestTerrain_m));
-    verb.add_flag("--dry-run", dry_run,
-                  "Estimate time and memory from a small part; write nothing");
-}
-
-OutputFile& RasterArguments::open(FilesInUse& files) const {
-    output::check_creation_options(creation_options);
-    return *output.open(files, dem);
-}
-
-RasterGround RasterArguments::load() const {
-    if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
-    std::optional<dem::Clip> rectangle;
-    if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
-    if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
-    log::HeldNotices notices;
-    dem::Posts posts = dem::Posts::load(dem.paths, dem.options());
-    notices.release();
-    const dem::Grid& grid = posts.grid();
-    const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
-                                         : dem::Window{0, 0, grid.columns(), grid.rows()};
-    std::vector<dem::Window> parts{window};
-    if (!posts.in_memory())
-        parts = session::raster_parts(window, dem.options().memory.posts / session::kPostsAPart);
-    return {std::move(posts), window, std::move(parts)};
-}
-
-output::RasterMetadata RasterArguments::about(const RasterGround& ground,
-                                              const std::string& definition, std::int64_t holes,
-                                              output::RasterMetadata more) const {
-    std::optional<dem::Window> part;
-    if (!ground.whole()) part = ground.window;
-    output::RasterMetadata about = session::raster_metadata(
-        ground.posts, RELEVO_VERSION, definition, terrestrial_refraction, holes, part);
-    for (auto& item : more)
-        about.push_back(std::move(item));
-    return about;
-}
-
 namespace {
 
 constexpr double kEnough_s = 2;  // of computing, to say how long all of it takes
@@ -110,116 +36,368 @@ double posts_of(const dem::Window& window) {
     return double(window.columns) * window.rows;
 }
 
+/// A window around both.
+dem::Window around(const dem::Window& a, const dem::Window& b) {
+    if (a.is_empty()) return b;
+    const int column = std::min(a.column, b.column), row = std::min(a.row, b.row);
+    return {column, row, std::max(a.end_column(), b.end_column()) - column,
+            std::max(a.end_row(), b.end_row()) - row};
+}
+
+/// Of tasks, which may have less memory than the machine; the program itself takes some of it.
+MemoryBudget memory_of_allocation(const MemoryBudget& memory) {
+    constexpr std::int64_t kLeast_mib = 16, kProgram_mib = 256;
+    const Allocation& given = allocation();
+    if (!given.memory_bytes) return memory;
+    const std::int64_t mib = *given.memory_bytes / MemoryBudget::kMiB - kProgram_mib;
+    return MemoryBudget::of_mib(std::clamp(mib, kLeast_mib, memory.mib()));
+}
+
+/// Threads and memory of a task, where something limits them.
+void say_allocation(const MemoryBudget& memory) {
+    const Allocation& given = allocation();
+    const auto by = [](const std::string& name) {
+        return name.empty() ? std::string() : " (" + name + ")";
+    };
+    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads,
+                          by(given.threads_by), memory.mib(), by(given.memory_by)));
+}
+
 }  // namespace
 
-RasterRun::RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
-                     output::RasterType type, const std::vector<output::RasterBand>& bands,
-                     std::size_t calls, int bytes_a_post)
+dem::Grid RasterGround::grid_of(const dem::Window& raster) const {
+    return raster == whole() ? posts.grid()
+                             : posts.grid().part(raster, raster.columns, raster.rows);
+}
+
+std::vector<dem::Window> RasterGround::parts_of(const dem::Window& raster) const {
+    return part_posts == 0 ? std::vector{raster} : session::raster_parts(raster, part_posts);
+}
+
+void RasterArguments::add_to(Verb verb_of_rasters) {
+    verb = verb_of_rasters;
+    dem.add_to(*verb);
+    verb->add_option(
+            "-k,--terrestrial-refraction", terrestrial_refraction,
+            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
+        .check(in_range(-1.0, 0.9));
+    output.endings = {"tif", "tiff"};
+    verb->add_option("-o,--output", output.path,
+                     "Cloud-optimised GeoTIFF to write, on the DEM's grid; with --tiles a folder")
+        .required();
+    verb->add_flag("--overwrite", output.overwrite, "Replace an existing file");
+    verb->add_option("--co", creation_options,
+                     "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
+        .one_word();
+    verb->add_option("--clip", clip,
+                     "Compute only the posts in W,S,E,N of the DEM's CRS; the terrain around still "
+                     "casts shadows")
+        .type_name("W,S,E,N");
+    verb->add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
+    verb->add_option("--highest", highest_m,
+                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
+        .check(in_range(-500.0, light::kHighestTerrain_m));
+    tiles.add_to(*verb);
+    if (PlanArguments::is_for(*verb))
+        plan.add_to(*verb);
+    else
+        verb->add_flag("--dry-run", dry_run,
+                       "Estimate time and memory from a small part; write nothing");
+}
+
+OutputFile* RasterArguments::open(FilesInUse& files) const {
+    output::check_creation_options(creation_options);
+    tiles.check();
+    if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
+    if (!tiles.given()) return output.open(files, dem);
+    const std::filesystem::path folder = output.path;
+    if (object_store_of((folder / "plan.json").native()))
+        bad_usage(fmt::format("-o: {}: tiles are made in a folder of this machine, and read there",
+                              printable(output.path)));
+    dem::add_named(dem.paths, files);
+    if (output.overwrite)
+        for (const std::filesystem::path& path : dem::files_of(dem.paths))
+            files.add_input(path, "a file that the DEM is read from,");
+    files.check_planned({folder / "plan.json", folder / "plan.tif", folder / "plan_means.tif"},
+                        "-o");
+    return nullptr;
+}
+
+namespace {
+
+/// Of all files that the DEM is read from, also those that a name stands for.
+std::string stamp_of_dem(const std::vector<std::string>& paths) {
+    std::vector<std::string> files = paths;
+    for (const std::filesystem::path& file : dem::files_of(paths))
+        files.push_back(file.string());
+    return output::stamp_of(files);
+}
+
+}  // namespace
+
+RasterGround RasterArguments::load() const {
+    if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
+    std::optional<dem::Clip> rectangle;
+    if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
+    if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
+    dem::LoadOptions options = dem.options();
+    std::optional<dem::PostsFacts> facts;
+    bool is_planned = false;
+    if (tiles.given()) {
+        if (!dem.values.has("--memory"))
+            options.memory = memory_of_allocation(options.memory);
+        say_allocation(options.memory);
+        const auto known = output::read_plan(output.path);
+        is_planned = known && known->stamp == stamp_of_dem(dem.paths);
+        if (is_planned) facts = output::read_posts_facts(output.path, *known);
+    }
+    log::HeldNotices notices;
+    dem::Posts posts = dem::Posts::load(dem.paths, options, facts ? &*facts : nullptr);
+    notices.release();
+    const dem::Grid& grid = posts.grid();
+    const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
+                                         : dem::Window{0, 0, grid.columns(), grid.rows()};
+    const std::int64_t part_posts =
+        posts.in_memory() ? 0 : options.memory.posts / session::kPostsAPart;
+    return {std::move(posts), window, part_posts, options, is_planned};
+}
+
+output::RasterMetadata RasterArguments::about(const RasterGround& ground, const dem::Window& raster,
+                                              const PartFigures& figures,
+                                              const output::RasterMetadata& more) const {
+    std::optional<dem::Window> part;
+    if (raster != ground.whole()) part = raster;
+    output::RasterMetadata about =
+        session::raster_metadata(ground.posts, RELEVO_VERSION, figures.definition,
+                                 terrestrial_refraction, figures.holes, part);
+    about.insert(about.end(), more.begin(), more.end());
+    return about;
+}
+
+RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,
+                     const RasterGround& ground, RasterWanted wanted)
     : arguments_(arguments),
       ground_(ground),
-      calls_(calls),
-      bands_(bands.size()),
-      bytes_a_post_(bytes_a_post),
-      bytes_a_value_(type == output::RasterType::Float ? 4 : 1) {
-    if (!arguments.dry_run) {
-        writer_.emplace(file, ground.grid(), type, bands, arguments.creation_options);
-        bar_.emplace(printable(file.path().string()));
+      files_(files),
+      file_(file),
+      wanted_(std::move(wanted)) {
+    if (arguments.tiles.given())
+        choose_tiles();
+    else
+        todo_ = {{"", ground.window}};
+    for (const output::PlannedTile& tile : todo_) {
+        window_ = around(window_, tile.window);
+        posts_ += posts_of(tile.window);
+    }
+    if (!is_dry() && !is_done()) {
+        if (file_)
+            writer_.emplace(*file_, ground.grid_of(ground.window), wanted_.type, wanted_.bands,
+                            arguments.creation_options);
+        bar_.emplace(printable(arguments.output.path));
     }
     began_ = Progress::Clock::now();
+    if (!is_done()) return;
+    if (arguments.plan.on)
+        tell_plan({});
+    else
+        log::info(fmt::format("no tile is to be made; {} are there already", folder_->there()));
+}
+
+void RasterRun::choose_tiles() {
+    const dem::Posts& posts = ground_.posts;
+    const Verb& verb = *arguments_.verb;
+    if (arguments_.tiles.halo_km) {
+        far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
+                     arguments_.output.path, ground_.is_planned);
+        wanted_.metadata.emplace_back("FAR_GROUND", far_->description());
+        wanted_.halo_m = *arguments_.tiles.halo_km * 1000;
+    }
+    output::RasterMetadata meaning = wanted_.metadata;
+    for (const output::RasterBand& band : wanted_.bands) {
+        meaning.emplace_back("band", band.name);
+        meaning.insert(meaning.end(), band.metadata.begin(), band.metadata.end());
+    }
+    folder_.emplace(arguments_.output.path,
+                    output::TilePlan{.command = command_text(verb.command(), verb.given()),
+                                     .digest = meaning_of(verb.command(), verb.given(), meaning),
+                                     .dems = arguments_.dem.paths,
+                                     .grid = posts.grid(),
+                                     .statistics = posts.about().statistics,
+                                     .content = posts.content(),
+                                     .dem_tiles = posts.about().tiles,
+                                     .stamp = stamp_of_dem(arguments_.dem.paths),
+                                     .tiles = arguments_.tiles.of(posts.grid(), ground_.window)},
+                    arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
+    todo_ = folder_->todo();
+    if (!arguments_.dry_run) folder_->write_plan(posts, far_ ? &*far_ : nullptr);
+    // The middle of a DEM says more of how long it takes than its corner.
+    if (is_dry())
+        std::rotate(todo_.begin(), todo_.begin() + static_cast<std::ptrdiff_t>(todo_.size() / 2),
+                    todo_.end());
 }
 
 std::function<void(double)> RasterRun::done() {
     return [this](double of_call) {
-        share_ += of_call * part_share_ / static_cast<double>(calls_);
+        share_ += of_call * part_share_ / static_cast<double>(wanted_.calls);
         passed_s_ = seconds_since(began_);
         if (bar_) bar_->show(share_);
         if (!writer_ && passed_s_ - ready_s_ > kEnough_s && share_ < 1) throw Enough();
     };
 }
 
-bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
-    ready_s_ = passed_s_ = seconds_since(began_);
+bool RasterRun::make_all(const MakerOf& maker_of) {
     try {
-        for (const dem::Window& part : ground_.parts) {
-            part_share_ = posts_of(part) / posts_of(ground_.window);
-            body(part);
-            if (writer_) inner_voids_ += inner_voids_of(part);
-        }
+        PartMaker make_part;
+        if (!far_) make_part = maker_of(ground_.posts, nullptr, window_);
+        ready_s_ = passed_s_ = seconds_since(began_);
+        for (const output::PlannedTile& tile : todo_)
+            if (far_)
+                make_far(tile, maker_of);
+            else
+                make(tile, tile.window, make_part);
     } catch (const Enough&) {
-        return false;
     }
+    bar_.reset();
+    if (arguments_.plan.on)
+        tell_plan(estimate());
+    else if (arguments_.dry_run)
+        estimate().print();
+    else
+        say_what_was_made();
+    return !is_dry();
+}
+
+void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_of) {
+    const FarGround::Site site = far_->site_of(tile.window);
+    make(tile, site.tile, maker_of(*site.posts, site.around, site.tile));
+}
+
+/// @param raster  the tile's window of the posts that it is made from
+void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
+                     const PartMaker& make_part) {
+    raster_ = raster;
+    std::optional<OutputFile> own;
+    if (folder_ && !is_dry()) {
+        try {
+            own.emplace(folder_->open(tile, files_));
+        } catch (const Error&) {
+            if (has_been_made(tile)) return;
+            throw;
+        }
+        writer_.emplace(*own, ground_.grid_of(tile.window), wanted_.type, wanted_.bands,
+                        arguments_.creation_options);
+    }
+    output::RasterMetadata metadata = wanted_.metadata;
+    if (writer_) look_beyond(tile.window, metadata);
+    PartFigures sum;
+    for (const dem::Window& part : far_ ? std::vector{raster} : ground_.parts_of(raster)) {
+        part_share_ = posts_of(part) / posts_;
+        PartFigures figures = make_part(part);
+        sum.holes += figures.holes;
+        sum.definition = std::move(figures.definition);
+    }
+    if (!writer_) return;
+    inner_voids_ += inner_voids_of(tile.window);
+    if (folder_) {
+        metadata.emplace_back(output::kCommandKey, folder_->plan().command);
+        metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
+    }
+    try {
+        writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
+    } catch (const Error&) {
+        if (!has_been_made(tile)) throw;
+    }
+    writer_.reset();
+}
+
+/// By another process, since this one looked: a task that was requeued while it still runs.
+bool RasterRun::has_been_made(const output::PlannedTile& tile) const {
+    if (!folder_ || !arguments_.tiles.resume || !folder_->is_whole(tile)) return false;
+    log::info(fmt::format("{}: another process has made it meanwhile", printable(tile.name)));
     return true;
 }
 
-std::int64_t RasterRun::inner_voids_of(const dem::Window& part) const {
+std::int64_t RasterRun::inner_voids_of(const dem::Window& raster) const {
     const dem::Posts& posts = ground_.posts;
     std::vector<float> buffer;
-    const dem::Posts::View view = posts.view(part, buffer);
     std::int64_t count = 0;
-    for (int row = part.row; row < part.row + part.rows; ++row)
-        for (int column = part.column; column < part.column + part.columns; ++column)
-            count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+    for (const dem::Window& part : ground_.parts_of(raster)) {
+        const dem::Posts::View view = posts.view(part, buffer);
+        for (int row = part.row; row < part.end_row(); ++row)
+            for (int column = part.column; column < part.end_column(); ++column)
+                count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+    }
     return count;
 }
 
-void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& look,
-                        const std::string& would) {
-    if (!writer_) return;
-    const std::optional<light::Beyond> beyond = look();
-    if (!beyond) return;
-    beyond_ = beyond->text(would);
-    log::warning(beyond->advice());
-    log::debug(beyond_);
+void RasterRun::warn_of(std::function<std::optional<light::Beyond>(const dem::Window&)> look,
+                        std::string would) {
+    look_ = std::move(look);
+    would_ = std::move(would);
 }
 
-bool RasterRun::finish(const std::string& definition, std::int64_t holes,
-                       output::RasterMetadata more) {
-    bar_.reset();
-    if (!writer_) {
-        tell();
-        return false;
-    }
+void RasterRun::look_beyond(const dem::Window& raster, output::RasterMetadata& metadata) {
+    const std::optional<light::Beyond> beyond = look_(raster);
+    if (!beyond) return;
+    metadata.emplace_back("BEYOND_DEM", beyond->text(would_));
+    if (!std::exchange(warned_, true)) log::warning(beyond->advice());
+    log::debug(beyond->text(would_));
+}
+
+void RasterRun::say_what_was_made() const {
     if (inner_voids_ > 0)
         log::warning(fmt::format("the DEM has {} voids: they get no value and cast no shadow",
                                  inner_voids_));
-    if (!beyond_.empty()) more.emplace_back("BEYOND_DEM", beyond_);
-    writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
-    return true;
+    if (!folder_) return;
+    log::info(fmt::format(
+        "{} tiles in {}{}", todo_.size(), duration_text(passed_s_),
+        folder_->there() > 0 ? fmt::format("; {} were there already", folder_->there()) : ""));
 }
 
-void RasterRun::tell() const {
-    constexpr double kMiB = 1 << 20;
-    const double posts = posts_of(ground_.window);
+RasterEstimate RasterRun::estimate() const {
+    RasterEstimate found;
     double most = 0;  // posts of a part
-    for (const dem::Window& part : ground_.parts)
-        most = std::max(most, posts_of(part));
-    const dem::Grid& grid = ground_.posts.grid();
-    const MemoryBudget memory = arguments_.dem.options().memory;
-    // What sweeps keep; those beyond memory have what is kept of the heights, and the file's
-    // blocks.
-    const double heights =
-        ground_.posts.in_memory()
-            ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
-            : static_cast<double>(sizeof(float)) * static_cast<double>(memory.posts) +
-                  static_cast<double>(memory.block_bytes);
-    // A result is written from what is kept of it.
-    const double tiles =
-        std::ceil(ground_.window.columns / kTile) * std::ceil(ground_.window.rows / kTile);
-    const double band = bytes_a_value_, tile = kTile * kTile * band * static_cast<double>(bands_);
-    const double writing = most * band + std::min(kWriting_mib * kMiB, tiles * tile) +
-                           std::min(kTilesAtOnce, 3 * tiles + 2) * tile;
-    fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
-               ground_.parts.size() == 1 ? "" : "s");
-    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n",
-               (heights + std::max(most * bytes_a_post_, writing)) / kMiB + kProgram_mib,
-               heights / kMiB);
-    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
-               duration_text(ready_s_ + (passed_s_ - ready_s_) / std::max(share_, 1e-9)),
-               100 * share_, passed_s_, thread_count());
-    fmt::print(
-        "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
-        "folder of the result\n",
-        bands_, bands_ == 1 ? "" : "s", posts * bytes_a_value_ / kMiB);
+    dem::Window largest;
+    for (const output::PlannedTile& tile : todo_) {
+        if (posts_of(tile.window) > posts_of(largest)) largest = tile.window;
+        for (const dem::Window& part : ground_.parts_of(tile.window)) {
+            most = std::max(most, posts_of(part));
+            ++found.parts;
+        }
+    }
+    const int bytes_a_value = wanted_.type == output::RasterType::Float ? 4 : 1;
+    const RasterMemory memory =
+        raster_memory(ground_.posts, most, largest, wanted_.bytes_a_post, bytes_a_value,
+                      wanted_.bands.size(), ground_.options.memory);
+    constexpr double kMiB = 1 << 20, kBytesAPost = 8;  // as posts in memory
+    const double far_mib = far_ ? far_->kept_posts(largest) * kBytesAPost / kMiB : 0;
+    found.posts = posts_;
+    found.memory_mib = memory.all_mib + far_mib;
+    found.heights_mib = memory.heights_mib + far_mib;
+    found.ready_s = ready_s_;
+    found.computing_s = ready_s_ + (passed_s_ - ready_s_) / std::max(share_, 1e-9);
+    found.sampled_share = share_;
+    found.sampled_s = passed_s_;
+    found.threads = thread_count();
+    found.bands = wanted_.bands.size();
+    found.result_bytes = posts_ * bytes_a_value * static_cast<double>(wanted_.bands.size());
+    return found;
+}
+
+void RasterRun::tell_plan(const RasterEstimate& estimate) const {
+    RasterPlan plan{.estimate = estimate,
+                    .tiles = folder_->plan().tiles.size(),
+                    .there = folder_->there(),
+                    .bands = wanted_.bands.size(),
+                    .kind = arguments_.tiles.description(),
+                    .halo_m = wanted_.halo_m,
+                    .folder = arguments_.output.path,
+                    .words = arguments_.plan.words(*arguments_.verb),
+                    .overwrite = arguments_.output.overwrite};
+    if (!arguments_.dem.values.has("--memory"))
+        plan.words.insert(plan.words.begin() + 2,
+                          fmt::format("--memory={}", ground_.options.memory.mib()));
+    tell_raster_plan(arguments_.plan, plan, ground_.posts, todo_);
 }
 
 }  // namespace relevo::cli

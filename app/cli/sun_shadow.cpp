@@ -40,7 +40,7 @@ struct Asked {
 
 /// What became of all posts under a sun.
 struct Counts {
-    std::int64_t lit = 0, shaded = 0, holes = 0;
+    std::int64_t lit = 0, shaded = 0;
 };
 
 /// "AZ,EL" or "grid:AZ,EL". @throws Error (Usage)
@@ -178,32 +178,52 @@ void check(const Arguments& arguments) {
         bad_usage("--refraction: needs --time; --sun is an apparent direction");
 }
 
-/// Puts the light of all suns where it belongs. @return what it is
-std::string light_all(const dem::Posts& posts, const dem::Window& window,
-                      const std::vector<Asked>& suns, light::ShadowOptions options,
-                      RasterRun& raster, std::vector<Counts>& counts) {
-    std::string definition;
-    options.done = raster.done();
-    light::SunPlan plan(posts, {options.refraction, options.air}, window, options.soft);
+std::vector<light::SunOverDem> directions_of(const std::vector<Asked>& suns) {
     std::vector<light::SunOverDem> all;
     for (const Asked& asked : suns)
         all.push_back(asked.sun);
-    plan.add_suns(posts.grid().center(), all);
-    raster.each_part([&](const dem::Window& part) {
-        options.part = part;
-        for (std::size_t k = 0; k < suns.size(); ++k) {
-            const light::Shadows shadows = light::shadows(plan, plan.suns()[k], options);
-            counts[k].lit += shadows.lit_posts;
-            counts[k].shaded += shadows.shaded_posts;
-            counts[k].holes += shadows.holes;
-            if (options.soft)
-                raster.put(k, part, shadows.lit);
-            else
-                raster.put(k, part, session::mask_of(shadows.lit));
-            definition = shadows.definition;
-        }
-    });
-    return definition;
+    return all;
+}
+
+/// How far off ground can shade: that of the lowest sun.
+double halo_m(const dem::Posts& posts, const std::vector<Asked>& suns, double refraction) {
+    double farthest_m = 0;
+    for (const Asked& asked : suns)
+        farthest_m =
+            std::max(farthest_m, light::shade_reach_m(posts, refraction, asked.apparent_rad));
+    return std::min(farthest_m, light::horizon_reach_m(posts, refraction));
+}
+
+/// Puts the light of all suns where it belongs.
+/// @param definition  gets what it is
+/// @return RasterRun::make_all()
+bool light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
+               light::ShadowOptions options, RasterRun& raster, std::vector<Counts>& counts,
+               std::string& definition) {
+    options.done = raster.done();
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(
+            of, light::LightPath{options.refraction, options.air}, window, options.soft, around);
+        plan->add_suns(posts.grid().center(), directions_of(suns));
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            options.part = part;
+            std::int64_t holes = 0;
+            for (std::size_t k = 0; k < suns.size(); ++k) {
+                const light::Shadows shadows = light::shadows(*plan, plan->suns()[k], options);
+                counts[k].lit += shadows.lit_posts;
+                counts[k].shaded += shadows.shaded_posts;
+                holes = shadows.holes;
+                if (options.soft)
+                    raster.put(k, part, shadows.lit);
+                else
+                    raster.put(k, part, session::mask_of(shadows.lit));
+                definition = shadows.definition;
+            }
+            return {holes, definition};
+        };
+    };
+    return raster.make_all(maker_of);
 }
 
 void run(const Arguments& arguments) {
@@ -211,7 +231,7 @@ void run(const Arguments& arguments) {
     const bool timed = !arguments.times.empty();
     FilesInUse files;
     if (timed) files.add_input(arguments.times, "the table of times");
-    OutputFile& file = arguments.raster.open(files);
+    OutputFile* const file = arguments.raster.open(files);
     std::vector<dem::NamedTime> times;
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
     const RasterGround ground = arguments.raster.load();
@@ -225,25 +245,27 @@ void run(const Arguments& arguments) {
         options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
         air = session::air_of_posts(arguments.refraction.name(), posts);
     }
-    RasterRun raster(arguments.raster, file, ground,
-                     options.soft ? output::RasterType::Float : output::RasterType::Byte,
-                     bands_of(suns, timed, options.soft), suns.size(), 8);
-    raster.warn_of(
-        [&] {
-            std::vector<light::SunOverDem> all;
-            for (const Asked& asked : suns)
-                all.push_back(asked.sun);
-            return light::terrain_beyond(posts, ground.window, all, options,
-                                         arguments.raster.highest_m);
-        },
-        light::kHides);
-    std::vector<Counts> counts(suns.size());
-    const std::string definition = light_all(posts, ground.window, suns, options, raster, counts);
     output::RasterMetadata more{{"REFRACTION", air}};
     if (!timed)
         for (auto& item : about_sun(suns.front()))
             more.push_back(std::move(item));
-    if (!raster.finish(definition, counts.front().holes, std::move(more))) return;
+    RasterRun raster(arguments.raster, file, files, ground,
+                     {.type = options.soft ? output::RasterType::Float : output::RasterType::Byte,
+                      .bands = bands_of(suns, timed, options.soft),
+                      .metadata = std::move(more),
+                      .calls = suns.size(),
+                      .bytes_a_post = 8,
+                      .halo_m = halo_m(posts, suns, options.refraction)});
+    if (raster.is_done()) return;
+    raster.warn_of(
+        [&](const dem::Window& window) {
+            return light::terrain_beyond(posts, window, directions_of(suns), options,
+                                         arguments.raster.highest_m);
+        },
+        light::kHides);
+    std::vector<Counts> counts(suns.size());
+    std::string definition;
+    if (!light_all(posts, suns, options, raster, counts, definition)) return;
     if (timed)
         print_many(suns, counts, options.soft);
     else

@@ -25,49 +25,63 @@ std::vector<double> azimuths_of(int directions) {
     return azimuth_rad;
 }
 
+void warn_of_beyond(RasterRun& raster, const Arguments& arguments, const dem::Posts& posts) {
+    raster.warn_of(
+        [&](const dem::Window& window) {
+            return light::terrain_beyond(posts, window, azimuths_of(arguments.directions),
+                                         arguments.raster.terrestrial_refraction,
+                                         arguments.raster.highest_m);
+        },
+        light::kStandsOver);
+}
+
 void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
-    OutputFile& file = arguments.raster.open(files);
+    OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
-    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float,
-                     {session::sky_view_band()}, 1, 22);
+    const double refraction = arguments.raster.terrestrial_refraction;
+    RasterRun raster(arguments.raster, file, files, ground,
+                     {.type = output::RasterType::Float,
+                      .bands = {session::sky_view_band()},
+                      .metadata = {{"DIRECTIONS", fmt::format("{}", arguments.directions)}},
+                      .calls = 1,
+                      .bytes_a_post = 22,
+                      .halo_m = light::horizon_reach_m(ground.posts, refraction)});
+    if (raster.is_done()) return;
+    warn_of_beyond(raster, arguments, ground.posts);
     light::SkyViewOptions options{.directions = arguments.directions,
-                                  .refraction = arguments.raster.terrestrial_refraction,
+                                  .refraction = refraction,
                                   .level = arguments.level,
                                   .part = {},
                                   .done = raster.done()};
-    raster.warn_of(
-        [&] {
-            return light::terrain_beyond(
-                ground.posts, ground.window, azimuths_of(arguments.directions),
-                arguments.raster.terrestrial_refraction, arguments.raster.highest_m);
-        },
-        light::kStandsOver);
     double sum = 0, posts = 0;
-    std::int64_t holes = 0;
     std::string definition;
-    light::SunPlan plan(ground.posts, {options.refraction, {}}, ground.window);
-    light::add_sky_view_directions(plan, options.directions);
-    raster.each_part([&](const dem::Window& part) {
-        options.part = part;
-        const light::SkyView view = light::sky_view(plan, options);
-        const auto seen = static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
-        if (seen > 0) sum += view.mean * seen;
-        posts += seen;
-        holes += view.holes;
-        definition = view.definition;
-        raster.put(0, part, view.share);
-    });
-    if (!raster.finish(definition, holes,
-                       {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}))
-        return;
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(of, light::LightPath{refraction, {}},
+                                                           window, false, around);
+        light::add_sky_view_directions(*plan, options.directions);
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            options.part = part;
+            const light::SkyView view = light::sky_view(*plan, options);
+            const auto seen =
+                static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
+            if (seen > 0) sum += view.mean * seen;
+            posts += seen;
+            definition = view.definition;
+            raster.put(0, part, view.share);
+            return {view.holes, view.definition};
+        };
+    };
+    if (!raster.make_all(maker_of)) return;
     fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
 void run_horizons(const Arguments& arguments) {
     FilesInUse files;
-    OutputFile& file = arguments.raster.open(files);
+    OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
+    const double refraction = arguments.raster.terrestrial_refraction;
     const std::vector<double> azimuth_rad = azimuths_of(arguments.directions);
     std::vector<output::RasterBand> bands;
     for (const double azimuth : azimuth_rad) {
@@ -75,33 +89,37 @@ void run_horizons(const Arguments& arguments) {
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
-    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float, bands,
-                     azimuth_rad.size(), 12);
-    raster.warn_of(
-        [&] {
-            return light::terrain_beyond(ground.posts, ground.window, azimuth_rad,
-                                         arguments.raster.terrestrial_refraction,
-                                         arguments.raster.highest_m);
-        },
-        light::kStandsOver);
+    RasterRun raster(arguments.raster, file, files, ground,
+                     {.type = output::RasterType::Float,
+                      .bands = bands,
+                      .metadata = {},
+                      .calls = azimuth_rad.size(),
+                      .bytes_a_post = 12,
+                      .halo_m = light::horizon_reach_m(ground.posts, refraction)});
+    if (raster.is_done()) return;
+    warn_of_beyond(raster, arguments, ground.posts);
     const std::function<void(double)> done = raster.done();
-    std::int64_t holes = 0;
-    const std::string definition =
-        light::horizons_definition(arguments.raster.terrestrial_refraction);
-    light::SunPlan plan(ground.posts, {arguments.raster.terrestrial_refraction, {}}, ground.window);
-    light::add_horizon_directions(plan, azimuth_rad);
-    raster.each_part([&](const dem::Window& part) {
-        for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
-            Array2d<float> elevation = light::horizon_elevations(plan, plan.suns()[k], part);
-            for (float& value : elevation) {
-                if (k == 0) holes += std::isnan(value);
-                value = static_cast<float>(degrees(double{value}));
+    const std::string definition = light::horizons_definition(refraction);
+    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
+                              const dem::Window& window) -> PartMaker {
+        const auto plan = std::make_shared<light::SunPlan>(of, light::LightPath{refraction, {}},
+                                                           window, false, around);
+        light::add_horizon_directions(*plan, azimuth_rad);
+        return [&, plan](const dem::Window& part) -> PartFigures {
+            std::int64_t holes = 0;
+            for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
+                Array2d<float> elevation = light::horizon_elevations(*plan, plan->suns()[k], part);
+                for (float& value : elevation) {
+                    if (k == 0) holes += std::isnan(value);
+                    value = static_cast<float>(degrees(double{value}));
+                }
+                raster.put(k, part, elevation);
+                done(1);
             }
-            raster.put(k, part, elevation);
-            done(1);
-        }
-    });
-    if (!raster.finish(definition, holes, {})) return;
+            return {holes, definition};
+        };
+    };
+    if (!raster.make_all(maker_of)) return;
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
                arguments.directions, 360.0 / arguments.directions, definition);
 }

@@ -1,5 +1,6 @@
 #include "cli/verb.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -118,6 +119,24 @@ bool Verb::names_verb() const {
 
 std::size_t Verb::count() const {
     return app_->count();
+}
+
+std::string Verb::command() const {
+    std::string words = app_->get_name();
+    for (const CLI::App* above = app_->get_parent(); above && above->get_parent();
+         above = above->get_parent())
+        words = above->get_name() + " " + words;
+    return words;
+}
+
+std::vector<GivenOption> Verb::given() const {
+    std::vector<GivenOption> all;
+    for (const CLI::Option* const option : app_->get_options())
+        if (option->count() > 0)
+            all.push_back({option->get_name(option->get_positional()),
+                           option->get_items_expected_max() == 0, option->results()});
+    std::ranges::sort(all, {}, &GivenOption::name);
+    return all;
 }
 
 void Verb::callback(std::function<void()> run) const {

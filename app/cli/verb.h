@@ -59,6 +59,13 @@ class Option {
     CLI::Option* option_ = nullptr;
 };
 
+/// An option as the command line gives it.
+struct GivenOption {
+    std::string name;                 ///< "--tiles", "-k" or, without hyphens, "DEM"
+    bool is_flag = false;             ///< it has no value
+    std::vector<std::string> values;  ///< as they were written
+};
+
 /// A verb: a handle, which may be copied.
 class Verb {
   public:
@@ -91,6 +98,10 @@ class Verb {
     bool names_verb() const;
     /// How often the command line names it.
     std::size_t count() const;
+    /// Its name after those above it, without that of the program: "plan sun hours".
+    std::string command() const;
+    /// What the command line gives of its own options, by name. Once the line has been read.
+    std::vector<GivenOption> given() const;
     /// What is done once the command line has been read.
     void callback(std::function<void()> run) const;
 

@@ -15,6 +15,7 @@
 #include "dem/camera_photo.h"
 #include "dem/photo.h"
 #include "dem/placement.h"
+#include "dem/tile_index.h"
 #include "image/image.h"
 #include "session/overlay_time.h"
 #include "session/record.h"
@@ -103,6 +104,7 @@ FileKind kind_of_file(const std::string& path) {
     const std::string ending = lower(std::filesystem::path(path).extension().string());
     constexpr std::array<std::string_view, 5> kVectors = {".kml", ".shp", ".fgb", ".gpkg", ".tab"};
     try {
+        if (dem::is_tile_index(path)) return FileKind::Dem;
         if (ending == ".json" || ending == ".geojson") return kind_of_json(path);
         if (ending == ".gpx") return kind_of_gpx(path);
         if (ending == ".csv") return FileKind::Places;

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/object_store.h"
 #include "base/text.h"
 
 namespace relevo {
@@ -83,6 +84,9 @@ OutputFile FilesInUse::open_alone(const std::filesystem::path& path, bool overwr
     if (const auto there = identity_of(path))
         for (const Input& input : inputs_)
             if (identity_of(input.path) == there) refuse(path, who, input.path, input.what);
+    if (object_store_of(path.native()))
+        for (const Input& input : inputs_)
+            if (input.path == path) refuse(path, who, input.path, input.what);
     OutputFile opened(path, overwrite, who);
     for (const OutputFile& other : outputs_)
         if (opened.same_as(other))

@@ -12,6 +12,10 @@ namespace {
 /// The tile pages of one view, and light for a DEM that just fills it.
 constexpr std::int64_t kLeastOfPictures_mib = 64;
 
+/// Light is computed for no more, and finer heights are read where a view needs them: more means
+/// would only have to be read.
+constexpr std::int64_t kMostMeans = std::int64_t{1} << 25;
+
 /// Views of 1280 x 1024 pixels need 30 to 60 MiB, whatever the DEM.
 std::int64_t page_bytes_of(std::int64_t bytes) {
     constexpr std::int64_t kOfAView = 64 * MemoryBudget::kMiB;
@@ -35,7 +39,7 @@ MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
     const std::int64_t rest = std::max<std::int64_t>(
         0, bytes - light_bytes - budget.page_bytes - budget.block_bytes - budget.work_bytes);
     budget.drawn_posts = rest / kBytesADrawnPost;
-    budget.means = rest / kBytesAMean;
+    budget.means = std::min(rest / kBytesAMean, kMostMeans);
     return budget;
 }
 

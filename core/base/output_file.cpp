@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/link_walk.h"
+#include "base/object_store.h"
 #include "base/partial_names.h"
 #include "base/text.h"
 
@@ -81,9 +82,10 @@ struct OutputFile::Impl {
     Descriptor folder;  ///< of the file, its links followed
     std::string leaf;   ///< the file's name there
     std::optional<mode_t> replaced_mode;
-    Descriptor special;               ///< what is no regular file, open for writing
-    std::optional<PartialName> part;  ///< after `folder`, which it needs to its end
-    Descriptor file;                  ///< where the result is gathered
+    Descriptor special;                  ///< what is no regular file, open for writing
+    std::optional<PartialName> part;     ///< after `folder`, which it needs to its end
+    Descriptor file;                     ///< where the result is gathered
+    const ObjectStore* store = nullptr;  ///< that the path names an object of
 
     [[noreturn]] void refuse(const std::string& what) const {
         bad_input(fmt::format("{}: {}: {}", who, printable(path.string()), what));
@@ -95,11 +97,14 @@ struct OutputFile::Impl {
 
     void open();
     void open_special(const struct stat& target);
+    void open_object();
     void open_folder();
     void check_replaceable(const struct stat& target) const;
     void open_part();
     void settle() const;
     void deliver_special() const;
+    void put_object();
+    std::filesystem::path kept_path() const;
     void give_name();
     void take_name() const;
     void name_unnamed();
@@ -109,6 +114,8 @@ struct OutputFile::Impl {
 };
 
 void OutputFile::Impl::open() {
+    store = object_store_of(path.native());
+    if (store) return open_object();
     const std::string name = path.filename().string();
     const std::filesystem::path given_folder =
         path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
@@ -159,6 +166,22 @@ void OutputFile::Impl::open_special(const struct stat& target) {
     // Formats that go back in the file need one.
     file = Descriptor(memfd_create("relevo", MFD_CLOEXEC));
     if (!file) cannot_be_written(errno);
+}
+
+/// What is on the way to the store lies in a folder of this machine.
+void OutputFile::Impl::open_object() {
+    store->check_writable(path.native());
+    if (!overwrite && store->exists(path.native()))
+        refuse("exists; pass --overwrite to replace it");
+    std::error_code error;
+    const std::filesystem::path scratch = std::filesystem::temp_directory_path(error);
+    if (error) refuse(fmt::format("no folder for temporary files, {}", error.message()));
+    folder = Descriptor(::open(scratch.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder)
+        refuse(fmt::format("the folder {} cannot be written to, {}", printable(scratch.string()),
+                           std::strerror(errno)));
+    leaf = fmt::format("relevo-{}-{}", getpid(), path.filename().string());
+    open_part();
 }
 
 void OutputFile::Impl::open_folder() {
@@ -281,17 +304,23 @@ void OutputFile::finish_all(const std::vector<OutputFile*>& files) {
         if (file->impl_->special) file->impl_->deliver_special();
     std::vector<Impl*> named;
     try {
+        for (const OutputFile* file : files) {
+            if (!file->impl_->store) continue;
+            file->impl_->put_object();
+            named.push_back(file->impl_.get());
+        }
         for (const bool replacing : {false, true})
             for (const OutputFile* file : files) {
                 Impl& impl = *file->impl_;
-                if (impl.special || impl.replaced_mode.has_value() != replacing) continue;
+                if (impl.special || impl.store || impl.replaced_mode.has_value() != replacing)
+                    continue;
                 impl.give_name();
                 named.push_back(&impl);
                 impl.sync_folder();
             }
     } catch (...) {
         for (const Impl* impl : named)
-            if (!impl->replaced_mode) impl->take_back();
+            if (!impl->replaced_mode && !(impl->store && impl->overwrite)) impl->take_back();
         throw;
     }
 }
@@ -310,8 +339,24 @@ void OutputFile::Impl::give_name() {
         name_unnamed();
 }
 
+std::filesystem::path OutputFile::Impl::kept_path() const {
+    return std::filesystem::temp_directory_path() / leaf;
+}
+
+/// Keeps the result under a name of this machine where the store refuses it.
+void OutputFile::Impl::put_object() {
+    try {
+        store->put(file.get(), path.native());
+    } catch (const Error& refusal) {
+        give_name();
+        throw Error(refusal.code(), fmt::format("{}: {}; the result is kept as {}", who,
+                                                refusal.what(), printable(kept_path().string())));
+    }
+}
+
 /// Removes the file, unless its name is another's by now.
 void OutputFile::Impl::take_back() const noexcept {
+    if (store) return store->remove(path.native());
     struct stat mine {
     }, there{};
     if (fstat(file.get(), &mine) == 0 &&
@@ -392,6 +437,7 @@ void OutputFile::Impl::sync_folder() const {
 }
 
 bool OutputFile::replaces(const std::filesystem::path& other) const {
+    if (impl_->store) return impl_->path == other;
     struct stat a {
     }, b{};
     return impl_->replaced_mode && stat(other.c_str(), &b) == 0 &&
@@ -400,15 +446,33 @@ bool OutputFile::replaces(const std::filesystem::path& other) const {
 }
 
 bool OutputFile::replaces_any() const {
-    return impl_->replaced_mode.has_value();
+    return impl_->replaced_mode.has_value() || (impl_->store && impl_->overwrite);
 }
 
 bool OutputFile::same_as(const OutputFile& other) const {
+    if (impl_->store || other.impl_->store) return impl_->path == other.impl_->path;
     struct stat a {
     }, b{};
     return impl_->folder && other.impl_->folder && impl_->leaf == other.impl_->leaf &&
            fstat(impl_->folder.get(), &a) == 0 && fstat(other.impl_->folder.get(), &b) == 0 &&
            same_file(a, b);
+}
+
+bool is_taken(const std::filesystem::path& path) {
+    if (const ObjectStore* store = object_store_of(path.native()))
+        return store->exists(path.native());
+    std::error_code missing;
+    return std::filesystem::exists(std::filesystem::symlink_status(path, missing));
+}
+
+void make_folder_of(const std::filesystem::path& path, std::string_view who) {
+    const std::filesystem::path folder = path.parent_path();
+    if (folder.empty() || object_store_of(path.native())) return;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        bad_input(fmt::format("{}: {}: the folder cannot be made, {}", who,
+                              printable(folder.string()), error.message()));
 }
 
 void write_text(const std::filesystem::path& path, std::string_view text, bool overwrite,

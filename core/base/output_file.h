@@ -20,7 +20,10 @@ namespace relevo {
 ///
 /// A symbolic link is followed, and stays. A file that is replaced keeps its permissions, not its
 /// owner, and its other hard links keep the old content; a new one has those that the umask leaves.
-/// What is no regular file (a FIFO, a terminal, /dev/stdout) is written to as it is, at the end.
+/// What is no regular file (a FIFO, a terminal, /dev/stdout) is written to as it is, at the end. An
+/// object of a store (base/object_store.h) is gathered in the folder for temporary files, and put
+/// there at the end; where the store refuses it the result stays in that folder, and the error
+/// names it.
 class OutputFile {
   public:
     /// @param overwrite  an existing regular file may be replaced
@@ -69,6 +72,15 @@ class OutputFile {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Whether a result of this name would replace something: a file, a broken link, an object of a
+/// store.
+/// @throws Error (BadInput) where a store does not say
+bool is_taken(const std::filesystem::path& path);
+
+/// Makes the folder that a result is to lie in, and those around it; stores have none.
+/// @throws Error (BadInput) `who: folder: the folder cannot be made, why`
+void make_folder_of(const std::filesystem::path& path, std::string_view who);
 
 /// Writes a text file whole: OutputFile, write() and finish().
 /// @throws Error as they do

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <thread>
 
-#include <sched.h>
+#include "base/allocation.h"
 
 namespace relevo {
 namespace {
@@ -98,13 +98,7 @@ class Pool {
 }  // namespace
 
 int thread_count() {
-    static const int count = [] {
-        cpu_set_t set;
-        CPU_ZERO(&set);
-        if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
-        return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    }();
-    return count;
+    return allocation().threads;
 }
 
 void parallel_for(int begin, int end, int grain, const std::function<void(int, int)>& body) {

@@ -4,8 +4,7 @@
 
 namespace relevo {
 
-/// Threads that parallel_for uses, the calling one included: the processors this process may run
-/// on.
+/// Threads that parallel_for uses, the calling one included: those of allocation().
 int thread_count();
 
 /// Calls `body(first, last)` for pieces of [begin, end) on several threads, which are the process's

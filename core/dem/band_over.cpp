@@ -39,7 +39,7 @@ Cells read_cells(GDALRasterBandH band, const std::string& path) {
     if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, cells.values.data(), cells.values.width(),
                      cells.values.height(), GDT_Float32, 0, 0) != CE_None) {
         const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(reason)));
+        refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(path, reason)));
     }
     int has_nodata = 0;
     const auto nodata = static_cast<float>(GDALGetRasterNoDataValue(band, &has_nodata));

@@ -12,6 +12,8 @@
 #include "base/text.h"
 #include "dem/files_of.h"
 #include "dem/folder.h"
+#include "dem/tile_index.h"
+#include "dem/tile_opening.h"
 
 namespace relevo::dem {
 namespace {
@@ -39,14 +41,34 @@ bool add_line(const std::filesystem::path& file, std::string& text) {
     return true;
 }
 
+/// A raster whose changes its own file does not show.
+bool is_unseen(const std::string& raster) {
+    return raster.starts_with("/vsi") || lower(raster).ends_with(".vrt");
+}
+
+/// @returns false if the raster is no file
+bool add_with_companions(const std::string& raster, std::string& text) {
+    if (!add_line(raster, text)) return false;
+    for (const std::filesystem::path& file : companions_of(raster))
+        add_line(file, text);
+    return true;
+}
+
 std::optional<std::string> state_of_many(const std::vector<std::string>& rasters) {
     std::string text;
     for (const std::string& raster : rasters) {
-        if (raster.starts_with("/vsi") || lower(raster).ends_with(".vrt") ||
-            !add_line(raster, text))
-            return std::nullopt;
-        for (const std::filesystem::path& file : companions_of(raster))
-            add_line(file, text);
+        if (is_unseen(raster) || !add_with_companions(raster, text)) return std::nullopt;
+    }
+    return text;
+}
+
+/// An index and its tiles; of those that are missing, that they are.
+std::optional<std::string> state_of_index(const std::string& path) {
+    std::string text;
+    if (!add_line(path, text)) return std::nullopt;
+    for (const IndexedTile& tile : read_tile_index(path).tiles) {
+        if (is_unseen(tile.location)) return std::nullopt;
+        if (!add_with_companions(tile.location, text)) text += tile.location + "\tmissing\n";
     }
     return text;
 }
@@ -54,12 +76,15 @@ std::optional<std::string> state_of_many(const std::vector<std::string>& rasters
 }  // namespace
 
 std::optional<std::string> state_of_files(std::span<const std::string> paths) {
+    if (paths.size() == 1 && is_named_index(paths.front())) return state_of_index(paths.front());
     std::vector<std::string> rasters;
-    for (const std::string& path : paths)
+    for (const std::string& path : paths) {
+        if (is_named_index(path)) return std::nullopt;
         for (std::string& raster : rasters_of_quietly(path))
             rasters.push_back(std::move(raster));
+    }
     if (rasters.size() > kManyFiles) return state_of_many(rasters);
-    const std::optional<std::vector<std::filesystem::path>> files = local_files_of(paths);
+    const std::optional<std::vector<std::filesystem::path>> files = local_files_of(rasters);
     if (!files || files->empty()) return std::nullopt;
     std::string text;
     for (const std::filesystem::path& file : *files)

@@ -1,18 +1,24 @@
 #include "dem/files_of.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <set>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/folder.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
+#include "dem/remote.h"
+#include "dem/tile_opening.h"
 
 namespace relevo::dem {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kDeepest = 16;  ///< virtual rasters of virtual rasters
 
@@ -47,10 +53,10 @@ class Collector {
         try {
             dataset = open_dataset(path);
         } catch (const Error&) {
-            local_ = false;
+            are_local_ = false;
             return;  // what reads it says so
         }
-        local_ = local_ && !may_name_others(name);
+        are_local_ = are_local_ && !may_name_others(name);
         char** const entries = GDALGetFileList(dataset.get());
         for (char** entry = entries; entry && *entry; ++entry) {
             const std::string source = *entry;
@@ -61,8 +67,8 @@ class Collector {
         }
         CSLDestroy(entries);
     }
-    std::vector<std::filesystem::path> take() { return std::move(files_); }
-    bool are_local() const { return local_; }
+    std::vector<fs::path> take() { return std::move(files_); }
+    bool are_local() const { return are_local_; }
 
   private:
     /// A virtual raster that may name what GDAL does not list because it is out of reach.
@@ -75,33 +81,62 @@ class Collector {
     }
 
     void add_file(const std::string& name) {
-        std::filesystem::path file = file_behind(name);
-        local_ = local_ && !file.empty();
+        fs::path file = file_behind(name);
+        are_local_ = are_local_ && !file.empty();
         if (!file.empty()) files_.push_back(std::move(file));
     }
 
     std::set<std::string> seen_;
-    std::vector<std::filesystem::path> files_;
-    bool local_ = true;
+    std::vector<fs::path> files_;
+    bool are_local_ = true;
 };
 
-Collector collect(std::span<const std::string> paths) {
+/// An index and its tiles, of which none is opened.
+std::vector<fs::path> files_of_index(const std::string& path) {
+    std::vector<fs::path> files{file_behind(path)};
+    try {
+        for (const IndexedTile& tile : read_tile_index(path).tiles)
+            if (!is_remote(tile.location))
+                if (fs::path file = file_behind(tile.location); !file.empty())
+                    files.push_back(std::move(file));
+    } catch (const Error&) {
+        // What reads it says so.
+    }
+    return files;
+}
+
+std::vector<fs::path> files_of(const std::string& raster) {
     Collector collector;
-    for (const std::string& path : paths)
-        for (const std::string& raster : rasters_of_quietly(path))
-            collector.add(raster, 0);
-    return collector;
+    collector.add(raster, 0);
+    return collector.take();
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
-    return collect(paths).take();
+std::vector<fs::path> files_of(std::span<const std::string> paths) {
+    std::vector<fs::path> files;
+    for (const std::string& path : paths) {
+        if (is_named_index(path)) {
+            std::ranges::move(files_of_index(path), std::back_inserter(files));
+            continue;
+        }
+        const std::vector<std::string> rasters = rasters_of_quietly(path);
+        std::vector<std::vector<fs::path>> found(rasters.size());
+        parallel_for(0, static_cast<int>(rasters.size()), 1, [&](int first, int last) {
+            const WithoutListing without_listing(rasters.size());
+            for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
+                found[i] = files_of(rasters[i]);
+        });
+        for (std::vector<fs::path>& some : found)
+            std::ranges::move(some, std::back_inserter(files));
+    }
+    return files;
 }
 
-std::optional<std::vector<std::filesystem::path>> local_files_of(
-    std::span<const std::string> paths) {
-    Collector collector = collect(paths);
+std::optional<std::vector<fs::path>> local_files_of(std::span<const std::string> rasters) {
+    Collector collector;
+    for (const std::string& raster : rasters)
+        collector.add(raster, 0);
     if (!collector.are_local()) return std::nullopt;
     return collector.take();
 }

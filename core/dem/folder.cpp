@@ -18,6 +18,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
+#include "dem/tile_index.h"
 
 namespace relevo::dem {
 namespace {
@@ -129,7 +130,9 @@ struct Contents {
 Contents contents_of(const std::string& folder) {
     Contents found;
     std::error_code error;
-    for (const fs::path& entry : sorted_entries(folder)) {
+    const std::vector<fs::path> entries = sorted_entries(folder);
+    const WithoutListing without_listing(entries.size());
+    for (const fs::path& entry : entries) {
         const fs::file_status status = fs::status(entry, error);
         const bool is_folder = fs::is_directory(status);
         found.folders += is_folder;
@@ -142,7 +145,8 @@ Contents contents_of(const std::string& folder) {
         } else {
             refuse_unreadable(entry.string());
             const std::string driver = ends_like(entry, kArchives) ? "archive" : driver_of(entry);
-            if (driver.empty()) {
+            // An index lies beside the tiles that it names.
+            if (driver.empty() || is_tile_index(entry.string())) {
                 found.others.push_back(entry);
             } else {
                 found.rasters.push_back({entry, driver, fs::file_size(entry, error)});

@@ -7,6 +7,7 @@
 #include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <cpl_vsi_error.h>
 #include <gdal.h>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
@@ -40,7 +41,9 @@ RELEVO_GDAL(CPLParseXMLString);
 RELEVO_GDAL(CPLPopErrorHandler);
 RELEVO_GDAL(CPLProjectRelativeFilename);
 RELEVO_GDAL(CPLPushErrorHandlerEx);
+RELEVO_GDAL(CPLSetConfigOption);
 RELEVO_GDAL(CPLSetErrorHandler);
+RELEVO_GDAL(CPLSetThreadLocalConfigOption);
 RELEVO_GDAL(CPLTestBool);
 RELEVO_GDAL(CSLAddString);
 RELEVO_GDAL(CSLCount);
@@ -49,17 +52,26 @@ RELEVO_GDAL(CSLFetchNameValue);
 RELEVO_GDAL(CSLSetNameValue);
 
 RELEVO_GDAL(VSIAllocFilesystemPluginCallbacksStruct);
+RELEVO_GDAL(VSICurlPartialClearCache);
+RELEVO_GDAL(VSIErrorReset);
 RELEVO_GDAL(VSIFCloseL);
+RELEVO_GDAL(VSIFOpenExL);
 RELEVO_GDAL(VSIFOpenL);
 RELEVO_GDAL(VSIFReadL);
+RELEVO_GDAL(VSIFSeekL);
 RELEVO_GDAL(VSIFWriteL);
+RELEVO_GDAL(VSIFileFromMemBuffer);
 RELEVO_GDAL(VSIFree);
 RELEVO_GDAL(VSIFreeFilesystemPluginCallbacksStruct);
+RELEVO_GDAL(VSIGetLastErrorMsg);
 RELEVO_GDAL(VSIInstallPluginHandler);
+RELEVO_GDAL(VSINetworkStatsGetAsSerializedJSON);
 RELEVO_GDAL(VSIReadDirRecursive);
+RELEVO_GDAL(VSIStatExL);
 RELEVO_GDAL(VSIStatL);
 RELEVO_GDAL(VSIUnlink);
 
+RELEVO_GDAL(GDALAddBand);
 RELEVO_GDAL(GDALAllRegister);
 RELEVO_GDAL(GDALClose);
 RELEVO_GDAL(GDALCreate);
@@ -145,6 +157,8 @@ RELEVO_GDAL(OGR_G_GetLinearGeometry);
 RELEVO_GDAL(OGR_G_GetPointCount);
 RELEVO_GDAL(OGR_G_GetPoints);
 RELEVO_GDAL(OGR_G_HasCurveGeometry);
+RELEVO_GDAL(OGR_L_GetFeatureCount);
+RELEVO_GDAL(OGR_L_GetGeomType);
 RELEVO_GDAL(OGR_L_GetLayerDefn);
 RELEVO_GDAL(OGR_L_GetName);
 RELEVO_GDAL(OGR_L_GetNextFeature);

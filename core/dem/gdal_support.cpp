@@ -78,6 +78,14 @@ void hold_blocks(std::int64_t bytes) {
     BlockCache::instance().hold(bytes);
 }
 
+WithoutListing::WithoutListing(std::size_t files) : many_(files > 1000) {
+    if (many_) CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
+}
+
+WithoutListing::~WithoutListing() {
+    if (many_) CPLSetThreadLocalConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", nullptr);
+}
+
 GdalMessages::GdalMessages() {
     prepare_gdal();
     // GDAL keeps a stack of handlers for each thread.

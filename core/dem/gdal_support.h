@@ -1,10 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace relevo::dem {
+
+/// An open GDALDatasetH, which is a void*; serves one thread at a time.
+struct CloseDataset {
+    void operator()(void* dataset) const;
+};
+using Dataset = std::unique_ptr<void, CloseDataset>;
 
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
 /// keeps its cache of blocks to 256 MiB or less (unless GDAL_CACHEMAX is set), and keeps GDAL from
@@ -19,6 +26,21 @@ void allow_blocks(std::int64_t bytes);
 
 /// Raises it to at least so much: blocks that it cannot hold are decoded for every read.
 void hold_blocks(std::int64_t bytes);
+
+/// While it lives, GDAL asks for each file that may lie beside one that it opens, instead of
+/// listing the folder, on this thread. By itself it does so where a folder has more than 1000
+/// files, after having listed as many, which takes 0.5 ms for each file that is opened.
+class WithoutListing {
+  public:
+    /// @param files  that are opened in all; of no more than 1000, folders are listed
+    explicit WithoutListing(std::size_t files);
+    ~WithoutListing();
+    WithoutListing(const WithoutListing&) = delete;
+    WithoutListing& operator=(const WithoutListing&) = delete;
+
+  private:
+    bool many_;
+};
 
 /// Collects what GDAL says on this thread while it lives, instead of having it printed.
 class GdalMessages {

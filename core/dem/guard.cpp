@@ -1,10 +1,13 @@
 #include "dem/guard.h"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <climits>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -13,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/contains.h"
+#include "base/host_program.h"
 #include "dem/gdal.h"
 #include "dem/gdal_module.h"
 #include "dem/interpret.h"
@@ -25,8 +29,40 @@ void disarm_gdal() {
     gdal_module().disarm(is_local_file_system);
 }
 
+namespace {
+
+std::atomic<bool>& remote_allowed() {
+    static std::atomic<bool> allowed = false;
+    return allowed;
+}
+
+}  // namespace
+
 void allow_remote() {
+    // As GDAL has them a store that answers nothing is waited for without end. What users set
+    // stays.
+    struct Setting {
+        const char* name;
+        const char* value;
+    };
+    constexpr std::array kSettings{Setting{"GDAL_HTTP_CONNECTTIMEOUT", "10"},     // s
+                                   Setting{"GDAL_HTTP_LOW_SPEED_LIMIT", "1000"},  // bytes/s
+                                   Setting{"GDAL_HTTP_LOW_SPEED_TIME", "10"},     // s
+                                   Setting{"GDAL_HTTP_MAX_RETRY", "3"},
+                                   Setting{"GDAL_HTTP_RETRY_DELAY", "1"},  // s, doubled each time
+                                   Setting{"CPL_VSIL_NETWORK_STATS_ENABLED", "YES"}};
+    static std::once_flag once;
+    std::call_once(once, [&] {
+        for (const Setting& setting : kSettings)
+            if (!is_hosted() && !CPLGetConfigOption(setting.name, nullptr))
+                CPLSetConfigOption(setting.name, setting.value);
+    });
     gdal_module().allow_remote();
+    remote_allowed() = true;
+}
+
+bool is_remote_allowed() {
+    return remote_allowed();
 }
 
 std::string disarmed_driver_of(const std::string& path) {

@@ -14,6 +14,7 @@ void disarm_gdal();
 
 /// Gives the net back, for a name that a person has given. Safe on several threads at once.
 void allow_remote();
+bool is_remote_allowed();
 
 /// The driver that would take a file, had it not been disarmed: "WMS"; empty where there is none.
 std::string disarmed_driver_of(const std::string& path);

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/parallel_for.h"
 
@@ -18,6 +19,11 @@ constexpr float kHighest_m = 9000;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
+
+std::string NamedTiles::text() const {
+    const bool has_more = count > static_cast<std::int64_t>(first.size());
+    return fmt::format("{} ({}{})", count, fmt::join(first, ", "), has_more ? ", ..." : "");
+}
 
 std::string Description::nodata_text() const {
     if (!nodata) return {};

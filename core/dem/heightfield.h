@@ -48,6 +48,33 @@ double bilinear_m(const float* first_m, std::ptrdiff_t stride, double u, double 
 /// Where the unit of the heights was found.
 enum class UnitSource { Option, Band, VerticalCrs, Encoding, Assumed };
 
+/// Tiles that are alike in something: how many, and the first few by name.
+struct NamedTiles {
+    std::int64_t count = 0;
+    std::vector<std::string> first;
+
+    void add(const std::string& name, std::size_t most) {
+        if (first.size() < most) first.push_back(name);
+        ++count;
+    }
+    /// "3 (a, b, c)", "4 (a, b, c, ...)"
+    std::string text() const;
+};
+
+/// The tiles of indexes, as far as heights of them have been read.
+struct TileReport {
+    std::int64_t tiles = 0;   ///< of all indexes; 0: the DEM has none
+    std::int64_t opened = 0;  ///< of them, with no fault
+    NamedTiles missing;       ///< there is no such file; they are voids
+    NamedTiles broken;     ///< "name (why)": they cannot be read, or not all of them; voids there
+    NamedTiles differing;  ///< "name (in what)": unlike the tile that was opened first
+    /// "name (by up to 12 m)": some of their heights are more than 1 m off those of a tile below
+    NamedTiles stepped;
+
+    bool has_voids() const { return missing.count + broken.count > 0; }
+    bool has_faults() const { return has_voids() || differing.count + stepped.count > 0; }
+};
+
 /// What was read and what was assumed.
 struct Description {
     std::string path;                ///< as it was given; of several files "a.tif and 3 more"
@@ -81,6 +108,7 @@ struct Description {
     /// Those that are probably mistakes, which Source::open says with log::warning.
     std::vector<std::string> warnings;
 
+    TileReport tiles;       ///< Source::tiles() once the heights were loaded
     Statistics statistics;  ///< of the heights that were loaded; all zero before
 };
 

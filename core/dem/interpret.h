@@ -3,18 +3,13 @@
 #include <memory>
 #include <string>
 
+#include "dem/gdal_support.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 
 // What a file means: the questions that Source::open() asks GDAL. Inside of the layer only.
 
 namespace relevo::dem {
-
-/// An open GDALDatasetH, which is a void*; serves one thread at a time.
-struct CloseDataset {
-    void operator()(void* dataset) const;
-};
-using Dataset = std::unique_ptr<void, CloseDataset>;
 
 /// Notes a choice that the file did not make itself, and that is a guess.
 void guess(Description& about, const std::string& sentence);
@@ -23,8 +18,8 @@ void guess(Description& about, const std::string& sentence);
 [[noreturn]] void refuse(const std::string& path, const std::string& what);
 
 /// What to do about a reason that GDAL or the system gives, as the end of a message: "; the file is
-/// damaged or incomplete" where neither access nor the machine's means are at fault.
-std::string remedy_for(const std::string& reason);
+/// damaged or incomplete" where neither access, the machine's means nor the net are at fault.
+std::string remedy_for(const std::string& path, const std::string& reason);
 
 /// What GDAL opens as a raster, without a word where it opens nothing.
 Dataset gdal_open(const std::string& path);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "dem/interpret.h"
 #include "dem/sample.h"
 #include "dem/unearthly.h"
@@ -32,9 +33,32 @@ std::string stored_text(const Description& about, double stored) {
     return fmt::format("{:.17g}", stored);
 }
 
+/// Says what the tiles of indexes turned out to be while all heights were read.
+void report_tiles(const Source& source, Description& about) {
+    about.tiles = source.tiles();
+    source.allow_voids(about.tiles.missing.count + about.tiles.broken.count);
+    const TileReport& tiles = about.tiles;
+    const auto warn = [&](const NamedTiles& some, const char* what) {
+        if (some.count == 0) return;
+        about.warnings.push_back(fmt::format("{} of {} tiles {}", some.text(), tiles.tiles, what));
+        about.assumptions.push_back(about.warnings.back());
+        log::warning(fmt::format("{}: {}", about.path, printable(about.warnings.back())));
+    };
+    warn(tiles.missing, "are missing: their posts are voids");
+    warn(tiles.broken, "cannot be read: their posts are voids");
+    const auto say = [&](const NamedTiles& some, const char* what) {
+        if (some.count == 0) return;
+        guess(about, fmt::format("{} of {} tiles {}", some.text(), tiles.tiles, what));
+        log::info(fmt::format("{}: {}", about.path, printable(about.guesses.back())));
+    };
+    say(tiles.differing, "differ from the first, and are read as they say");
+    say(tiles.stepped, "differ in height from the tiles below; the later one is on top");
+}
+
 }  // namespace
 
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar) {
+    report_tiles(source, about);
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(

@@ -1,23 +1,22 @@
+#include "dem/mosaic.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/contains.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "dem/piece.h"
+#include "dem/tile_reach.h"
 
 namespace relevo::dem {
 namespace {
-
-/// Of a post: files whose posts are this near to those of the others are on one grid.
-constexpr double kSamePlace = 0.02;
-/// More columns or rows than a raster of the whole Earth at 1 m has is a mistake.
-constexpr double kMaxPosts = 5e7;
 
 bool north_up(const Affine& a) {
     return a.x_row == 0 && a.y_column == 0 && a.x_column > 0 && a.y_row < 0;
@@ -39,58 +38,6 @@ const Piece* finest(const std::vector<Piece>& pieces, bool need_north_up) {
     return best;
 }
 
-/// The place of a piece whose posts are on the grid's; nothing where they are not.
-std::optional<Window> place_on_grid(const Piece& piece, const Grid& grid) {
-    if (piece.grid.crs().text() != grid.crs().text()) return std::nullopt;
-    const Affine& own = piece.grid.affine();
-    const int columns = piece.grid.columns(), rows = piece.grid.rows();
-    double shift = 0;
-    if (grid.crs().is_geographic()) {
-        // The tiles on both sides of the antimeridian, or one that counts past 180 degrees.
-        const double turn = 2 * kPi / grid.crs().unit_si();
-        const auto middle = [](const Grid& of) {
-            return of.affine()((of.columns() - 1) / 2.0, (of.rows() - 1) / 2.0).x;
-        };
-        shift = turn * std::round((middle(grid) - middle(piece.grid)) / turn);
-    }
-    const auto post = [&](int column, int row) {
-        return grid.affine().inverse(own(column, row) + glm::dvec2(shift, 0));
-    };
-    const glm::dvec2 first = glm::round(post(0, 0));
-    for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(columns - 1, 0),
-                                    glm::ivec2(0, rows - 1), glm::ivec2(columns - 1, rows - 1)}) {
-        const glm::dvec2 off = post(corner.x, corner.y) - first - glm::dvec2(corner);
-        if (!(std::abs(off.x) < kSamePlace && std::abs(off.y) < kSamePlace)) return std::nullopt;
-    }
-    if (!(std::abs(first.x) < kMaxPosts && std::abs(first.y) < kMaxPosts)) return std::nullopt;
-    return Window{static_cast<int>(first.x), static_cast<int>(first.y), columns, rows};
-}
-
-/// The posts of the grid that a piece covers with its cells.
-Window place_resampled(const Piece& piece, const Grid& grid, const Piece& reference) {
-    constexpr int kSteps = 32;
-    glm::dvec2 low(std::numeric_limits<double>::infinity());
-    glm::dvec2 high = -low;
-    for (int i = 0; i <= 4 * kSteps; ++i) {
-        const double t = (i % kSteps) / double{kSteps};
-        const double w = piece.grid.columns(), h = piece.grid.rows();
-        const std::array<glm::dvec2, 4> sides = {glm::dvec2(t * w, 0), glm::dvec2(w, t * h),
-                                                 glm::dvec2(w - t * w, h),
-                                                 glm::dvec2(0, h - t * h)};
-        const glm::dvec2 edge = sides[static_cast<std::size_t>(i / kSteps % 4)] - 0.5;
-        const glm::dvec2 at = grid.post(piece.grid.place(edge.x, edge.y));
-        if (!(std::abs(at.x) < kMaxPosts && std::abs(at.y) < kMaxPosts))
-            refuse(piece.path,
-                   fmt::format("cannot be resampled to the grid of {}: parts of it are not within "
-                               "{}; bring them to one CRS with gdalwarp",
-                               reference.path, grid.crs().name()));
-        low = glm::min(low, at);
-        high = glm::max(high, at);
-    }
-    const glm::ivec2 first(glm::ceil(low)), last(glm::floor(high));
-    return {first.x, first.y, std::max(1, last.x - first.x + 1), std::max(1, last.y - first.y + 1)};
-}
-
 /// What the pieces do not agree on, for people: "-9999, -32768"; empty where they do.
 template <typename Text>
 std::string differing(const std::vector<Piece>& pieces, const Text& text) {
@@ -103,19 +50,28 @@ std::string differing(const std::vector<Piece>& pieces, const Text& text) {
 /// What each file was taken to mean, with its name where not all files are alike in it.
 void gather(const std::vector<Piece>& pieces, std::vector<std::string> Description::*list,
             Description& about) {
-    std::vector<std::string>& result = about.*list;
-    result.clear();
+    constexpr std::size_t kMostNamed = 8;  // of thousands, one line says how many
+    std::map<std::string, std::vector<const Piece*>> said_by;
+    std::vector<std::string> sentences;  // each once, in order
     for (const Piece& piece : pieces)
         for (const std::string& sentence : piece.about.*list) {
-            const auto says = [&](const Piece& other) {
-                const std::vector<std::string>& lines = other.about.*list;
-                return contains(lines, sentence);
-            };
-            const bool all = std::ranges::all_of(pieces, says);
-            const std::string line =
-                all ? sentence : fmt::format("{}: {}", piece.about.path, sentence);
-            if (!contains(result, line)) result.push_back(line);
+            std::vector<const Piece*>& by = said_by[sentence];
+            if (by.empty()) sentences.push_back(sentence);
+            if (by.empty() || by.back() != &piece) by.push_back(&piece);
         }
+    std::vector<std::string>& result = about.*list;
+    result.clear();
+    for (const std::string& sentence : sentences) {
+        const std::vector<const Piece*>& by = said_by[sentence];
+        const std::string& first = by.front()->about.path;
+        if (by.size() == pieces.size())
+            result.push_back(sentence);
+        else if (by.size() > kMostNamed)
+            result.push_back(fmt::format("{} and {} more: {}", first, by.size() - 1, sentence));
+        else
+            for (const Piece* piece : by)
+                result.push_back(fmt::format("{}: {}", piece->about.path, sentence));
+    }
 }
 
 /// The two files that are furthest from each other, by their middles.
@@ -167,7 +123,7 @@ void say_if_scattered(const std::vector<Piece>& pieces, double covered, Descript
 std::vector<std::optional<Window>> places_on(const std::vector<Piece>& pieces, const Grid& grid) {
     std::vector<std::optional<Window>> places;
     for (const Piece& piece : pieces)
-        places.push_back(place_on_grid(piece, grid));
+        places.push_back(place_on_grid(piece.grid, grid));
     return places;
 }
 
@@ -176,13 +132,13 @@ bool is_whole(const std::vector<std::optional<Window>>& places) {
 }
 
 /// Has a piece read as it is resampled to another one's grid.
-void resample(Piece& piece, const Piece& reference) {
+void resample(Piece& piece, const Frame& frame) {
     if (piece.encoding != Encoding::None)
         refuse(piece.path, fmt::format("cannot be joined with {}: pictures of encoded heights "
                                        "must be on one grid, tiles of one zoom",
-                                       reference.path));
-    const Grid& grid = reference.grid;
-    piece.place = place_resampled(piece, grid, reference);
+                                       frame.name));
+    const Grid& grid = frame.grid;
+    piece.place = place_resampled(piece.grid, grid, piece.path, frame.name);
     const glm::dvec2 first = grid.affine()(piece.place.column, piece.place.row);
     Affine affine = grid.affine();
     affine.x0 = first.x;
@@ -192,17 +148,37 @@ void resample(Piece& piece, const Piece& reference) {
     piece.sparse.reset();
 }
 
+/// Which pieces are tiles of indexes: what of them counts is where their index says they are.
+std::vector<bool> are_samples(const std::vector<Piece>& pieces,
+                              const std::vector<OpenIndex>& indexes) {
+    std::vector<bool> result(pieces.size());
+    for (const OpenIndex& index : indexes)
+        result[index.piece] = true;
+    return result;
+}
+
 /// The grid around all places, from whose first post they count then.
-/// @param covered  filled with the share of its posts that the pieces have
-Grid grid_around(std::vector<Piece>& pieces, const Grid& grid, double& covered) {
+/// @param covered  filled with the share of its posts that the rasters have
+Grid grid_around(std::vector<Piece>& pieces, std::vector<OpenIndex>& indexes, Frame& frame,
+                 double& covered) {
+    const std::vector<bool> is_sample = are_samples(pieces, indexes);
+    std::vector<Window*> counted, moved;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (!is_sample[i]) counted.push_back(&pieces[i].place);
+        moved.push_back(&pieces[i].place);
+    }
+    for (OpenIndex& index : indexes)
+        for (Window& reach : index.reaches) {
+            counted.push_back(&reach);
+            moved.push_back(&reach);
+        }
     glm::dvec2 low(std::numeric_limits<double>::infinity());
     glm::dvec2 high = -low;
     covered = 0;
-    for (const Piece& piece : pieces) {
-        const Window& w = piece.place;
-        low = glm::min(low, glm::dvec2(w.column, w.row));
-        high = glm::max(high, glm::dvec2(w.column + w.columns, w.row + w.rows));
-        covered += double(w.columns) * w.rows;
+    for (const Window* w : counted) {
+        low = glm::min(low, glm::dvec2(w->column, w->row));
+        high = glm::max(high, glm::dvec2(w->end_column(), w->end_row()));
+        covered += double(w->columns) * w->rows;
     }
     const glm::dvec2 size = high - low;
     if (size.x > kMaxPosts || size.y > kMaxPosts)
@@ -210,16 +186,17 @@ Grid grid_around(std::vector<Piece>& pieces, const Grid& grid, double& covered) 
                fmt::format("too far from the other files for one DEM, which would have {:.0f} x "
                            "{:.0f} posts",
                            size.x, size.y));
-    for (Piece& piece : pieces) {
-        piece.place.column -= static_cast<int>(low.x);
-        piece.place.row -= static_cast<int>(low.y);
+    frame.origin = glm::ivec2(low);
+    for (Window* w : moved) {
+        w->column -= frame.origin.x;
+        w->row -= frame.origin.y;
     }
     covered /= size.x * size.y;
-    const glm::dvec2 origin = grid.affine()(low.x, low.y);
-    Affine affine = grid.affine();
+    const glm::dvec2 origin = frame.grid.affine()(low.x, low.y);
+    Affine affine = frame.grid.affine();
     affine.x0 = origin.x;
     affine.y0 = origin.y;
-    return {static_cast<int>(size.x), static_cast<int>(size.y), affine, grid.crs()};
+    return {static_cast<int>(size.x), static_cast<int>(size.y), affine, frame.grid.crs()};
 }
 
 /// Says what the pieces differ in.
@@ -242,52 +219,95 @@ void describe_differences(const std::vector<Piece>& pieces, Description& about) 
             fmt::format("voids are marked by {}: each file has its own value", nodata));
 }
 
+/// Names the files and says how many rasters they are.
+void describe_files(const std::vector<Piece>& pieces, const std::vector<OpenIndex>& indexes,
+                    Description& about) {
+    about.files.clear();
+    for (const Piece& piece : pieces)
+        about.files.push_back(piece.about.path);
+    std::size_t rasters = pieces.size();
+    for (const OpenIndex& index : indexes) {
+        about.files[index.piece] = index.index.path;
+        rasters += index.index.tiles.size() - 1;
+    }
+    about.path = about.files.size() == 1
+                     ? about.files.front()
+                     : fmt::format("{} and {} more", about.files.front(), about.files.size() - 1);
+    const bool is_index = pieces.size() == 1;
+    about.assumptions.insert(
+        about.assumptions.begin(),
+        is_index ? fmt::format("{} tiles of an index ({}) are joined; where they overlap, the "
+                               "later one is on top",
+                               rasters, indexes.front().index.format)
+                 : fmt::format("{} files are joined; where they overlap, the one named last is on "
+                               "top",
+                               rasters));
+    for (const OpenIndex& index : indexes)
+        if (index.index.repeated > 0)
+            guess(about, fmt::format("{} of the rows name a tile again and are skipped",
+                                     index.index.repeated));
+}
+
+/// The piece whose grid all are read on, and the places of those that lie on it.
+const Piece& reference_of(const std::vector<Piece>& pieces,
+                          std::vector<std::optional<Window>>& places) {
+    const Piece* reference = finest(pieces, false);
+    places = places_on(pieces, reference->grid);
+    if (is_whole(places)) return *reference;
+    reference = finest(pieces, true);
+    if (!reference)
+        refuse(pieces.front().path,
+               "cannot be joined with the others: their grids differ and none of them runs "
+               "east and south; bring them to one grid with gdalwarp");
+    places = places_on(pieces, reference->grid);
+    return *reference;
+}
+
 }  // namespace
 
-Grid join(std::vector<Piece>& pieces, Description& about) {
-    if (pieces.size() == 1) {
+void settle_on(const Frame& frame, Piece& piece) {
+    if (const std::optional<Window> place = place_on_grid(piece.grid, frame.grid))
+        piece.place = *place;
+    else
+        resample(piece, frame);
+    piece.place.column -= frame.origin.x;
+    piece.place.row -= frame.origin.y;
+}
+
+Frame join(std::vector<Piece>& pieces, std::vector<OpenIndex>& indexes, Description& about,
+           std::optional<Grid>& whole) {
+    if (pieces.size() == 1 && indexes.empty()) {
         about = pieces.front().about;
-        return pieces.front().grid;
+        whole = pieces.front().grid;
+        return {pieces.front().grid, pieces.front().path};
     }
-    const Piece* reference = finest(pieces, false);
-    std::vector<std::optional<Window>> places = places_on(pieces, reference->grid);
-    if (!is_whole(places)) {
-        reference = finest(pieces, true);
-        if (!reference)
-            refuse(pieces.front().path,
-                   "cannot be joined with the others: their grids differ and none of them runs "
-                   "east and south; bring them to one grid with gdalwarp");
-        places = places_on(pieces, reference->grid);
-    }
+    std::vector<std::optional<Window>> places;
+    const Piece& reference = reference_of(pieces, places);
+    Frame frame{reference.grid, reference.path};
     int resampled = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (places[i]) {
             pieces[i].place = *places[i];
         } else {
-            resample(pieces[i], *reference);
+            resample(pieces[i], frame);
             ++resampled;
         }
     }
+    for (OpenIndex& index : indexes)
+        index.reaches = reaches_of(index.index, frame.grid, frame.name);
     double covered = 0;
-    Grid whole = grid_around(pieces, reference->grid, covered);
+    whole = grid_around(pieces, indexes, frame, covered);
 
-    about = reference->about;
-    about.files.clear();
-    for (const Piece& piece : pieces)
-        about.files.push_back(piece.about.path);
-    about.path = fmt::format("{} and {} more", pieces.front().about.path, pieces.size() - 1);
+    about = reference.about;
     gather(pieces, &Description::assumptions, about);
     gather(pieces, &Description::guesses, about);
-    about.assumptions.insert(
-        about.assumptions.begin(),
-        fmt::format("{} files are joined; where they overlap, the one named last is on top",
-                    pieces.size()));
+    describe_files(pieces, indexes, about);
     if (resampled > 0)
         guess(about, fmt::format("{} of the {} files {} resampled to the grid of {}", resampled,
-                                 pieces.size(), resampled == 1 ? "is" : "are", reference->path));
+                                 pieces.size(), resampled == 1 ? "is" : "are", frame.name));
     say_if_scattered(pieces, covered, about);
     describe_differences(pieces, about);
-    return whole;
+    return frame;
 }
 
 }  // namespace relevo::dem

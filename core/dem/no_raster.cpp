@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "dem/tile_index.h"
 
 namespace relevo::dem {
 namespace {
@@ -56,6 +57,7 @@ std::string no_file_text(const std::string& path) {
 }
 
 std::string no_raster_text(const std::string& path) {
+    if (const std::string why = why_no_index(path); !why.empty()) return why;
     std::string head(4096, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(head.data(), static_cast<std::streamsize>(head.size()));

@@ -33,7 +33,8 @@ void guess(Description& about, const std::string& sentence) {
     about.guesses.push_back(sentence);
 }
 
-std::string remedy_for(const std::string& reason) {
+std::string remedy_for(const std::string& path, const std::string& reason) {
+    if (is_remote(path)) return "; the net or the store may have failed, try again";
     const auto is = [&](int error) {
         return reason.find(std::strerror(error)) != std::string::npos;
     };
@@ -127,9 +128,10 @@ Dataset open_archive(std::string& path) {
 }  // namespace
 
 Dataset gdal_open(const std::string& path) {
+    const RemoteSiblings siblings(path);
     return Dataset(GDALOpenEx(path.c_str(),
                               GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                              nullptr, nullptr));
+                              nullptr, siblings.list()));
 }
 
 Dataset open_dataset(std::string& path) {
@@ -163,7 +165,8 @@ Dataset open_dataset(std::string& path) {
         refuse(path, no_file_text(path));
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
         refuse(path, no_raster_text(path));
-    refuse(path, fmt::format("cannot be opened as a raster, {}{}", reason, remedy_for(reason)));
+    refuse(path,
+           fmt::format("cannot be opened as a raster, {}{}", reason, remedy_for(path, reason)));
 }
 
 }  // namespace relevo::dem

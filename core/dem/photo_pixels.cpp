@@ -150,7 +150,7 @@ void PhotoPixels::read_bytes(void* band, const Window& rows, std::uint8_t* bytes
                      rows.columns, rows.rows, GDT_Byte, 0, 0) == CE_None)
         return;
     const std::string reason = messages.failure(path_);
-    refuse(path_, fmt::format("cannot be read, {}{}", reason, remedy_for(reason)));
+    refuse(path_, fmt::format("cannot be read, {}{}", reason, remedy_for(path_, reason)));
 }
 
 std::uint32_t PhotoPixels::texel(const std::uint8_t* bytes, std::size_t at, std::size_t count,

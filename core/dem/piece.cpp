@@ -360,6 +360,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     constexpr std::size_t kManyFiles = 16;  // a look at each takes 5 to 30 ms
 
     std::string path = given;
+    const WithoutListing without_listing(files);
     Dataset dataset = open_dataset(path);
     GdalMessages messages;  // what follows asks the file for things that it may not have
     Description about;
@@ -385,6 +386,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     const double metres = settle_scale(given, band, where.crs, about);
 
     Piece piece{.path = path,
+                .files = files,
                 .grid = Grid(columns, rows, where.affine, std::move(where.crs)),
                 .place = {0, 0, columns, rows},
                 .encoding = options.encoding,
@@ -405,13 +407,15 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
 Dataset Piece::open() const {
     const std::array<const char*, 2> driver = {about.driver.c_str(), nullptr};
     GdalMessages messages;
+    const WithoutListing without_listing(files);
+    const RemoteSiblings siblings(path);
     Dataset dataset(GDALOpenEx(path.c_str(),
                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                               driver.data(), nullptr, nullptr));
+                               driver.data(), nullptr, siblings.list()));
     if (!dataset) {
         refuse_unreadable(path);
         const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(reason)));
+        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(path, reason)));
     }
     return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
 }
@@ -443,8 +447,8 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
         // Some drivers say that a block is broken, fill it and carry on.
         if (result != CE_None || messages.any_failure()) {
             const std::string reason = messages.failure(path);
-            refuse(path,
-                   fmt::format("its heights cannot be read, {}{}", reason, remedy_for(reason)));
+            refuse(path, fmt::format("its heights cannot be read, {}{}", reason,
+                                     remedy_for(path, reason)));
         }
     };
     const GDALRasterBandH band = band_of(resampling ? 1 : about.band);

@@ -9,7 +9,7 @@
 #include "dem/interpret.h"
 #include "dem/sparse.h"
 
-// One raster of a DEM, and several joined. Inside of the layer only.
+// One raster of a DEM. Inside of the layer only.
 
 namespace relevo::dem {
 
@@ -36,9 +36,10 @@ struct Resampling {
 
 /// One raster: where it is, what its numbers mean, and how they are read.
 struct Piece {
-    std::string path;  ///< by which GDAL opens it
-    Grid grid;         ///< its own
-    Window place;      ///< its posts among those of the DEM, after resampling
+    std::string path;       ///< by which GDAL opens it
+    std::size_t files = 1;  ///< of the DEM
+    Grid grid;              ///< its own
+    Window place;           ///< its posts among those of the DEM, after resampling
     std::optional<Resampling> resampling;
 
     BandScale band_scale;
@@ -73,9 +74,5 @@ struct Piece {
 /// @param opened   becomes the handle that was used for it, as by Piece::open()
 Piece open_piece(const std::string& path, const LoadOptions& options, std::size_t files,
                  Dataset& opened);
-
-/// Gives each piece its place on one grid, which is returned, and says in `about` what was done.
-/// @throws Error (BadInput) where they cannot be joined
-Grid join(std::vector<Piece>& pieces, Description& about);
 
 }  // namespace relevo::dem

@@ -8,8 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
+#include "dem/content_sum.h"
 #include "dem/load.h"
 #include "dem/survey.h"
 #include "dem/tile_cache.h"
@@ -75,8 +77,9 @@ struct Posts::Impl {
     int block = kLeastBlock;
     Array2d<float> block_highest_m;
     std::unique_ptr<TileCache> tiles;
-    Array2d<float> thinned_m;  // of posts that are not in memory
-    Spikes spikes;             // of such posts, where they matter
+    Array2d<float> thinned_m;   // of posts that are not in memory
+    Spikes spikes;              // of such posts, where they matter
+    std::uint64_t content = 0;  // of such posts
     std::once_flag outside_once;
     Array2d<std::uint8_t> outside;  // of thinned posts, made where it is asked for; empty: none is
 
@@ -95,12 +98,13 @@ struct Posts::Impl {
     View view(const Window& window, std::vector<float>& buffer) const;
     void take(const Heightfield& in_memory);
     void take(const Source& on_demand, std::int64_t max_posts);
+    void take(const Source& on_demand, std::int64_t max_posts, const PostsFacts& facts);
 
   private:
     template <typename Body>
     void for_blocks(const Window& slab, const Body& body);
     void find_highest(const View& view, const Window& slab);
-    void go_through(std::int64_t slab_posts);
+    std::optional<Collar> go_through(std::int64_t slab_posts);
     template <typename HeightAt>
     void keep_thinned(const Window& slab, const HeightAt& height_at);
     void settle_holes();
@@ -176,18 +180,47 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
     };
     while (blocks() > max_posts / 4)
         block *= 2;
-    block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
-                                     blocks_of(grid().rows(), block), -kInfinity);
-    const int step = thinning();
-    thinned_m = Array2d<float>((grid().columns() - 1) / step + 1, (grid().rows() - 1) / step + 1,
-                               std::numeric_limits<float>::quiet_NaN());
-    go_through(std::min(max_posts / 2, kMaxSlab));
+    std::optional<Collar> collar;
+    // Once more where a tile has broken on the way, of which a part was read.
+    std::int64_t before = 0;
+    do {
+        before = source->broken_while_read();
+        about.statistics = {};
+        spikes = {};
+        content = 0;
+        block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
+                                         blocks_of(grid().rows(), block), -kInfinity);
+        thinned_m = Array2d<float>(thinned(grid().columns()), thinned(grid().rows()),
+                                   std::numeric_limits<float>::quiet_NaN());
+        collar = go_through(std::min(max_posts / 2, kMaxSlab));
+    } while (source->broken_while_read() != before);
+    report_heights(*source, about, collar);
     settle_holes();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
 }
 
+/// Without reading any post.
+void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts, const PostsFacts& facts) {
+    refuse_endless_sides(on_demand);
+    source = &on_demand;
+    about = on_demand.description();
+    about.statistics = facts.statistics;
+    about.tiles = facts.tiles;
+    on_demand.allow_voids(facts.tiles.missing.count + facts.tiles.broken.count);
+    content = facts.content;
+    thinned_m = facts.thinned_m;
+    if (thinned_m.width() != thinned(grid().columns()) ||
+        thinned_m.height() != thinned(grid().rows()) || about.statistics.valid == 0)
+        bad_input(about.path + ": what is known of its posts is of another DEM");
+    // One block, as high as the highest post.
+    while (block < std::max(grid().columns(), grid().rows()))
+        block *= 2;
+    block_highest_m = Array2d<float>(1, 1, about.statistics.max_m);
+    tiles = std::make_unique<TileCache>(on_demand, max_posts);
+}
+
 /// @param slab_posts  that memory has room for
-void Posts::Impl::go_through(std::int64_t slab_posts) {
+std::optional<Collar> Posts::Impl::go_through(std::int64_t slab_posts) {
     const int columns = grid().columns(), rows = grid().rows();
     // Whole blocks or, where one is more than there is room for, parts of them.
     int side = std::min(block, kSlab_rows);
@@ -224,6 +257,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 keep_thinned(slab, [&](int, int) { return blank.height_m; });
                 about.statistics +=
                     statistics(blank.height_m, std::int64_t{own_columns} * own_rows);
+                content += content_of(blank.height_m, {column, row, own_columns, own_rows});
             } else {
                 const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
                 const View read{height_m.data(), height_m.width(), slab.column, slab.row};
@@ -231,6 +265,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 keep_thinned(slab, [&](int c, int r) { return *read.at(c, r); });
                 if (collar_steps) collar_steps->add(height_m, {0, 0, slab.columns, slab.rows});
                 about.statistics += statistics(height_m, {0, 0, own_columns, own_rows});
+                content += content_of(read, {column, row, own_columns, own_rows});
                 // Those at the seams of slabs are too few to matter.
                 if (look_for_spikes)
                     spikes += find_spikes(height_m, grid().post_spacing_m(),
@@ -241,7 +276,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
         }
         row += count;
     }
-    report_heights(*source, about, collar_steps ? collar_steps->collar() : std::nullopt);
+    return collar_steps ? collar_steps->collar() : std::nullopt;
 }
 
 Posts::View Posts::Impl::Unrolled::view(const Window& window, std::vector<float>& buffer) const {
@@ -283,11 +318,15 @@ Posts::Posts(const Source& source, std::int64_t max_posts) : impl_(std::make_uni
     impl_->take(source, max_posts);
 }
 
-Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options) {
+Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options,
+                  const PostsFacts* facts) {
     auto impl = std::make_unique<Impl>();
     impl->own_source.emplace(Source::open(paths, options));
     const Grid& grid = impl->own_source->grid();
-    if (std::int64_t{grid.columns()} * grid.rows() > options.memory.posts) {
+    const bool beyond_memory = std::int64_t{grid.columns()} * grid.rows() > options.memory.posts;
+    if (beyond_memory && facts) {
+        impl->take(*impl->own_source, options.memory.posts, *facts);
+    } else if (beyond_memory) {
         impl->take(*impl->own_source, options.memory.posts);
         check_heights(impl->about, impl->spikes, options);
     } else {
@@ -297,6 +336,26 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
         impl->take(*impl->own_field);
     }
     return Posts(std::move(impl));
+}
+
+PostsFacts Posts::facts() const {
+    const Impl& impl = *impl_;
+    assert(!impl.unrolled);
+    PostsFacts facts{impl.about.statistics,
+                     Array2d<float>(impl.thinned(grid().columns()), impl.thinned(grid().rows())),
+                     content(), impl.about.tiles};
+    for (int row = 0; row < facts.thinned_m.height(); ++row)
+        for (int column = 0; column < facts.thinned_m.width(); ++column)
+            facts.thinned_m.at(column, row) = impl.thinned_at(column, row);
+    return facts;
+}
+
+std::uint64_t Posts::content() const {
+    const Impl& impl = *impl_;
+    assert(!impl.unrolled);
+    if (!impl.field) return impl.content;
+    const Array2d<float>& all = impl.field->height_m;
+    return content_of({all.data(), all.width(), 0, 0}, {0, 0, all.width(), all.height()});
 }
 
 Posts Posts::unrolled(const Posts& posts, int first, int columns) {

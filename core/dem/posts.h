@@ -14,6 +14,14 @@
 
 namespace relevo::dem {
 
+/// What is known of a DEM once all of its posts have been read.
+struct PostsFacts {
+    Statistics statistics;
+    Array2d<float> thinned_m;   ///< Posts::thinned_m(), every Posts::thinning()-th post each way
+    std::uint64_t content = 0;  ///< Posts::content()
+    TileReport tiles;
+};
+
 /// Every post of a DEM, whether memory holds them all or not, for figures that means would falsify.
 ///
 /// The DEM is gone through once. From then on the lowest and the highest post are known, and the
@@ -37,7 +45,15 @@ class Posts {
 
     /// Opens files and holds their posts in memory where LoadOptions::memory allows that.
     /// @throws Error (BadInput) as dem::load, and for heights that no ground of the Earth has
-    static Posts load(std::span<const std::string> paths, const LoadOptions& options = {});
+    /// @param facts  of the same DEM: one beyond memory is then opened and not read, and its
+    /// heights
+    ///     are not checked again. Figures are the same; bound_m() is the highest post everywhere
+    static Posts load(std::span<const std::string> paths, const LoadOptions& options = {},
+                      const PostsFacts* facts = nullptr);
+    /// Of posts that are not unrolled().
+    PostsFacts facts() const;
+    /// A hash of all heights and their places (ContentSum). Of posts that are not unrolled().
+    std::uint64_t content() const;
 
     /// The posts of a grid that goes round the Earth, starting at another column and repeated as
     /// often as wanted: column 0 is `first` of the others.

@@ -4,7 +4,12 @@
 #include <array>
 #include <cctype>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include "dem/gdal.h"
+#include "dem/guard.h"
+#include "dem/interpret.h"
 
 namespace relevo::dem {
 namespace {
@@ -38,6 +43,55 @@ bool is_remote(std::string_view name) {
         if (at == 0 || !is_of_a_name(static_cast<unsigned char>(name[at - 1])))
             if (!is_local_file_system(name.substr(at))) return true;
     return false;
+}
+
+Presence remote_presence(const std::string& name) {
+    VSIErrorReset();
+    VSIStatBufL status{};
+    if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_SET_ERROR_FLAG) == 0)
+        return Presence::There;
+    const std::string reason = VSIGetLastErrorMsg();
+    // GDAL remembers what is missing, and then gives no reason.
+    if (reason.empty() || reason.ends_with(" 404")) return Presence::Missing;
+    if (reason.ends_with(" 403")) return Presence::Hidden;
+    VSICurlPartialClearCache(name.c_str());
+    refuse(name, fmt::format("cannot be asked for, {}; try again", reason));
+}
+
+std::optional<NetworkUse> network_use() {
+    if (!is_remote_allowed()) return std::nullopt;
+    char* const text = VSINetworkStatsGetAsSerializedJSON(nullptr);
+    const nlohmann::json all = nlohmann::json::parse(text ? text : "", nullptr, false);
+    VSIFree(text);
+    NetworkUse use;
+    const auto methods = all.find("methods");
+    if (!all.is_object() || methods == all.end()) return use;
+    for (const auto& [name, method] : methods->items()) {
+        use.requests += method.value("count", std::int64_t{0});
+        use.read_bytes += method.value("downloaded_bytes", std::int64_t{0});
+        use.written_bytes += method.value("uploaded_bytes", std::int64_t{0});
+    }
+    return use;
+}
+
+RemoteSiblings::RemoteSiblings(const std::string& path) {
+    const std::size_t slash = path.rfind('/'), dot = path.rfind('.');
+    const bool is_tiff = dot != std::string::npos && slash != std::string::npos && dot > slash &&
+                         (EQUAL(path.c_str() + dot, ".tif") || EQUAL(path.c_str() + dot, ".tiff"));
+    if (!is_tiff || !path.starts_with("/vsi") || !is_remote(path) || is_local_file_system(path) ||
+        path.starts_with("/vsistdin"))
+        return;
+    names_.push_back(path.substr(slash + 1));
+    const std::string stem = path.substr(0, dot);
+    for (const std::string& name : {path + ".ovr", path + ".msk", path + ".aux.xml", stem + ".tfw"})
+        if (remote_presence(name) == Presence::There) names_.push_back(name.substr(slash + 1));
+    for (const std::string& name : names_)
+        list_.push_back(name.c_str());
+    list_.push_back(nullptr);
+}
+
+const char* const* RemoteSiblings::list() const {
+    return list_.empty() ? nullptr : list_.data();
 }
 
 }  // namespace relevo::dem

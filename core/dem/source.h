@@ -40,14 +40,18 @@ struct LoadOptions {
 /// are read as they are, all others are resampled to it (bilinear) as they are read. Where files
 /// overlap, the one named last is on top, as in gdalbuildvrt; its holes show what is below. Each
 /// file keeps its own nodata value, unit, scale and mask.
+///
+/// An index (tile_index.h) stands for its tiles. One of them is opened with it; the others are
+/// opened when heights of theirs are first read. Tiles that are missing or broken are voids, which
+/// tiles() says.
 class Source {
   public:
     /// Opens a raster of any dialect (docs/dem-formats.md) and settles what its numbers mean. Reads
     /// no heights but, where no nodata value is declared, a sample to see whether one is used;
     /// what was found there holds for every later read. Guesses are said with log::info.
     /// @param path  a file, a folder that is one raster (Esri grids), a folder of rasters, an
-    ///              archive of one, or another name that GDAL opens ("/vsizip/alps.zip/alps.tif",
-    ///              "NETCDF:a.nc:topo")
+    ///              archive of one, an index of tiles, or another name that GDAL opens
+    ///              ("/vsizip/alps.zip/alps.tif", "NETCDF:a.nc:topo")
     /// @throws Error (BadInput) `PATH: what, expected E but got G; remedy`
     static Source open(const std::string& path, const LoadOptions& options = {});
 
@@ -95,7 +99,15 @@ class Source {
     };
     Blank blank(const Window& window) const;
 
-    /// Rows that are read best at once, those of the files' blocks.
+    /// What is known of the tiles of indexes, as far as they have been read.
+    TileReport tiles() const;
+    /// How many of them have broken while they were read.
+    std::int64_t broken_while_read() const;
+    /// From now on no more tiles than these may be missing or broken; one that is more is an error
+    /// (BadInput) of what reads it, because what is known of the DEM would be wrong.
+    void allow_voids(std::int64_t tiles) const;
+
+    /// Rows that are read best at once, those of the files' blocks; of many files, of a file.
     int block_rows() const;
 
     /// Columns and rows of the file's blocks; 256 x 256 for several files.

@@ -1,5 +1,6 @@
 #include "dem/summary.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -53,6 +54,7 @@ Summary summary_of(const Description& about, const Grid& grid, const Spikes& spi
     Summary s;
     s.path = about.path;
     s.files = about.files;
+    s.tiles = about.tiles;
     s.driver = about.driver;
     s.data_type = about.data_type;
     s.columns = grid.columns();
@@ -119,6 +121,32 @@ void report_unearthly(Description& about, const Grid& grid, const Spikes& spikes
     log::info(fmt::format("{}: {}", about.path, what));
 }
 
+/// Null for a DEM without an index.
+nlohmann::ordered_json tiles_json(const TileReport& tiles) {
+    if (tiles.tiles == 0) return nullptr;
+    return {{"count", tiles.tiles},
+            {"missing", tiles.missing.count},
+            {"missing_names", tiles.missing.first},
+            {"broken", tiles.broken.count},
+            {"broken_names", tiles.broken.first},
+            {"differing", tiles.differing.count},
+            {"differing_names", tiles.differing.first},
+            {"stepped", tiles.stepped.count},
+            {"stepped_names", tiles.stepped.first}};
+}
+
+/// "509, 3 missing, 1 broken"
+std::string tiles_text(const TileReport& tiles) {
+    std::string text = fmt::format("{}", tiles.tiles);
+    const auto add = [&](const NamedTiles& some, const char* what) {
+        if (some.count > 0) text += fmt::format(", {} {}", some.count, what);
+    };
+    add(tiles.missing, "missing");
+    add(tiles.broken, "broken");
+    add(tiles.differing, "unlike the first");
+    return text;
+}
+
 }  // namespace
 
 Summary summarize(const Source& source, std::int64_t max_posts) {
@@ -149,7 +177,12 @@ std::string to_json(const Summary& s) {
     using Json = nlohmann::ordered_json;
     Json json;
     json["path"] = s.path;
-    json["files"] = s.files;
+    constexpr std::size_t kMostNames = 100;
+    json["files"] = std::vector<std::string>(
+        s.files.begin(),
+        s.files.begin() + static_cast<std::ptrdiff_t>(std::min(s.files.size(), kMostNames)));
+    json["file_count"] = s.files.size();
+    json["tiles"] = tiles_json(s.tiles);
     json["driver"] = s.driver;
     json["data_type"] = s.data_type;
     json["size"] = {s.columns, s.rows};
@@ -195,6 +228,7 @@ std::string to_text(const Summary& s) {
     line("file", s.path);
     line("format", fmt::format("{}, {}{}", s.driver, s.data_type,
                                s.bands > 1 ? fmt::format(", band {} of {}", s.band, s.bands) : ""));
+    if (s.tiles.tiles > 0) line("tiles", tiles_text(s.tiles));
     line("posts", fmt::format("{} x {}", s.columns, s.rows));
     line("crs", s.crs.size() < 40 && s.crs != s.crs_name ? fmt::format("{} ({})", s.crs, s.crs_name)
                                                          : s.crs_name);

@@ -13,6 +13,7 @@ namespace relevo::dem {
 struct Summary {
     std::string path;
     std::vector<std::string> files;  ///< more than one: they are joined
+    TileReport tiles;                ///< of indexes
     std::string driver;              ///< GDAL's short name
     std::string data_type;           ///< "Int16"
     int columns = 0;
@@ -53,11 +54,13 @@ Summary summarize(const Source& source, std::int64_t max_posts);
 Summary summarize(const Heightfield& field);
 
 /// The object of `relevo info --json`, two blanks a level, no line end after it. Keys
-/// (docs/cli.md): path, files, driver, data_type, size [columns, rows], crs, crs_name, center
-/// {lat_deg, lon_deg}, utm, mgrs, extent_m [east, north], side_m [x, y], row_azimuth_deg,
-/// post_spacing_m [x, y], elevation_m {min, max}, nodata_share, nodata, nodata_text, holes_by
-/// [text], outliers, spikes {count, limit_m, worst}, unit, unit_source,
-/// vertical_datum, band, bands, assumptions [text]. Unknown ones are null.
+/// (docs/cli.md): path, files (the first hundred), file_count, tiles {count, missing,
+/// missing_names, broken, broken_names, differing, differing_names, stepped, stepped_names},
+/// driver, data_type, size [columns, rows], crs, crs_name, center {lat_deg, lon_deg}, utm, mgrs,
+/// extent_m [east, north], side_m [x, y], row_azimuth_deg, post_spacing_m [x, y], elevation_m {min,
+/// max}, nodata_share, nodata, nodata_text, holes_by [text], outliers, spikes {count, limit_m,
+/// worst}, unit, unit_source, vertical_datum, band, bands, assumptions [text]. Unknown ones are
+/// null.
 std::string to_json(const Summary& summary);
 
 /// The same in lines for people, a line end after each.

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "geo/other_body.h"
 #include "geo/proj.h"
 #include "geo/proj_files.h"
 
@@ -160,27 +162,6 @@ std::string readable_name(PJ_CONTEXT* context, const PJ* crs) {
     return fmt::format("{} on {}", method, readable_name(context, base.get()));
 }
 
-/// What body a CRS is of, by the size of its ellipsoid; empty for the Earth.
-std::string other_body(PJ_CONTEXT* context, const PJ* crs) {
-    struct Body {
-        const char* name;
-        double radius_m;
-    };
-    constexpr std::array kBodies = {Body{"the Moon", 1'737'400}, Body{"Mars", 3'396'190},
-                                    Body{"Mercury", 2'439'700}, Body{"Venus", 6'051'800}};
-    constexpr double kEarth_m = 6'378'137;
-    const auto like = [](double a, double b) { return std::abs(a / b - 1) < 0.01; };
-    const Pj ellipsoid(proj_get_ellipsoid(context, crs));
-    double radius_m = 0;
-    if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &radius_m, nullptr,
-                                                     nullptr, nullptr))
-        return {};
-    if (like(radius_m, kEarth_m)) return {};
-    for (const Body& body : kBodies)
-        if (like(radius_m, body.radius_m)) return body.name;
-    return fmt::format("a body of {:.0f} km radius", radius_m / 1000);
-}
-
 /// Whether PROJ takes the text for an operation unless told that it defines a CRS.
 bool wants_type_crs(std::string_view text) {
     if (text.find("pipeline") != std::string_view::npos ||
@@ -197,6 +178,20 @@ bool wants_type_crs(std::string_view text) {
     bad_input(fmt::format("{}: {}: not a coordinate reference system that PROJ knows{}{}; {}", who,
                           text.empty() ? "\"\"" : shortened(text), reason.empty() ? "" : ", ",
                           reason, remedy));
+}
+
+/// The CRS that a text means. @param reason  what PROJ has logged last
+Pj created(PJ_CONTEXT* c, std::string_view text, std::string_view who, const std::string& reason) {
+    std::string definition(text);
+    if (wants_type_crs(text)) definition += text.starts_with('+') ? " +type=crs" : " type=crs";
+    if (equal_ignoring_case(text, "WGS84")) definition = "EPSG:4326";
+    Pj crs(text.empty() ? nullptr : proj_create(c, definition.c_str()));
+    if (!crs) unknown(who, text, reason);
+    if (!proj_is_crs(crs.get())) unknown(who, text, "it is an operation");
+    const std::string name = proj_get_name(crs.get());
+    if (is_name(text) && definition == text && !equal_ignoring_case(name, text))
+        unknown(who, text, fmt::format("the nearest name is \"{}\"", name));
+    return crs;
 }
 
 }  // namespace
@@ -216,20 +211,13 @@ struct Crs::Impl {
     Transformation original;
     mutable std::vector<Transformation> idle;
 
-    Impl() = default;
-    Impl(const Impl& other)
-        : name(other.name),
-          code(other.code),
-          wkt(other.wkt),
-          geographic(other.geographic),
-          is_wgs84(other.is_wgs84),
-          axis(other.axis),
-          vertical(other.vertical) {
-        if (is_wgs84) return;
-        const std::lock_guard lock(other.mutex);
-        original = other.original.clone();
-    }
-    Impl& operator=(const Impl&) = delete;
+    /// @throws Error (BadInput) as Crs::parse()
+    static std::shared_ptr<const Impl> parse(std::string_view text, std::string_view who);
+
+    /// Reads the vertical part, and completes the code with it. False where it cannot be read.
+    bool settle_vertical(PJ_CONTEXT* c, const PJ* compound, const std::string& horizontal_code);
+    /// Makes the transformation to WGS 84, and keeps its context. False where PROJ knows none.
+    bool settle_way(Context& context, const PJ* horizontal, const PJ* wgs84);
 
     /// Calls body(PJ_CONTEXT*, PJ*) with a transformation that is this call's alone.
     template <typename Body>
@@ -282,35 +270,67 @@ const std::string kWgs84Wkt =
 }  // namespace
 
 Crs::Crs() = default;
-Crs::Crs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Crs::Crs(const Crs& other) : impl_(other.impl_ ? std::make_unique<Impl>(*other.impl_) : nullptr) {}
-Crs::Crs(Crs&&) noexcept = default;
-Crs& Crs::operator=(Crs&&) noexcept = default;
-Crs::~Crs() = default;
-
-Crs& Crs::operator=(const Crs& other) {
-    if (this != &other) *this = Crs(other);
-    return *this;
-}
+Crs::Crs(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 Crs Crs::parse(std::string_view given, std::string_view who) {
+    constexpr std::size_t kMostKept = 64;
+    struct Kept {
+        std::mutex mutex;
+        std::map<std::string, std::shared_ptr<const Impl>, std::less<>> by_text;
+    };
+    // Never destroyed: PROJ's library may be gone when this would be.
+    static Kept& kept = *new Kept;
     const std::string_view text = trimmed(given);
-    auto impl = std::make_unique<Impl>();
+    {
+        const std::lock_guard lock(kept.mutex);
+        if (const auto found = kept.by_text.find(text); found != kept.by_text.end())
+            return Crs(found->second);
+    }
+    std::shared_ptr<const Impl> fresh = Impl::parse(text, who);
+    const std::lock_guard lock(kept.mutex);
+    if (kept.by_text.size() >= kMostKept) kept.by_text.clear();
+    return Crs(kept.by_text.emplace(text, std::move(fresh)).first->second);
+}
+
+bool Crs::Impl::settle_vertical(PJ_CONTEXT* c, const PJ* compound,
+                                const std::string& horizontal_code) {
+    const Pj bound(proj_crs_get_sub_crs(c, compound, 1));
+    const Pj found = bound ? unbound(c, bound.get()) : nullptr;
+    const std::optional<Axis> up = found ? axis_of(c, found.get(), 0) : std::nullopt;
+    if (!up) return false;
+    vertical = VerticalCrs{proj_get_name(found.get()), code_of(found.get()), up->unit_name,
+                           up->unit_si, up->down};
+    // EPSG's own short form for a pair that has no code of its own.
+    if (code.empty() && horizontal_code.starts_with("EPSG:") &&
+        vertical->code.starts_with("EPSG:") && proj_get_type(bound.get()) != PJ_TYPE_BOUND_CRS)
+        code = fmt::format("{}+{}", horizontal_code, vertical->code.substr(5));
+    return true;
+}
+
+bool Crs::Impl::settle_way(Context& context, const PJ* horizontal, const PJ* wgs84) {
+    PJ_CONTEXT* const c = context.get();
+    const Pj authority_order(
+        proj_create_crs_to_crs_from_pj(c, horizontal, wgs84, nullptr, nullptr));
+    Pj gis_order(authority_order ? proj_normalize_for_visualization(c, authority_order.get())
+                                 : nullptr);
+    if (!gis_order) return false;
+    // Nobody reads what single points have to say.
+    proj_log_func(c, nullptr, [](void*, int, const char*) {});
+    original.pj = std::move(gis_order);
+    original.context = std::move(context);
+    return true;
+}
+
+std::shared_ptr<const Crs::Impl> Crs::Impl::parse(std::string_view text, std::string_view who) {
+    auto impl = std::make_shared<Impl>();
     std::string reason;
     Context context(proj_context_create());
     PJ_CONTEXT* const c = context.get();
     proj_log_func(c, &reason, keep_last_message);
     open_regular_files_only(c);
 
-    std::string definition(text);
-    if (wants_type_crs(text)) definition += text.starts_with('+') ? " +type=crs" : " type=crs";
-    if (equal_ignoring_case(text, "WGS84")) definition = kWgs84Code;
-    const Pj crs(text.empty() ? nullptr : proj_create(c, definition.c_str()));
-    if (!crs) unknown(who, text, reason);
-    if (!proj_is_crs(crs.get())) unknown(who, text, "it is an operation");
+    const Pj crs = created(c, text, who, reason);
     impl->name = proj_get_name(crs.get());
-    if (is_name(text) && definition == text && !equal_ignoring_case(impl->name, text))
-        unknown(who, text, fmt::format("the nearest name is \"{}\"", impl->name));
 
     const std::string subject = is_name(text) || text.size() <= 20 ? std::string(text) : impl->name;
     const auto unusable = [&](std::string_view why) {
@@ -329,18 +349,8 @@ Crs Crs::parse(std::string_view given, std::string_view who) {
 
     impl->code = code_of(crs.get());
     if (compound) {
-        const Pj bound(proj_crs_get_sub_crs(c, crs.get(), 1));
-        const Pj vertical = bound ? unbound(c, bound.get()) : nullptr;
-        const std::optional<Axis> axis = vertical ? axis_of(c, vertical.get(), 0) : std::nullopt;
-        if (!axis) unusable("its vertical part cannot be read");
-        impl->vertical = VerticalCrs{proj_get_name(vertical.get()), code_of(vertical.get()),
-                                     axis->unit_name, axis->unit_si, axis->down};
-        // EPSG's own short form for a pair that has no code of its own.
-        const std::string horizontal_code = code_of(horizontal.get());
-        if (impl->code.empty() && horizontal_code.starts_with("EPSG:") &&
-            impl->vertical->code.starts_with("EPSG:") &&
-            proj_get_type(bound.get()) != PJ_TYPE_BOUND_CRS)
-            impl->code = fmt::format("{}+{}", horizontal_code, impl->vertical->code.substr(5));
+        if (!impl->settle_vertical(c, crs.get(), code_of(horizontal.get())))
+            unusable("its vertical part cannot be read");
     } else if (const std::optional<Axis> axis = axis_of(c, horizontal.get(), 2)) {
         impl->vertical =
             VerticalCrs{"ellipsoidal height", "", axis->unit_name, axis->unit_si, axis->down};
@@ -364,20 +374,12 @@ Crs Crs::parse(std::string_view given, std::string_view who) {
     if (!wgs84) failed(fmt::format("{}: {}: PROJ has no database, {}", who, subject, reason));
     impl->is_wgs84 = proj_is_equivalent_to(horizontal.get(), wgs84.get(),
                                            PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
-    if (impl->is_wgs84) return Crs(std::move(impl));
+    if (impl->is_wgs84) return impl;
 
     reason.clear();
-    const Pj authority_order(
-        proj_create_crs_to_crs_from_pj(c, horizontal.get(), wgs84.get(), nullptr, nullptr));
-    Pj gis_order(authority_order ? proj_normalize_for_visualization(c, authority_order.get())
-                                 : nullptr);
-    if (!gis_order)
+    if (!impl->settle_way(context, horizontal.get(), wgs84.get()))
         unusable(fmt::format("no way from it to WGS 84{}{}", reason.empty() ? "" : ", ", reason));
-    // `reason` ends with this call; nobody reads what single points have to say.
-    proj_log_func(c, nullptr, [](void*, int, const char*) {});
-    impl->original.pj = std::move(gis_order);
-    impl->original.context = std::move(context);
-    return Crs(std::move(impl));
+    return impl;
 }
 
 const std::string& Crs::name() const {

@@ -16,10 +16,6 @@
 namespace relevo::output {
 namespace {
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-
 struct Free {
     void operator()(char* text) const { VSIFree(text); }
 };
@@ -109,7 +105,7 @@ void write_geotiff(OutputFile& file, std::span<const std::byte> tiff, const Geor
     if (VSIFCloseL(plain) != 0 || !written) refuse();
     {
         const char* const drivers[] = {"GTiff", nullptr};
-        const std::unique_ptr<void, Close> dataset(
+        const dem::Dataset dataset(
             GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers, nullptr, nullptr));
         std::array<double, 6> transform = where.geotransform;
         if (!dataset || GDALSetGeoTransform(dataset.get(), transform.data()) != CE_None ||

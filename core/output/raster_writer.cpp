@@ -21,10 +21,7 @@
 namespace relevo::output {
 namespace {
 
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<void, Close>;
+using dem::Dataset;
 
 GDALDriverH driver(const char* name) {
     GDALDriverH const found = GDALGetDriverByName(name);

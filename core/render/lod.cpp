@@ -163,7 +163,14 @@ TileTree::Node& TileTree::node(const TileKey& key) {
             [this](double column, double row) { return grid_->place(column, row); }, *frame_,
             glm::dvec2(first), glm::dvec2(span_on_dem(*pyramid_, first, kTileQuads << key.level)));
     }
+    found->second.frame = frames_;
     return found->second;
+}
+
+void TileTree::begin_frame() {
+    if (nodes_.size() > kMostKept)
+        std::erase_if(nodes_, [this](const auto& entry) { return entry.second.frame != frames_; });
+    ++frames_;
 }
 
 const PatchNet& TileTree::net(const TileKey& key) {

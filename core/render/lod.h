@@ -111,8 +111,17 @@ class TileTree {
     void displace(const Displacement& displacement);
     const Displacement& displacement() const { return displacement_; }
 
-    /// Proxy grid of a tile; u and v run from 0 to 1 over its part of the DEM. Cached.
+    /// Proxy grid of a tile; u and v run from 0 to 1 over its part of the DEM. Cached until
+    /// begin_frame().
     const PatchNet& net(const TileKey& key);
+
+    /// Tiles kept without being used; 400 bytes each.
+    static constexpr std::size_t kMostKept = 1 << 15;
+
+    /// To be called before each frame. If more than kMostKept tiles are cached, those that the last
+    /// frame did not use are freed: a flight over 100,000 x 100,000 posts passes millions.
+    void begin_frame();
+    std::size_t cached() const { return nodes_.size(); }
 
     /// Bounding box of a tile's posts, displaced and undisplaced.
     Box box(const TileKey& key, double exaggeration);
@@ -166,6 +175,7 @@ class TileTree {
         PatchNet net;
         Box box;
         double exaggeration = -1;  ///< used for `box`; -1: not computed
+        std::uint32_t frame = 0;   ///< that used it last
     };
 
     template <typename Visit>
@@ -197,6 +207,7 @@ class TileTree {
     std::vector<double> error_m_;   // error of a level
     std::vector<double> relief_m_;  // by level: largest height range of a tile, displaced
     std::unordered_map<std::uint64_t, Node> nodes_;
+    std::uint32_t frames_ = 0;  // begun
 };
 
 }  // namespace relevo::render

@@ -341,6 +341,7 @@ LodView Terrain::view_of(const FrameInputs& inputs, const glm::ivec2& picture_px
 TileSelection Terrain::select_for_frame(const FrameInputs& inputs, const glm::ivec2& picture_px,
                                         const glm::ivec2& frame_px) {
     const LodView view = view_of(inputs, picture_px);
+    tree_.begin_frame();
     complete_ = true;
     TileSelection selection =
         inputs.loading == Loading::Background ? select_in_background(view) : select(view);

@@ -1,6 +1,7 @@
 #include "session/scene_inputs.h"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "base/sha256.h"
 #include "dem/files_of.h"
 #include "dem/remote.h"
+#include "dem/tile_index.h"
 #include "effect/instance_reader.h"
 #include "effect/native_module.h"
 #include "effect/selection.h"
@@ -186,11 +188,22 @@ std::string SceneInputs::digest_of_rasters(const std::vector<std::string>& names
     // Takes about one second to hash.
     constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
     const std::vector<fs::path>& files = raster_files(names);
-    if (bytes_of(files) <= kMostBytes) return digest(files);
+    const bool has_index =
+        std::ranges::any_of(names, [this](const std::string& name) { return is_index(name); });
+    if (!has_index && bytes_of(files) <= kMostBytes) return digest(files);
     std::string stamps;
+    for (const std::string& name : names)
+        if (is_index(name)) stamps += sha256(name) + "\n";
     for (const fs::path& file : files)
-        stamps += stamp_of(file) + "\n";
+        if (!is_index(file.string())) stamps += stamp_of(file) + "\n";
     return sha256_of_text(stamps).substr(0, kDigits);
+}
+
+bool SceneInputs::is_index(const std::string& name) {
+    if (!dem::is_index_name(name) || dem::is_remote(name)) return false;
+    const auto [known, fresh] = indexes_.try_emplace(name);
+    if (fresh) known->second = dem::is_tile_index(name);
+    return known->second;
 }
 
 std::string SceneInputs::digest(const std::vector<fs::path>& files) {
@@ -226,7 +239,13 @@ std::string SceneInputs::record_of(const scene::Scene& scene) {
 std::vector<HashedFile> SceneInputs::hashed_dem(const scene::Scene& scene) {
     std::vector<HashedFile> result;
     std::error_code ignored;
-    for (const fs::path& path : raster_files(scene.dems)) {
+    std::vector<fs::path> paths;
+    for (const std::string& name : scene.dems)
+        if (is_index(name))
+            paths.emplace_back(name);  // its tiles may be a country
+        else
+            std::ranges::copy(raster_files({name}), std::back_inserter(paths));
+    for (const fs::path& path : paths) {
         if (!fs::is_regular_file(path, ignored)) continue;
         std::string& known = hashes_[path];
         if (known.empty() || known == "unreadable") known = sha256_of_file(path, "--sidecar");

@@ -43,11 +43,12 @@ class SceneInputs {
     /// The inputs of a scene's picture as one line of JSON: Relevo's version, and a digest of the
     /// file contents of each kind ("dem", "overlay", "colours", "presets", "plugins", "files").
     /// File names and times are excluded, so that copies are equal. Exceptions: rasters of more
-    /// than 1 GiB are identified by file sizes and times, and remote files are not read.
+    /// than 1 GiB are identified by file sizes and times, an index of tiles by its content and by
+    /// sizes and times of its tiles on this machine, and remote files are not read.
     /// @throws Error as settled()
     std::string record(const scene::Scene& scene);
 
-    /// The files of the scene's DEM with their digests.
+    /// The files of the scene's DEM with their digests; of an index itself alone.
     /// @throws Error (BadInput) if one cannot be read
     std::vector<HashedFile> hashed_dem(const scene::Scene& scene);
 
@@ -58,6 +59,7 @@ class SceneInputs {
     struct OfEffects;
     const OfEffects& of(const scene::Effects& effects);
     const std::vector<std::filesystem::path>& raster_files(const std::vector<std::string>& names);
+    bool is_index(const std::string& name);
     const std::string& sha256(const std::filesystem::path& path);
     std::string digest(const std::vector<std::filesystem::path>& files);
     std::string digest_of_rasters(const std::vector<std::string>& names);
@@ -78,6 +80,7 @@ class SceneInputs {
     std::map<std::string, std::unique_ptr<OfEffects>> effects_;
     std::map<std::vector<std::string>, std::vector<std::filesystem::path>> rasters_;
     std::map<std::filesystem::path, std::string> hashes_;
+    std::map<std::string, bool> indexes_;
     std::map<Key, std::string> records_;
     std::set<Key> added_;
 };

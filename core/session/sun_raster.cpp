@@ -195,6 +195,13 @@ output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::strin
         {"DEM", posts.about().path},
         {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
         {"HOLES", fmt::format("{}", holes)}};
+    const dem::TileReport& tiles = posts.about().tiles;
+    if (tiles.missing.count > 0)
+        about.emplace_back("TILES_MISSING",
+                           fmt::format("{} of {}", tiles.missing.text(), tiles.tiles));
+    if (tiles.broken.count > 0)
+        about.emplace_back("TILES_BROKEN",
+                           fmt::format("{} of {}", tiles.broken.text(), tiles.tiles));
     if (clip)
         about.emplace_back(
             "CLIP",

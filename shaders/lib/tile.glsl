@@ -70,6 +70,17 @@ vec2 morphed(in vec4 levels, in float morph) {
     return height;
 }
 
+/// The tile's first post.
+vec2 net_first_post() {
+    return vec2(net_v.w, net_uv.w);
+}
+
+/// Columns and rows from there to what counts as the last post: a little short of it, so that it lies in a page as
+/// all others do.
+vec2 net_last_post() {
+    return (net_quads() - 0.01) * net_uuv.w;
+}
+
 /// A vertex where the DEM has it. @param vertex  column and row in quads
 VertexFrame net_vertex(in vec2 vertex, in float height) {
     vec2 at = net_place(vertex);
@@ -82,8 +93,7 @@ VertexFrame net_vertex(in vec2 vertex, in float height) {
     v.anchored_m = ground_anchored_at(v.position_m, v.up, height);
     v.distance_m = length(v.position_m);
     v.drawn_height_m = height * frame.height_range.z;
-    // Short of the last post, so that it lies in a page as all others do.
-    v.post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), net_quads() - 0.01) * net_uuv.w;
+    v.post = net_first_post() + clamp(vertex * net_uuv.w, vec2(0.0), net_last_post());
     return v;
 }
 
@@ -100,7 +110,7 @@ vec4 net_on_map(in vec2 post, in vec3 position_m) {
 
 /// Whether the skirt of a vertex leaves the DEM, in x and y. @param vertex  on the DEM, in quads
 bvec2 net_leaves_dem(in vec2 grid, in vec2 vertex) {
-    vec2 post = vec2(net_v.w, net_uv.w) + vertex * net_uuv.w;
+    vec2 post = net_first_post() + vertex * net_uuv.w;
     vec2 last = frame.posts.xy - 1.5;
     return bvec2(grid.x < 0.0 ? post.x < 0.5 : grid.x > 64.0 && post.x > last.x,
                  grid.y < 0.0 ? post.y < 0.5 : grid.y > 64.0 && post.y > last.y);
@@ -118,7 +128,7 @@ vec2 net_map_post(in vec2 grid, in vec2 vertex) {
     vec2 row_px = frame.viewport.xy * vec2(frame.map_x.y, frame.map_y.y);
     vec2 side_px = 0.5 * vec2(length(column_px), length(row_px));
     vec2 reach = min(overlap_px / max(side_px, vec2(1e-6)), vec2(0.5));
-    vec2 post = vec2(net_v.w, net_uv.w) + inside * net_uuv.w;
+    vec2 post = net_first_post() + inside * net_uuv.w;
     return post + outwards * mix(reach, vec2(0.5), net_leaves_dem(grid, inside));
 }
 #endif

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""First picture, next frame and peak memory by the size and the layout of a DEM.
+"""First picture, full detail, next frame and peak memory by the size and the layout of a DEM.
 
-Usage: bench_scale.py [BUILD] [--sides 1000,4000,10000,20000] [--layouts strips1,strips64,tiles256,tiles256+overviews]
-                      [--memory 64,256] [--keep FOLDER] [--device software]
+Usage: bench_scale.py [BUILD] [--sides 1000,4000,10000,20000,40000] [--layouts strips1,strips64,tiles256,overviews]
+                      [--memory 64,256] [--keep FOLDER] [--no-window]      (needs Xvfb for the window)
 
-DEMs are mirrored copies of the bundled one (make_dem), LZW. A picture is `capture` of the whole DEM, 1280 x 1024, with
-default effects. The first start has no cache; the second one has what the first has written. Peak memory is that of
-the process (ru_maxrss), less the floor: the same command on a DEM of 2 x 2 posts. Times are wall-clock times.
+DEMs are mirrored copies of the bundled one (make_dem), LZW; `overviews` are those of tiles256; `index` is a tile index
+of 1000 x 1000 posts each. A line has, of the first start (no cache) and the second (what the first has kept):
+- window: seconds until the window of 1280 x 800 shows ground, and until nothing changes and nothing is computed
+- capture: seconds of `capture` of the whole DEM, 1280 x 1024, default effects; its next frame; its peak memory
+  (ru_maxrss) less the floor: the same command on a DEM of 2 x 2 posts
 With --keep, DEMs stay in FOLDER and are used again.
 """
 
@@ -14,21 +16,41 @@ import argparse
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import time
 
+from screen import Screen, processor_s, wait_for_picture, wait_until_gone
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+TILE = 1000  # posts a side
 
 
 def make_dem(build, path, side, layout):
-    if path.exists():
-        return
-    name, _, overviews = layout.partition("+")
-    part = path.with_suffix(".part.tif")
-    command = [build / "bin/make_dem", ROOT / "data/dem/jacksboro.tif", str(side), str(side), part, "--layout", name]
-    subprocess.run(command + (["--overviews"] if overviews else []), check=True)
-    part.rename(path)
+    """A DEM of side x side posts; returns what to open."""
+    if layout == "index":
+        return make_index(build, path.parent, side)
+    if not path.exists():
+        part = path.with_suffix(".part.tif")
+        more = ["--layout", "tiles256", "--overviews"] if layout == "overviews" else ["--layout", layout]
+        subprocess.run([build / "bin/make_dem", ROOT / "data/dem/jacksboro.tif", str(side), str(side), part, *more], check=True)
+        part.rename(path)
+    return path
+
+
+def make_index(build, folder, side):
+    index = folder / f"{side}_tiles.gpkg"
+    if not index.exists():
+        whole = make_dem(build, folder / f"{side}_tiles256.tif", side, "tiles256")
+        tiles = folder / f"{side}_tiles"
+        tiles.mkdir(exist_ok=True)
+        for row in range(0, side, TILE):
+            for column in range(0, side, TILE):
+                subprocess.run(["gdal_translate", "-q", "-srcwin", str(column), str(row), str(TILE), str(TILE), "-co", "COMPRESS=LZW",
+                                whole, tiles / f"{row}_{column}.tif"], check=True)
+        subprocess.run(["gdaltindex", "-f", "GPKG", index, *sorted(tiles.glob("*.tif"))], check=True, stdout=subprocess.DEVNULL)
+    return index
 
 
 def run(command, environment):
@@ -43,56 +65,95 @@ def run(command, environment):
 
 class Bench:
     def __init__(self, arguments, folder):
-        self.arguments, self.folder = arguments, folder
-        self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
+        self.program = str(arguments.build / "bin/relevo")
+        self.folder = folder
+        self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache"), "XDG_CONFIG_HOME": str(folder),
+                            "XDG_STATE_HOME": str(folder), "MESA_SHADER_CACHE_DIR": str(folder / "shaders")}
+        self.screen = None if arguments.no_window else Screen()
+
+    def clear_cache(self):
+        shutil.rmtree(self.folder / "cache", ignore_errors=True)
 
     def capture(self, dem, *more):
         """Seconds and peak of a capture, and its --timings."""
         timings = self.folder / "timings.json"
-        result = run([self.arguments.build / "bin/relevo", "-q", "capture", dem, "-o", self.folder / "out.png",
-                      "--overwrite", "--device", self.arguments.device, "--timings", timings, *more], self.environment)
+        result = run([self.program, "-q", "capture", dem, "-o", self.folder / "out.png", "--overwrite", "--device", "software",
+                      "--timings", timings, *more], self.environment)
         return *result, json.loads(timings.read_text())
 
-    def clear_cache(self):
-        subprocess.run(["rm", "-rf", self.folder / "cache" / "relevo" / "levels"], check=True)
+    def window(self, dem, *more):
+        """Seconds to the first picture, and to full detail."""
+        began = time.perf_counter()
+        environment = {**self.environment, "DISPLAY": self.screen.name, "WAYLAND_DISPLAY": ""}
+        viewer = subprocess.Popen([self.program, "-q", "view", dem, *more], env=environment, cwd=self.folder)
+        try:
+            first = wait_for_picture(self.screen, began, most_s=120)
+            return first, wait_until_idle(self.screen, viewer, began)
+        finally:
+            viewer.terminate()
+            viewer.wait()
+            wait_until_gone(self.screen)
 
-    def measure(self, name, dem, floor, *options):
+    def measure(self, name, dem, floor, options):
+        figures = []
+        for start in ("first", "second"):
+            if self.screen:
+                if start == "first":
+                    self.clear_cache()
+                figures += [f"{seconds:.1f}" for seconds in self.window(dem, *options)]
         self.clear_cache()
-        first_s, peak, _ = self.capture(dem, *options)
-        second_s, second_peak, _ = self.capture(dem, *options)
-        _, _, timings = self.capture(dem, *options, "--repeat", "5")
-        print(f"{name:<34} first {first_s:6.2f} s, second {second_s:6.2f} s, next frame "
-              f"{timings['frames']['median_ms']:5.0f} ms, peak less floor {peak - floor:5.0f} MiB, "
-              f"second start {second_peak - floor:5.0f} MiB", flush=True)
+        for start in ("first", "second"):
+            seconds, peak, _ = self.capture(dem, *options)
+            figures += [f"{seconds:.1f}", f"{peak - floor:.0f}"]
+        figures.append(f"{self.capture(dem, *options, '--repeat', '5')[2]['frames']['median_ms']:.0f}")
+        print(f"| {name} | " + " | ".join(figures) + " |", flush=True)
+
+
+def wait_until_idle(screen, viewer, began):
+    """Seconds from `began` to the last change of the picture before a second in which nothing was computed."""
+    changed, before = time.perf_counter(), screen.sample()
+    used, since = processor_s(viewer), time.perf_counter()
+    while True:
+        time.sleep(0.02)
+        now = screen.sample()
+        if now != before:
+            before, changed = now, time.perf_counter()
+        if time.perf_counter() - since > 1:
+            used_before, used, since = used, processor_s(viewer), time.perf_counter()
+            if used - used_before < 0.1:
+                return changed - began
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", nargs="?", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--sides", default="1000,4000,10000,20000")
-    parser.add_argument("--layouts", default="strips1,strips64,tiles256,tiles256+overviews")
+    parser.add_argument("--sides", default="1000,4000,10000,20000,40000")
+    parser.add_argument("--layouts", default="strips1,strips64,tiles256,overviews")
     parser.add_argument("--memory", default="", help="MiB; without it the default")
     parser.add_argument("--keep", type=pathlib.Path)
-    parser.add_argument("--device", default="software")
+    parser.add_argument("--no-window", action="store_true")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        dems = arguments.keep or folder
+        dems = (arguments.keep or folder).resolve()
         dems.mkdir(parents=True, exist_ok=True)
         bench = Bench(arguments, folder)
-        make_dem(arguments.build, dems / "2.tif", 2, "tiles256")
-        bench.capture(dems / "2.tif")
-        floor = min(bench.capture(dems / "2.tif")[1] for _ in range(3))
-        print(f"processors: {len(os.sched_getaffinity(0))}, floor {floor:.0f} MiB")
+        small = make_dem(arguments.build, dems / "2_tiles256.tif", 2, "tiles256")
+        bench.capture(small, "--allow-blank")
+        floor = min(bench.capture(small, "--allow-blank")[1] for _ in range(3))
+        window = [f"{start}: {what}, s" for start in ("window", "again") for what in ("picture", "detail")]
+        capture = [f"{start}: {what}" for start in ("capture", "again") for what in ("s", "MiB")]
+        columns = ["posts a side, layout", *(window if bench.screen else []), *capture, "next frame, ms"]
+        print(f"{len(os.sched_getaffinity(0))} processors; MiB above a floor of {floor:.0f}\n")
+        print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns))
         for side in map(int, arguments.sides.split(",")):
             for layout in arguments.layouts.split(","):
-                dem = dems / f"{side}_{layout}.tif"
-                make_dem(arguments.build, dem, side, layout)
+                dem = make_dem(arguments.build, dems / f"{side}_{layout}.tif", side, layout)
                 for memory in arguments.memory.split(","):
                     options = ["--memory", memory] if memory else []
-                    bench.measure(f"{side} {layout} {' '.join(options)}", dem, floor, *options)
-                if not arguments.keep:
-                    dem.unlink()
+                    bench.measure(" ".join([str(side), layout, *options]), dem, floor, options)
+        if bench.screen:
+            bench.screen.close()
 
 
 if __name__ == "__main__":

@@ -8,8 +8,6 @@ ways of presentation (RELEVO_PRESENT) it also counts what a frame asks of the GL
 written to ring buffers are not counted: they are mapped memory, without a command.
 """
 
-import ctypes
-import mmap
 import os
 import pathlib
 import statistics
@@ -19,59 +17,7 @@ import sys
 import tempfile
 import time
 
-WIDTH, HEIGHT = 1280, 800
-COLUMNS = range(500, 1200, 7)  # beside the panel
-ROWS = (150, 250, 350, 450, 550, 650)
-
-
-class Screen:
-    def __init__(self):
-        self.folder = tempfile.TemporaryDirectory()
-        reads, writes = os.pipe()
-        self.server = subprocess.Popen(
-            ["Xvfb", "-noreset", "-displayfd", str(writes), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", self.folder.name],
-            pass_fds=(writes,), stderr=subprocess.DEVNULL)
-        os.close(writes)
-        with os.fdopen(reads) as number:
-            self.name = ":" + number.readline().strip()
-        with open(pathlib.Path(self.folder.name) / "Xvfb_screen0", "rb") as file:
-            self.map = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-        head = struct.unpack(">25I", self.map[:100])
-        self.stride, self.begin = head[12], head[0] + 12 * head[19]
-        # A program for every move would take half of the processors that are to be measured.
-        self.x11, self.xtest = ctypes.CDLL("libX11.so.6"), ctypes.CDLL("libXtst.so.6")
-        self.x11.XOpenDisplay.restype = ctypes.c_void_p
-        self.display = ctypes.c_void_p(self.x11.XOpenDisplay(self.name.encode()))
-
-    def sample(self):
-        pieces = []
-        for row in ROWS:
-            at = self.begin + row * self.stride
-            line = self.map[at:at + self.stride]
-            pieces.append(bytes(line[4 * x] for x in COLUMNS))
-        return b"".join(pieces)
-
-    def act(self, *words):
-        subprocess.run(["xdotool", *map(str, words)], env={**os.environ, "DISPLAY": self.name}, check=True,
-                       stdout=subprocess.DEVNULL)
-
-    def move(self, x, y):
-        self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, ctypes.c_ulong(0))
-        self.x11.XFlush(self.display)
-
-    def close(self):
-        self.x11.XCloseDisplay(self.display)
-        self.server.terminate()
-        self.server.wait()
-
-
-def wait_for_picture(screen, began):
-    while time.perf_counter() - began < 30:
-        sample = screen.sample()
-        if len(set(sample)) > 40:
-            return time.perf_counter() - began
-        time.sleep(0.005)
-    raise RuntimeError("no picture within 30 s")
+from screen import Screen, processor_s, sharp_after_s, wait_for_picture, wait_until_gone
 
 
 def settle(screen):
@@ -108,25 +54,6 @@ def latencies_ms(screen, move, times=40):
             time.sleep(0.001)
         result.append(1e3 * (time.perf_counter() - began))
     return sorted(result)
-
-
-def processor_s(process):
-    """Of all threads so far."""
-    text = pathlib.Path(f"/proc/{process.pid}/stat").read_text()
-    words = text[text.rindex(")") + 2:].split()
-    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def sharp_after_s(screen):
-    """From now until nothing has changed for two seconds."""
-    began = changed = time.perf_counter()
-    before = screen.sample()
-    while time.perf_counter() - changed < 2:
-        now = screen.sample()
-        if now != before:
-            before, changed = now, time.perf_counter()
-        time.sleep(0.005)
-    return changed - began
 
 
 def first_start(program, arguments, env, screen):
@@ -166,8 +93,7 @@ def count_gl(program, arguments, env, screen, presentation):
     finally:
         viewer.terminate()
         viewer.wait()
-        while len(set(screen.sample())) > 40:  # till the window has gone
-            time.sleep(0.05)
+        wait_until_gone(screen)
 
 
 def bench(program, dem):
@@ -176,8 +102,7 @@ def bench(program, dem):
     env = {**os.environ, "DISPLAY": screen.name, "WAYLAND_DISPLAY": "",
            "XDG_CONFIG_HOME": screen.folder.name, "XDG_STATE_HOME": screen.folder.name}
     cold_s, cold_used_s = first_start(program, arguments, env, screen)
-    while len(set(screen.sample())) > 40:  # till the window has gone
-        time.sleep(0.05)
+    wait_until_gone(screen)
     began = time.perf_counter()
     viewer = subprocess.Popen([program, "-q", *arguments], env=env, cwd=screen.folder.name)
     try:
@@ -215,8 +140,7 @@ def bench(program, dem):
         viewer.terminate()
         viewer.wait()
     try:
-        while len(set(screen.sample())) > 40:
-            time.sleep(0.05)
+        wait_until_gone(screen)
         for presentation in ("copy", "shared"):
             count_gl(program, arguments, env, screen, presentation)
     finally:

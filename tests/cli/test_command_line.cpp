@@ -81,7 +81,8 @@ TEST(CommandLine, NoOptionOfAnyVerbTakesAnEmptyValue) {
     }
     // --only '' is core alone (docs/cli.md): a list, and the empty one is a choice.
     EXPECT_EQ(exceptions, (std::vector<std::string>{"relevo view --only", "relevo capture --only",
-                                                    "relevo run --only", "relevo film --only"}));
+                                                    "relevo run --only", "relevo plan run --only",
+                                                    "relevo film --only"}));
 }
 
 TEST(CommandLine, TheNameOfAnOptionIsNoValueOfAnother) {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/log.h"
+#include "dem/content_sum.h"
 #include "dem/fixture.h"
 #include "dem/load.h"
 #include "dem/posts.h"
@@ -93,6 +94,23 @@ TEST(Posts, AreThoseOfTheFileHoweverLittleMemoryThereIs) {
             ASSERT_TRUE(is == whole || (std::isnan(is) && std::isnan(whole)));
             ASSERT_TRUE(is == wanted || (std::isnan(is) && std::isnan(wanted)));
         }
+}
+
+TEST(Posts, TheirContentIsThatOfAllHeightsHoweverTheyAreRead) {
+    const Raster ground = rough(701, 515);
+    const Both dem({write_raster(folder() / "rough.tif", ground)});
+    EXPECT_EQ(dem.whole.content(), dem.few.content());
+    Raster changed = ground;
+    changed.value = [&](int column, int row, int band) {
+        return ground.value(column, row, band) + (column == 300 && row == 200 ? 0.5 : 0);
+    };
+    const Both other({write_raster(folder() / "changed.tif", changed)});
+    EXPECT_EQ(other.field.about.statistics, dem.field.about.statistics);
+    EXPECT_NE(other.whole.content(), dem.whole.content());
+    EXPECT_EQ(other.whole.content(), other.few.content());
+    const Array2d<float> level(80, 50, 12.5F);
+    EXPECT_EQ(content_of({level.data(), 80, 7, 3}, {7, 3, 80, 50}),
+              content_of(12.5F, {7, 3, 80, 50}));
 }
 
 TEST(Posts, NoPostOfABoxIsAboveItsBound) {

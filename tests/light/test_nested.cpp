@@ -9,7 +9,9 @@
 
 #include "light/hills.h"
 #include "light/point/horizon.h"
+#include "light/raster/horizons.h"
 #include "light/raster/shadows.h"
+#include "light/raster/sun_hours.h"
 
 namespace relevo::light {
 namespace {
@@ -84,6 +86,102 @@ TEST(Nested, AHorizonGoesOnOverTheWiderDem) {
         degrees(worst), degrees(worst_alone));
     EXPECT_LE(degrees(worst), 0.03);
     EXPECT_GE(degrees(worst_alone), 5);
+}
+
+/// How far two rasters are apart [as their values], where both have some.
+struct Apart {
+    static constexpr double kLimit = 0.1;
+    double mean = 0, worst = 0, over_limit = 0;  // the last one is a share of the posts
+
+    Apart(const Array2d<float>& a, const Array2d<float>& b) {
+        double count = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const double apart = std::abs(double{a.data()[i]} - double{b.data()[i]});
+            if (std::isnan(apart)) continue;
+            mean += apart, ++count;
+            worst = std::max(worst, apart);
+            over_limit += apart > kLimit;
+        }
+        mean /= std::max(1.0, count);
+        over_limit /= std::max(1.0, count);
+    }
+};
+
+/// The middle of a site, a third of its side, and the same posts of a wide fine DEM. Ground beyond
+/// the site is 60 posts of the coarse DEM away or more.
+struct FineHills : NestedHills {
+    const dem::Heightfield near = on("near", 10, 0, 361), far = on("far", 20, 20, 901),
+                           all = on("wide", 10, 0, 1801);
+    const dem::Posts posts{near}, around{far}, whole{all};
+    static constexpr Window kMiddle{120, 120, 121, 121}, kMiddleOfAll{840, 840, 121, 121};
+};
+
+TEST(Nested, HorizonsOfAllPostsGoOnOverTheWiderDem) {
+    const FineHills hills;
+    const dem::Posts &posts = hills.posts, &around = hills.around, &whole = hills.whole;
+    const std::vector<double> azimuths{radians(3.0),   radians(48.0),  radians(95.0),
+                                       radians(140.0), radians(201.0), radians(310.0)};
+    const auto found = [&](const dem::Posts& of, const dem::Posts* wider, const Window& part,
+                           std::size_t k) {
+        SunPlan plan(of, {}, part, false, wider);
+        add_horizon_directions(plan, azimuths);
+        Array2d<float> horizon = horizon_elevations(plan, plan.suns()[k], part);
+        for (float& value : horizon)
+            value = static_cast<float>(degrees(double{value}));
+        return horizon;
+    };
+    double mean = 0, over_limit = 0, mean_alone = 0;
+    for (std::size_t k = 0; k < azimuths.size(); ++k) {
+        const Array2d<float> expected = found(whole, nullptr, FineHills::kMiddleOfAll, k);
+        const Apart nested(found(posts, &around, FineHills::kMiddle, k), expected),
+            alone(found(posts, nullptr, FineHills::kMiddle, k), expected);
+        fmt::print("[ accuracy ] azimuth {:3.0f}: mean {:.4f}, worst {:.3f}; alone {:.3f}\n",
+                   degrees(azimuths[k]), nested.mean, nested.worst, alone.mean);
+        mean += nested.mean / static_cast<double>(azimuths.size());
+        mean_alone += alone.mean / static_cast<double>(azimuths.size());
+        over_limit = std::max(over_limit, nested.over_limit);
+    }
+    EXPECT_LE(mean, 0.02);
+    // A sweep over a grid that begins elsewhere is as far off at single posts.
+    EXPECT_LE(over_limit, 1e-3);
+    EXPECT_GE(mean_alone, 0.5);
+}
+
+TEST(Nested, SkyViewAndHoursOfManyDaysAreThoseOfAWideFineDem) {
+    const FineHills hills;
+    const dem::Posts &posts = hills.posts, &around = hills.around, &whole = hills.whole;
+    const auto sky = [](const dem::Posts& of, const dem::Posts* wider, const Window& part) {
+        SkyViewOptions options;
+        options.part = part;
+        SunPlan plan(of, {}, part, false, wider);
+        add_sky_view_directions(plan, options.directions);
+        return sky_view(plan, options).share;
+    };
+    const Apart in_sky(sky(posts, &around, FineHills::kMiddle),
+                       sky(whole, nullptr, FineHills::kMiddleOfAll));
+    const auto hours = [](const dem::Posts& of, const dem::Posts* wider, const Window& part) {
+        SunHoursOptions options;
+        options.part = part;
+        options.around = wider;
+        constexpr double kDays = 100;
+        const sun::Instant begin = sun::Instant::from_utc({{2026, 11, 1}});
+        Array2d<float> found = sun_hours(of, begin, begin + kDays * 86400, options).hours;
+        for (float& value : found)
+            value *= static_cast<float>(60 / kDays);
+        return found;
+    };
+    const Array2d<float> expected = hours(whole, nullptr, FineHills::kMiddleOfAll);
+    const Apart nested(hours(posts, &around, FineHills::kMiddle), expected),
+        alone(hours(posts, nullptr, FineHills::kMiddle), expected);
+    fmt::print(
+        "[ accuracy ] sky view: mean {:.5f}, worst {:.4f}; minutes a day, of 100: mean {:.2f}, "
+        "worst {:.1f}, without the wider DEM {:.1f} and {:.0f}\n",
+        in_sky.mean, in_sky.worst, nested.mean, nested.worst, alone.mean, alone.worst);
+    EXPECT_LE(in_sky.mean, 5e-4);
+    EXPECT_LE(in_sky.worst, 3e-3);
+    EXPECT_LE(nested.mean, 0.5);
+    EXPECT_LE(nested.worst, 3);
+    EXPECT_GE(alone.worst, 10);
 }
 
 /// Ground of 200 m with a wall of 2000 m that runs north, on a grid in degrees.

@@ -285,6 +285,27 @@ TEST(TileTree, BoxesHoldTheRoundEarth) {
     EXPECT_LT(outside_m, 0.5);
 }
 
+TEST(TileTree, GivesTilesBackThatAFlightHasPassed) {
+    const int tiles = static_cast<int>(TileTree::kMostKept) + 10;
+    const dem::Heightfield strip =
+        test::field_of(64 * tiles + 1, 2, {500000, 0.01, 0, 5200000, 0, -0.01}, "EPSG:32632",
+                       [](int, int) { return 0; });
+    const dem::Pyramid pyramid(strip.height_m);
+    const geo::LocalFrame frame(strip.grid.center());
+    TileTree tree(pyramid, strip.grid, frame);
+    const glm::dvec3 first = tree.net({0, {0, 0}}).centre_m;
+    tree.begin_frame();
+    EXPECT_EQ(tree.cached(), 1u);  // few are kept
+    for (int x = 1; x < tiles; ++x)
+        tree.box({0, {x, 0}}, 1);
+    tree.begin_frame();
+    EXPECT_EQ(tree.cached(), static_cast<std::size_t>(tiles - 1));  // those of the last frame
+    tree.box({0, {5, 0}}, 1);
+    tree.begin_frame();
+    EXPECT_EQ(tree.cached(), 1u);
+    EXPECT_EQ(tree.net({0, {0, 0}}).centre_m, first);
+}
+
 TEST(TileTree, ExaggeratedGroundIsDrawnFineFromFartherAway) {
     const dem::Heightfield rough =
         test::field_of(301, 301, {500000, 30, 0, 5200000, 0, -30}, "EPSG:32632",

@@ -54,6 +54,14 @@ TEST(FileKind, IsSeenInNameAndContents) {
     };
     EXPECT_EQ(kind_of_file(write("huts.geojson", feature("Point"))), FileKind::Places);
     EXPECT_EQ(kind_of_file(write("way.json", feature("LineString"))), FileKind::Lines);
+    const auto located = [](const char* geometry) {
+        return fmt::format(R"({{"type": "FeatureCollection", "features": [{{"type": "Feature",
+            "properties": {{"location": "a.tif"}}, "geometry": {{"type": "{}", "coordinates":
+            [[[8, 46], [9, 46], [9, 47], [8, 46]]]}}}}]}})",
+                           geometry);
+    };
+    EXPECT_EQ(kind_of_file(write("index.geojson", located("Polygon"))), FileKind::Dem);
+    EXPECT_EQ(kind_of_file(write("towns.geojson", located("Point"))), FileKind::Places);
     EXPECT_EQ(kind_of_file(write("huts.csv", "name,lat,lon\n")), FileKind::Places);
     EXPECT_EQ(kind_of_file(write("huts.gpx", "<gpx><wpt lat='1' lon='2'/></gpx>")),
               FileKind::Places);

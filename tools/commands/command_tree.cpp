@@ -30,9 +30,10 @@ struct Row {
 const std::vector<Row>& rows() {
     static const std::vector<Row> all = {
         {Kind::File,
-         {"DEM", "-o", "--scene", "--save-scene", "--from", "--timings", "--overlay", "--points",
-          "--times", "--along", "--save-job", "--contact-sheet", "JOB", "A", "B", "GOLDEN",
-          "OUTPUT"}},
+         {"DEM",        "-o",       "--scene", "--save-scene", "--from",     "--timings",
+          "--overlay",  "--points", "--times", "--along",      "--save-job", "--contact-sheet",
+          "JOB",        "A",        "B",       "GOLDEN",       "OUTPUT",     "--slurm",
+          "--parallel", "--stac",   "--tiles"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},
@@ -61,11 +62,13 @@ const std::vector<Row>& rows() {
         {Kind::Words, {"--nodata"}, {"none"}},
         {Kind::Words, {"--base"}, {"auto"}},
         {Kind::Words, {"--crs", "--clip-crs", "--points-crs"}, {"EPSG:"}},
-        {Kind::Text, {"--crop",  "--bounds",  "--date",          "--name",          "--to",
-                      "--title", "--size",    "--overlay-title", "--overlay-range", "--range",
-                      "--scale", "--look-at", "--eye",           "--attribution",   "--at",
-                      "--sun",   "--step",    "--span",          "--shard",         "--over",
-                      "--clip",  "NAME"}},
+        {Kind::Text, {"--crop",      "--bounds",  "--date",          "--name",          "--to",
+                      "--title",     "--size",    "--overlay-title", "--overlay-range", "--range",
+                      "--scale",     "--look-at", "--eye",           "--attribution",   "--at",
+                      "--sun",       "--step",    "--span",          "--shard",         "--over",
+                      "--clip",
+
+                      "--href-base", "NAME"}},
     };
     return all;
 }
@@ -79,7 +82,8 @@ std::optional<std::vector<std::string>> listed(const std::string& type) {
 
 /// Of two options of one name: --from is a day of `sun`, a file elsewhere.
 bool is_a_day(const std::string& command, const std::string& name) {
-    return name == "--from" && command.starts_with("relevo sun");
+    return name == "--from" &&
+           (command.starts_with("relevo sun") || command.starts_with("relevo plan sun"));
 }
 
 bool complete(Option& option, const std::string& type, const std::string& command) {

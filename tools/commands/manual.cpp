@@ -130,7 +130,7 @@ std::string manual(const Command& command, const std::string& version, const std
     }
     text += options_text(command);
     const bool is_whole = command.name == "relevo";
-    if (is_whole) text += std::string(kExitStatus) + kEnvironment;
+    if (is_whole) text.append(kExitStatus).append(kEnvironment);
     text += ".SH SEE ALSO\n";
     text += is_whole ? "/usr/share/doc/relevo/\n" : ".BR relevo (1)\n";
     return text;

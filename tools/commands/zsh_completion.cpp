@@ -10,7 +10,7 @@ namespace relevo::commands {
 namespace {
 
 /// A text inside of single quotes and brackets of _arguments.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string result;
     for (const char c : text) {
         if (c == '\'')
@@ -38,7 +38,7 @@ std::string action_of(const Option& option) {
         case Kind::Zone:
             return "_relevo_zones";
         case Kind::Words:
-            return fmt::format("({})", quoted(fmt::format("{}", fmt::join(option.words, " "))));
+            return fmt::format("({})", in_quotes(fmt::format("{}", fmt::join(option.words, " "))));
         case Kind::Lists:
             return fmt::format("_values -s , value {}", fmt::join(option.words, " "));
         default:
@@ -57,10 +57,10 @@ void add_functions(const Command& command, std::string& text) {
     text += fmt::format("{}() {{\n    _arguments -C \\\n", function_of(command));
     for (const Option& option : command.options)
         for (const std::string& name : option.names) {
-            text +=
-                fmt::format("        '{}{}[{}]", option.many ? "*" : "", name, quoted(option.text));
+            text += fmt::format("        '{}{}[{}]", option.many ? "*" : "", name,
+                                in_quotes(option.text));
             if (option.kind != Kind::Flag)
-                text += fmt::format(":{}:{}", quoted(option.value), action_of(option));
+                text += fmt::format(":{}:{}", in_quotes(option.value), action_of(option));
             text += "' \\\n";
         }
     if (command.commands.empty()) {
@@ -72,7 +72,7 @@ void add_functions(const Command& command, std::string& text) {
         "    local -a commands=(\n";
     for (const Command& inner : command.commands)
         text += fmt::format("                '{}:{}'\n", inner.name.substr(command.name.size() + 1),
-                            quoted(inner.text));
+                            in_quotes(inner.text));
     text +=
         "            )\n            _describe command commands\n            _files\n            "
         ";;\n        arguments)\n"
@@ -92,14 +92,14 @@ std::string zsh_completion(const Command& all, const Installed& values) {
         "#compdef relevo\n# Completion of relevo for zsh, made when it was built.\n\n";
     text += "_relevo_effects() {\n    local -a effects=(\n";
     for (const auto& [id, description] : values.effects)
-        text += fmt::format("        '{}:{}'\n", id, quoted(description));
+        text += fmt::format("        '{}:{}'\n", id, in_quotes(description));
     text +=
         "    )\n    "
         "effects+=(${XDG_DATA_HOME:-$HOME/.local/share}/relevo/plugins/*/plugin.json(N:h:t))\n"
         "    _describe -t effects effect effects \"$@\"\n}\n\n_relevo_parameters() {\n    local -a "
         "parameters=(\n";
     for (const auto& [address, description] : values.parameters)
-        text += fmt::format("        '{}:{}'\n", address, quoted(description));
+        text += fmt::format("        '{}:{}'\n", address, in_quotes(description));
     text += fmt::format(
         "    )\n    _describe -t parameters parameter parameters -S =\n}}\n\n"
         "_relevo_presets() {{\n    _alternative 'presets:preset:({})' 'files:file:_files -g "

@@ -1,17 +1,22 @@
+#include <array>
+#include <bit>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <getopt.h>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
+#include "base/text.h"
 #include "maps.h"
 #include "material.h"
 #include "patches.h"
@@ -77,27 +82,54 @@ void run(const Options& options) {
     write_volume_preview(options.png / "perlin.png", volume);
 }
 
+constexpr const char* kUsage =
+    "usage: relevo_make_ground FOLDER [--png FOLDER] [--only sand,grass,rock,snow]\n"
+    "           [--size TEXELS] [--volume-size TEXELS] [-v]\n"
+    "Makes the ground materials and the noises of Relevo in FOLDER/ground and FOLDER/noise;\n"
+    "--png makes pictures to look at, sizes are powers of two.\n";
+
+/// Texels a side. @throws Error (Usage)
+int size_of(const char* name, std::string_view text, int least, int most) {
+    int size = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), size);
+    const bool whole = fault == std::errc() && end == text.data() + text.size();
+    if (!whole || size < least || size > most || !std::has_single_bit(unsigned(size)))
+        bad_usage(fmt::format("{}: expected a power of two from {} to {} but got {}", name, least,
+                              most, text));
+    return size;
+}
+
+/// @throws Error (Usage)
+Options parse(int argc, char** argv) {
+    enum { kPng = 1, kOnly, kSize, kVolumeSize };
+    constexpr std::array<option, 6> kOptions{
+        {{"png", required_argument, nullptr, kPng},
+         {"only", required_argument, nullptr, kOnly},
+         {"size", required_argument, nullptr, kSize},
+         {"volume-size", required_argument, nullptr, kVolumeSize},
+         {"verbose", no_argument, nullptr, 'v'},
+         {}}};
+    Options options;
+    for (int found; (found = getopt_long(argc, argv, "v", kOptions.data(), nullptr)) != -1;) {
+        if (found == kPng) options.png = optarg;
+        if (found == kOnly) options.only = split(optarg, ',');
+        if (found == kSize) options.size = size_of("--size", optarg, 64, 2048);
+        if (found == kVolumeSize) options.volume_size = size_of("--volume-size", optarg, 32, 256);
+        if (found == 'v') log::set_level(log::Level::Debug);
+        if (found == '?') bad_usage(kUsage);
+    }
+    if (optind + 1 != argc) bad_usage(kUsage);
+    options.output = argv[optind];
+    return options;
+}
+
 }  // namespace
 }  // namespace relevo::ground
 
 int main(int argc, char** argv) {
     using namespace relevo;
-    ground::Options options;
-    bool verbose = false;
-    CLI::App app{"Makes the ground materials and the noises of Relevo"};
-    app.add_option("output", options.output, "Folder to write ground/ and noise/ into")->required();
-    app.add_option("--png", options.png, "Folder for pictures to look at");
-    app.add_option("--only", options.only, "Grounds to make: sand, grass, rock, snow")
-        ->delimiter(',');
-    app.add_option("--size", options.size, "Texels a side of the grounds: a power of two")
-        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048}));
-    app.add_option("--volume-size", options.volume_size, "Texels a side of the noise")
-        ->check(CLI::IsMember({32, 64, 128, 256}));
-    app.add_flag("-v,--verbose", verbose, "Say how long each part takes");
-    CLI11_PARSE(app, argc, argv);
-    if (verbose) log::set_level(log::Level::Debug);
     try {
-        ground::run(options);
+        ground::run(ground::parse(argc, argv));
         return 0;
     } catch (const Error& error) {
         log::error(error.what());

@@ -1,9 +1,9 @@
+#include <array>
 #include <exception>
 #include <filesystem>
-#include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <getopt.h>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -30,31 +30,54 @@ void print_table(const Atmosphere& air) {
     }
 }
 
+struct Options {
+    std::filesystem::path output, stars;
+    bool table = false;
+};
+
+/// @throws Error (Usage)
+Options parse(int argc, char** argv) {
+    constexpr const char* kUsage =
+        "usage: relevo_make_sky FOLDER --stars stars.csv [--table]\n"
+        "Makes the skies of Relevo in FOLDER/sky; --table prints the light of the sky for heights "
+        "of the sun.\n";
+    enum { kStars = 1, kTable };
+    constexpr std::array<option, 3> kOptions{{{"stars", required_argument, nullptr, kStars},
+                                              {"table", no_argument, nullptr, kTable},
+                                              {}}};
+    Options options;
+    for (int found; (found = getopt_long(argc, argv, "", kOptions.data(), nullptr)) != -1;) {
+        if (found == kStars) options.stars = optarg;
+        if (found == kTable) options.table = true;
+        if (found == '?') bad_usage(kUsage);
+    }
+    if (optind + 1 != argc || options.stars.empty()) bad_usage(kUsage);
+    options.output = argv[optind];
+    return options;
+}
+
+void run(const Options& options) {
+    const Atmosphere air;
+    if (options.table) print_table(air);
+    const std::filesystem::path folder = options.output / "sky";
+    std::filesystem::create_directories(folder);
+    const Textures textures = make_textures(air);
+    write_ktx(folder / "radiance.ktx2", textures.radiance);
+    write_ktx(folder / "light.ktx2", textures.light);
+    for (const auto& [name, deg] :
+         {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
+        write_ktx(folder / fmt::format("{}.ktx2", name),
+                  single_texture(air, std::sin(radians(deg))));
+    write_ktx(folder / "stars.ktx2", star_texture(read_stars(options.stars)));
+}
+
 }  // namespace
 }  // namespace relevo::skymaker
 
 int main(int argc, char** argv) {
     using namespace relevo;
-    std::filesystem::path output, stars;
-    bool table = false;
-    CLI::App app{"Makes the skies of Relevo"};
-    app.add_option("output", output, "Folder to write sky/ into")->required();
-    app.add_option("--stars", stars, "Table of stars, stars.csv")->required();
-    app.add_flag("--table", table, "Print the light of the sky for heights of the sun");
-    CLI11_PARSE(app, argc, argv);
     try {
-        const skymaker::Atmosphere air;
-        if (table) skymaker::print_table(air);
-        const std::filesystem::path folder = output / "sky";
-        std::filesystem::create_directories(folder);
-        const skymaker::Textures textures = skymaker::make_textures(air);
-        write_ktx(folder / "radiance.ktx2", textures.radiance);
-        write_ktx(folder / "light.ktx2", textures.light);
-        for (const auto& [name, deg] :
-             {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
-            write_ktx(folder / fmt::format("{}.ktx2", name),
-                      skymaker::single_texture(air, std::sin(radians(deg))));
-        write_ktx(folder / "stars.ktx2", skymaker::star_texture(skymaker::read_stars(stars)));
+        skymaker::run(skymaker::parse(argc, argv));
         return 0;
     } catch (const Error& error) {
         log::error(error.what());

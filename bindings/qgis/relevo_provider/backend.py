@@ -57,7 +57,7 @@ class Hours:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn. Relevo chooses the values of members that are None or empty."""
+    """What is drawn. Where a member is None or empty, Relevo chooses a value for it."""
 
     when: Optional[When] = None
     size: Tuple[int, int] = (1280, 1024)  # [px]

@@ -31,12 +31,11 @@ void add_directions(const SunPlan& plan, const SkyViewOptions& options, const Wi
                     const GroundSlope& slope, Array2d<float>& sum) {
     for (const PlannedSun& direction : plan.suns()) {
         const glm::vec3 towards(direction.field.direction());
-        each_horizon(direction.field, direction.tiles, part,
-                     [&](const SunTile&, const SweepRun& run) {
-                         const int x = run.column - part.column, y = run.row - part.row;
-                         add_sky(run.found, &slope.x.at(x, y), &slope.y.at(x, y), &slope.z.at(x, y),
-                                 run.count, towards, &sum.at(x, y));
-                     });
+        each_horizon(direction, part, [&](const SunTile&, const SweepRun& run) {
+            const int x = run.column - part.column, y = run.row - part.row;
+            add_sky(run.found, &slope.x.at(x, y), &slope.y.at(x, y), &slope.z.at(x, y), run.count,
+                    towards, &sum.at(x, y));
+        });
         if (options.done) options.done(1.0 / static_cast<double>(plan.suns().size()));
     }
 }
@@ -52,7 +51,7 @@ Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& directi
     const Window part = plan.terrain().window_of(of);
     const WindowHeights heights(plan.terrain().posts(), part);
     Array2d<float> elevation_rad(part.columns, part.rows);
-    each_horizon(direction.field, direction.tiles, part, [&](const SunTile&, const SweepRun& run) {
+    each_horizon(direction, part, [&](const SunTile&, const SweepRun& run) {
         find_elevations(run.found, heights.view.at(run.column, run.row), run.count,
                         &elevation_rad.at(run.column - part.column, run.row - part.row));
     });

@@ -49,37 +49,38 @@ struct Lift {
 
 }  // namespace
 
-HorizonHours::HorizonHours(const SunTerrain& terrain, const Window& window, sun::Instant begin,
-                           double length_s, const SunHoursOptions& options)
-    : terrain_(terrain),
+HorizonHours::HorizonHours(const SunPlan& plan, sun::Instant begin, double length_s,
+                           const SunHoursOptions& options)
+    : plan_(plan),
+      terrain_(plan.terrain()),
       options_(options),
       begin_(begin),
       length_s_(length_s),
       table_(begin, begin + length_s) {
-    for (const Window& each : SunPlan::blocks(terrain))
-        if (!common(each, window).is_empty()) blocks_.push_back(block_of(each, window));
+    for (const Window& each : SunPlan::blocks(terrain_))
+        if (!common(each, plan.window()).is_empty()) blocks_.push_back(block_of(each));
 }
 
 int HorizonHours::most_tiles() const {
     std::size_t most = 0;
     for (const Block& block : blocks_)
         for (const Direction& direction : block.directions)
-            most = std::max(most, direction.tiles.size());
+            most = std::max(most, direction.sun.tiles.size());
     return static_cast<int>(most);
 }
 
-HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& wanted) const {
+HorizonHours::Block HorizonHours::block_of(const Window& window) const {
     Block block{window, terrain_.grid().place(window.column + (window.columns - 1) / 2.0,
                                               window.row + (window.rows - 1) / 2.0)};
     const std::shared_ptr<const Tables> tables = tables_of(block);
     for (std::size_t k = 0; k < tables->size(); ++k)
         if (const DirectionTable& low = (*tables)[k].front(); !low.empty())
             block.directions.push_back(
-                {k, SunField::level(terrain_, block.middle, low.azimuth_rad()), {}});
+                {k, {0, SunField::level(terrain_, block.middle, low.azimuth_rad())}});
     parallel_for(0, static_cast<int>(block.directions.size()), 1, [&](int first, int last) {
         for (int i = first; i < last; ++i) {
             Direction& direction = block.directions[static_cast<std::size_t>(i)];
-            direction.tiles = divide(direction.field, window, wanted, kTolerance_rad);
+            direction.sun = plan_.planned(direction.sun.field, window, kTolerance_rad);
         }
     });
     return block;
@@ -190,7 +191,7 @@ void HorizonHours::add_direction(const Direction& direction, const AirTables& ta
     const auto& [low, high] = tables;
     const auto bottom_m = static_cast<float>(terrain_.lowest_m()),
                a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m()));
-    const glm::vec3 towards(direction.field.direction());
+    const glm::vec3 towards(direction.sun.field.direction());
     const auto add_beam = [&](const Entry& entry, float lift, int x, int y) {
         const auto between = [&](const float* in_low, const float* in_high) {
             const float l = entry.of(in_low);
@@ -205,35 +206,32 @@ void HorizonHours::add_direction(const Direction& direction, const AirTables& ta
         result.beam_kwh.at(x, y) += gain > 0 ? gain : 0;
     };
     std::vector<Lift> lifts;
-    for (const SunTile& tile : direction.tiles)
-        lifts.emplace_back(direction.field, tile);
-    const SunTile* const first_tile = direction.tiles.data();
-    each_horizon(
-        direction.field, direction.tiles, part, [&](const SunTile& tile, const SweepRun& run) {
-            const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
-            const float* const height_m = ground.heights.view.at(run.column, run.row);
-            // Counted from the reference, so that a post has the same bits in every run.
-            const int from = run.column - static_cast<int>(lift.reference.x);
-            const auto base = static_cast<float>(lift.at(lift.reference.x, run.row)),
-                       a_post = static_cast<float>(lift.per_post.x);
-            std::array<float, kLongestRun> at;
-            find_entries(run.found, run.count,
-                         base + static_cast<float>(DirectionTable::kLowest_rad), a_post, from,
-                         static_cast<float>(DirectionTable::kEntry_rad), DirectionTable::kEntries,
-                         at.data());
-            const int x = run.column - part.column, y = run.row - part.row;
-            for (int i = 0; i < run.count; ++i) {
-                const float whole = std::floor(at[static_cast<std::size_t>(i)]);
-                const Entry entry{static_cast<std::size_t>(whole),
-                                  at[static_cast<std::size_t>(i)] - whole};
-                const float in_low = entry.of(low.hours_over()),
-                            in_high = entry.of(high.hours_over());
-                result.hours.at(x + i, y) +=
-                    in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
-                if (ground.inclined)
-                    add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
-            }
-        });
+    for (const SunTile& tile : direction.sun.tiles)
+        lifts.emplace_back(direction.sun.field, tile);
+    const SunTile* const first_tile = direction.sun.tiles.data();
+    each_horizon(direction.sun, part, [&](const SunTile& tile, const SweepRun& run) {
+        const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
+        const float* const height_m = ground.heights.view.at(run.column, run.row);
+        // Counted from the reference, so that a post has the same bits in every run.
+        const int from = run.column - static_cast<int>(lift.reference.x);
+        const auto base = static_cast<float>(lift.at(lift.reference.x, run.row)),
+                   a_post = static_cast<float>(lift.per_post.x);
+        std::array<float, kLongestRun> at;
+        find_entries(run.found, run.count, base + static_cast<float>(DirectionTable::kLowest_rad),
+                     a_post, from, static_cast<float>(DirectionTable::kEntry_rad),
+                     DirectionTable::kEntries, at.data());
+        const int x = run.column - part.column, y = run.row - part.row;
+        for (int i = 0; i < run.count; ++i) {
+            const float whole = std::floor(at[static_cast<std::size_t>(i)]);
+            const Entry entry{static_cast<std::size_t>(whole),
+                              at[static_cast<std::size_t>(i)] - whole};
+            const float in_low = entry.of(low.hours_over()), in_high = entry.of(high.hours_over());
+            result.hours.at(x + i, y) +=
+                in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
+            if (ground.inclined)
+                add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
+        }
+    });
 }
 
 }  // namespace relevo::light

@@ -19,10 +19,9 @@ namespace relevo::light {
 /// long the sun stood over what height there is looked up. Made ready once for a time.
 class HorizonHours {
   public:
-    /// @param terrain  outlives this
-    /// @param window   posts that will be asked for
-    HorizonHours(const SunTerrain& terrain, const Window& window, sun::Instant begin,
-                 double length_s, const SunHoursOptions& options);
+    /// @param plan  of the posts that will be asked for; outlives this
+    HorizonHours(const SunPlan& plan, sun::Instant begin, double length_s,
+                 const SunHoursOptions& options);
 
     /// Hours and beams of a part.
     void add(const Window& part, SunHours& result) const;
@@ -37,8 +36,7 @@ class HorizonHours {
     /// A direction in which the sun has been, as seen from a block.
     struct Direction {
         std::size_t number;
-        SunField field;  // as if the sun were level there in the middle of the block
-        std::vector<SunTile> tiles;
+        PlannedSun sun;  // as if it were level there in the middle of the block
     };
     /// Posts over which the sun is at its azimuth in the middle within what directions are apart.
     struct Block {
@@ -46,7 +44,7 @@ class HorizonHours {
         geo::Geodetic middle;
         std::vector<Direction> directions{};
     };
-    Block block_of(const Window& window, const Window& wanted) const;
+    Block block_of(const Window& window) const;
     /// Those of the blocks that were asked for last are kept: as many as meet in a corner, so that
     /// a part of a raster finds those that the part before it had.
     std::shared_ptr<const Tables> tables_of(const Block& block) const;
@@ -65,6 +63,7 @@ class HorizonHours {
     void add_direction(const Direction& direction, const AirTables& tables, const Window& part,
                        const Ground& ground, SunHours& result) const;
 
+    const SunPlan& plan_;
     const SunTerrain& terrain_;
     SunHoursOptions options_;
     sun::Instant begin_;

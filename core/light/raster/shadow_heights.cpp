@@ -9,6 +9,7 @@
 
 #include "base/array2d.h"
 #include "base/parallel_for.h"
+#include "light/raster/outer_horizon.h"
 #include "light/raster/post_loops.h"
 
 namespace relevo::light {
@@ -150,10 +151,8 @@ class OuterShadow {
   public:
     OuterShadow(const PlannedSun& around, const dem::Grid& site, const Window& window,
                 double offset_rad)
-        : grid_(around.field.terrain().grid()),
-          site_(site),
-          middle_(grid_.post(site.center())),
-          window_(window_over(grid_, site, window)),
+        : other_(site, around.field.terrain().grid()),
+          window_(window_over(around.field.terrain().grid(), site, window)),
           shadow_m_(window_.columns, window_.rows, kNone_m) {
         // Where no ground shades, floors of the two are not the same.
         const float floor_m = around.field.terrain().floor_m();
@@ -171,7 +170,7 @@ class OuterShadow {
         for (int from = 0; from < run.count; from += kPiece) {
             const int count = std::min(kPiece, run.count - from);
             const auto other = [&](int i) {
-                return grid_.post(site_.place(run.column + i, run.row), middle_) -
+                return other_.post(run.column + i, run.row) -
                        glm::dvec2(window_.column, window_.row);
             };
             const glm::dvec2 first = other(from), last = other(from + count);
@@ -195,10 +194,8 @@ class OuterShadow {
         return std::lerp(between(row), between(row + 1), v);
     }
 
-    const dem::Grid& grid_;
-    const dem::Grid& site_;
-    glm::dvec2 middle_;  // of the site, on the wider DEM
-    Window window_;      // of the wider DEM
+    OtherGrid other_;
+    Window window_;  // of the wider DEM
     Array2d<float> shadow_m_;
 };
 
@@ -261,13 +258,17 @@ void each_horizon(const SunField& direction, std::span<const SunTile> tiles, con
     const auto curvature = static_cast<float>(terrain.curvature());
     const auto lowest_m = static_cast<float>(terrain.lowest_m());
     each_tile(tiles, window, [&](const SunTile& tile, const TilePosts& posts) {
-        const GroundBeyond beyond(terrain.posts(), tile, terrain.horizon_reach_m());
+        std::optional<GroundBeyond> beyond;
+        if (!terrain.is_nested()) beyond.emplace(terrain.posts(), tile, terrain.horizon_reach_m());
         const WindowHeights heights(terrain.posts(), posts.window);
         // No lower than that of the ground beyond the edge, as tangent_beyond() has it, nor than
         // the dip of a smooth Earth as high as the lowest post.
         const auto fill = [&](const SweepRun& run, float* tangent) {
             Figures height_m, distance_m;
-            beyond.find(run.row, run.column, run.count, height_m.data(), distance_m.data());
+            height_m.fill(-std::numeric_limits<float>::infinity());
+            distance_m.fill(-std::numeric_limits<float>::infinity());
+            if (beyond)
+                beyond->find(run.row, run.column, run.count, height_m.data(), distance_m.data());
             raise_to_dip(run.found, heights.view.at(run.column, run.row), height_m.data(),
                          distance_m.data(), run.count, curvature, lowest_m, tangent);
         };
@@ -281,6 +282,22 @@ void each_horizon(const SunField& direction, std::span<const SunTile> tiles, con
                 });
             });
     });
+}
+
+void each_horizon(const PlannedSun& direction, const Window& window,
+                  const std::function<void(const SunTile&, const SweepRun&)>& use) {
+    if (!direction.around) return each_horizon(direction.field, direction.tiles, window, use);
+    const SunTerrain& terrain = direction.field.terrain();
+    const OuterHorizon outer(*direction.around, terrain, window);
+    const WindowHeights heights(terrain.posts(), window);
+    each_horizon(direction.field, direction.tiles, window,
+                 [&](const SunTile& tile, const SweepRun& run) {
+                     Figures tangent;
+                     std::copy_n(run.found, run.count, tangent.data());
+                     outer.raise(run.row, run.column, run.count,
+                                 heights.view.at(run.column, run.row), tangent.data());
+                     use(tile, {run.row, run.column, run.count, tangent.data()});
+                 });
 }
 
 }  // namespace relevo::light

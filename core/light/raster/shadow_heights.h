@@ -56,4 +56,9 @@ void each_shadow(const PlannedSun& sun, const Window& window, double offset_rad,
 void each_horizon(const SunField& direction, std::span<const SunTile> tiles, const Window& window,
                   const std::function<void(const SunTile&, const SweepRun&)>& use);
 
+/// The same of a planned direction: where a wider DEM lies around, its ground stands over horizons,
+/// too.
+void each_horizon(const PlannedSun& direction, const Window& window,
+                  const std::function<void(const SunTile&, const SweepRun&)>& use);
+
 }  // namespace relevo::light

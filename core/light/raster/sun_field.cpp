@@ -155,8 +155,7 @@ SunOverDem SunField::at(const geo::Geodetic& place) const {
 }
 
 double SunField::shade_m(double apparent_rad) const {
-    const double c = terrain_->curvature(), t = std::tan(std::min(apparent_rad, radians(89.9)));
-    return (std::sqrt(t * t + 2 * c * terrain_->relief_m()) - t) / c;
+    return shade_reach_m(terrain_->relief_m(), terrain_->curvature(), apparent_rad);
 }
 
 double SunField::reach_m(double apparent_rad) const {

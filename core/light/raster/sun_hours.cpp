@@ -71,11 +71,11 @@ struct SunHoursPlan::Impl {
           begin(from),
           length_s(end - from),
           few(length_s <= SunHoursOptions::kMostDays * kDay_s),
-          plan(posts, {of.refraction, of.air}, of.part) {
+          plan(posts, {of.refraction, of.air}, of.part, false, of.around) {
         if (few)
             plan.add_time(begin, length_s, options.step_s);
         else
-            horizons.emplace(plan.terrain(), plan.window(), begin, length_s, options);
+            horizons.emplace(plan, begin, length_s, options);
         if (options.irradiation) sky.emplace(plan.terrain(), begin, length_s, options);
         level = level_hours(plan.terrain(), begin, length_s);
     }

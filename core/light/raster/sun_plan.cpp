@@ -52,6 +52,13 @@ void SunPlan::divide_all(std::size_t first, const Window& window, double toleran
                  });
 }
 
+PlannedSun SunPlan::planned(SunField field, const Window& window, double tolerance_rad) const {
+    PlannedSun sun{0, std::move(field)};
+    sun.tiles = divide(sun.field, window, window_, tolerance_rad);
+    if (around_) sun.around = sun_around(sun, tolerance_rad);
+    return sun;
+}
+
 std::shared_ptr<const PlannedSun> SunPlan::sun_around(const PlannedSun& sun,
                                                       double tolerance_rad) const {
     const Window under = window_over(around_->grid(), terrain_->grid(), window_);

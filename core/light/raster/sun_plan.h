@@ -29,7 +29,7 @@ class SunPlan {
     /// @param posts   outlive this
     /// @param window  posts that will be asked for; without columns: all
     /// @param around  a wider and coarser DEM, all of whose ground shades these posts, but for what
-    ///     lies on their own DEM; null: none. Outlives this. Of suns, not of directions
+    ///     lies on their own DEM; null: none. Outlives this
     SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
             bool with_discs = false, const dem::Posts* around = nullptr);
 
@@ -48,6 +48,10 @@ class SunPlan {
     /// not linear. Suns that no post sees are left out, but for the last one before each sunrise
     /// and the first one after each sunset, which have the light end where it does.
     void add_time(sun::Instant begin, double length_s, double step_s);
+
+    /// A sun or a direction that none of the above adds.
+    /// @param window  of the terrain's grid, over which it is divided
+    PlannedSun planned(SunField field, const Window& window, double tolerance_rad) const;
 
     const SunTerrain& terrain() const { return *terrain_; }
     const Window& window() const { return window_; }  ///< on the terrain's grid

@@ -115,7 +115,25 @@ double checked(double refraction) {
                     refraction));
 }
 
+double curvature_of(double refraction) {
+    return (1 - checked(refraction)) / geo::kEquatorialRadius_m;
+}
+
+double relief_of(const dem::Posts& posts) {
+    return double{posts.highest_m()} - posts.lowest_m();
+}
+
+double reach_of_horizon_m(double relief_m, double curvature) {
+    // Both at the highest post see each other no farther than this, and any others less far.
+    return 2.05 * std::sqrt(2 * relief_m / curvature);
+}
+
 }  // namespace
+
+double shade_reach_m(double relief_m, double curvature, double apparent_rad) {
+    const double t = std::tan(std::min(apparent_rad, radians(89.9)));
+    return (std::sqrt(t * t + 2 * curvature * relief_m) - t) / curvature;
+}
 
 Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window) {
     constexpr int kSteps = 16;
@@ -149,9 +167,9 @@ SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with
       spacing_m_(posts.grid().post_spacing_m()),
       marks_(marks_of(posts.grid())),
       frame_(posts.grid().center()),
-      curvature_((1 - checked(path.refraction)) / geo::kEquatorialRadius_m),
+      curvature_(curvature_of(path.refraction)),
       lowest_m_(posts.lowest_m()),
-      relief_m_(double{posts.highest_m()} - posts.lowest_m()) {
+      relief_m_(relief_of(posts)) {
     if (const dem::Posts* const other = nesting.other()) {
         lowest_m_ = std::min(posts.lowest_m(), other->lowest_m());
         relief_m_ = std::max(posts.highest_m(), other->highest_m()) - lowest_m_;
@@ -165,9 +183,16 @@ SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with
     }
 }
 
+double shade_reach_m(const dem::Posts& posts, double refraction, double apparent_rad) {
+    return shade_reach_m(relief_of(posts), curvature_of(refraction), apparent_rad);
+}
+
+double horizon_reach_m(const dem::Posts& posts, double refraction) {
+    return reach_of_horizon_m(relief_of(posts), curvature_of(refraction));
+}
+
 double SunTerrain::horizon_reach_m() const {
-    // Both at the highest post see each other no farther than this, and any others less far.
-    return 2.05 * std::sqrt(2 * relief_m_ / curvature_);
+    return reach_of_horizon_m(relief_m_, curvature_);
 }
 
 double SunTerrain::lowest_sun_rad() const {

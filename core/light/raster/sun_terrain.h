@@ -107,6 +107,14 @@ class SunTerrain {
     std::vector<sun::Refraction> airs_;  // over the lowest post and the highest one, or none
 };
 
+/// How far off ground can shade the posts of a DEM from a sun, or stand over their horizon [m]:
+/// SunField::shade_m(), SunTerrain::horizon_reach_m().
+/// @param refraction  terrestrial
+double shade_reach_m(const dem::Posts& posts, double refraction, double apparent_rad);
+double horizon_reach_m(const dem::Posts& posts, double refraction);
+/// @param curvature  of lines of sight over the ground [1/m]
+double shade_reach_m(double relief_m, double curvature, double apparent_rad);
+
 /// The posts of a grid under and around a window of another one, whose middle lies on it.
 /// @throws Error (BadInput) where the window is not within the grid
 Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window);

@@ -1,0 +1,107 @@
+#include "cli/far_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/held_notices.h"
+#include "base/log.h"
+#include "output/tile_plan.h"
+
+namespace relevo::cli {
+namespace {
+
+/// Cells of means between a tile and its far ground. With 60 horizons are within 0.1 degrees, but
+/// for what sweeps are off anyway (tests/light/test_nested.cpp, tests/cli/test_sun_tiles.cpp).
+constexpr double kCellsAHalo = 100;
+constexpr const char* kMeansFile = "plan_means.tif";
+
+dem::Source open_quietly(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
+    const log::HeldNotices notices;
+    return dem::Source::open(paths, options);
+}
+
+/// Heights on the grid of a window, with what is known of all posts.
+std::unique_ptr<const dem::Heightfield> field_of(Array2d<float> height_m, const dem::Posts& posts,
+                                                 const dem::Window& window) {
+    const int columns = height_m.width(), rows = height_m.height();
+    return std::make_unique<const dem::Heightfield>(dem::Heightfield{
+        std::move(height_m), posts.grid().part(window, columns, rows), posts.about(), 1});
+}
+
+}  // namespace
+
+int FarGround::means_for(const dem::Posts& posts, double halo_m, const MemoryBudget& memory) {
+    const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
+    const int means =
+        std::max(1, static_cast<int>(halo_m / kCellsAHalo / std::max(spacing_m.x, spacing_m.y)));
+    const double kept = double(posts.grid().columns() / means) * (posts.grid().rows() / means);
+    if (kept > static_cast<double>(memory.posts) / 4)
+        bad_usage(
+            fmt::format("--halo: {:.4g}: needs {:.0f} MiB for means of ground beyond, a "
+                        "twelfth of --memory; use a larger --halo or --memory",
+                        halo_m / 1000, kept * sizeof(float) / (1 << 20)));
+    return means;
+}
+
+FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptions& options,
+                     const dem::Posts& posts, double halo_m, const std::filesystem::path& folder,
+                     bool is_planned)
+    : posts_(posts),
+      source_(open_quietly(paths, options)),
+      halo_m_(halo_m),
+      means_(means_for(posts, halo_m, options.memory)) {
+    const dem::TileReport& tiles = posts.about().tiles;
+    source_.allow_voids(tiles.missing.count + tiles.broken.count);
+    const int columns = posts.grid().columns(), rows = posts.grid().rows();
+    const dem::Window all{0, 0, columns, rows};
+    std::optional<Array2d<float>> kept;
+    if (is_planned) kept = output::read_heights(folder / kMeansFile);
+    const int width = std::max(2, columns / means_), height = std::max(2, rows / means_);
+    if (!kept || kept->width() != width || kept->height() != height)
+        kept = source_.read(all, width, height);
+    field_ = field_of(std::move(*kept), posts, all);
+    around_.emplace(*field_);
+}
+
+void FarGround::write(const std::filesystem::path& folder) const {
+    output::write_heights(
+        folder / kMeansFile, field_->grid, field_->height_m,
+        fmt::format("means of {0} x {0} posts of the DEM; for the tasks of this folder", means_));
+}
+
+dem::Window FarGround::halo_of(const dem::Window& tile) const {
+    const glm::dvec2 spacing_m = posts_.grid().post_spacing_m();
+    const int columns = static_cast<int>(std::ceil(halo_m_ / spacing_m.x)),
+              rows = static_cast<int>(std::ceil(halo_m_ / spacing_m.y));
+    return common(
+        {tile.column - columns, tile.row - rows, tile.columns + 2 * columns, tile.rows + 2 * rows},
+        {0, 0, posts_.grid().columns(), posts_.grid().rows()});
+}
+
+FarGround::Site FarGround::site_of(const dem::Window& tile) const {
+    const dem::Window site = halo_of(tile);
+    Site made;
+    made.field = field_of(source_.read(site, site.columns, site.rows), posts_, site);
+    made.posts.emplace(*made.field);
+    const bool is_all =
+        site.columns == posts_.grid().columns() && site.rows == posts_.grid().rows();
+    if (!is_all) made.around = &*around_;
+    made.tile = {tile.column - site.column, tile.row - site.row, tile.columns, tile.rows};
+    return made;
+}
+
+std::string FarGround::description() const {
+    return fmt::format("ground beyond {:.4g} km of a tile is means of {} x {} posts",
+                       halo_m_ / 1000, means_, means_);
+}
+
+double FarGround::kept_posts(const dem::Window& tile) const {
+    const dem::Window site = halo_of(tile);
+    return double(site.columns) * site.rows + static_cast<double>(field_->height_m.size());
+}
+
+}  // namespace relevo::cli

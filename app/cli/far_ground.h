@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/load.h"
+#include "dem/posts.h"
+
+namespace relevo::cli {
+
+/// A DEM of which a tile needs only its own surroundings as posts: ground beyond is means of posts.
+class FarGround {
+  public:
+    /// Means of so many posts a side are ground enough beyond a halo.
+    /// @throws Error (Usage) where memory has no room for the means of the whole DEM
+    static int means_for(const dem::Posts& posts, double halo_m, const MemoryBudget& memory);
+
+    /// Takes the means that a plan has kept, or finds them.
+    /// @param paths, options  of the DEM
+    /// @param posts           all of it; outlives this
+    /// @param is_planned      the folder's plan is of this DEM, and so are the means that it keeps
+    FarGround(const std::vector<std::string>& paths, const dem::LoadOptions& options,
+              const dem::Posts& posts, double halo_m, const std::filesystem::path& folder,
+              bool is_planned);
+
+    /// Keeps the means for other tasks.
+    void write(const std::filesystem::path& folder) const;
+
+    /// A tile with its halo.
+    struct Site {
+        std::unique_ptr<const dem::Heightfield> field;
+        std::optional<dem::Posts> posts;
+        const dem::Posts* around = nullptr;  ///< null: the site is all of the DEM
+        dem::Window tile;                    ///< of these posts
+    };
+    Site site_of(const dem::Window& tile) const;
+
+    /// "ground beyond 8 km of a tile is means of 12 x 12 posts".
+    std::string description() const;
+    /// Of means, and of a site around a tile [posts].
+    double kept_posts(const dem::Window& tile) const;
+
+  private:
+    dem::Window halo_of(const dem::Window& tile) const;
+
+    const dem::Posts& posts_;
+    dem::Source source_;
+    double halo_m_;
+    int means_;
+    std::unique_ptr<const dem::Heightfield> field_;  // of means
+    std::optional<dem::Posts> around_;
+};
+
+}  // namespace relevo::cli

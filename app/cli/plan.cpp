@@ -1,0 +1,210 @@
+#include "cli/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/output_file.h"
+#include "base/parallel_for.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "cli/commands.h"
+#include "cli/shared.h"
+#include "cli/sun.h"
+
+namespace relevo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
+
+std::string bytes_text(double bytes) {
+    return bytes < kGiB ? fmt::format("{:.1f} MiB", bytes / kMiB)
+                        : fmt::format("{:.1f} GiB", bytes / kGiB);
+}
+
+/// How the posts of a file are stored: of "Int16" 2.
+int bytes_of_type(const std::string& type) {
+    const std::size_t digits = type.find_first_of("0123456789");
+    return digits == std::string::npos ? 1 : std::max(1, std::stoi(type.substr(digits)) / 8);
+}
+
+/// The program that runs.
+std::string this_program() {
+    std::error_code error;
+    const fs::path path = fs::read_symlink("/proc/self/exe", error);
+    return error ? "relevo" : path.string();
+}
+
+/// Tasks that take about as long as is asked for.
+TaskList tasks_of(const PlanArguments& arguments, const PlannedWork& work) {
+    TaskList list{.program = this_program(),
+                  .folder = fs::current_path().string(),
+                  .command = work.words,
+                  .merge = work.merge_words,
+                  .tasks = 1,
+                  .threads = arguments.threads > 0 ? arguments.threads : work.threads,
+                  .memory_mib = work.memory_mib,
+                  .task_s = 0,
+                  .rasters = work.rasters};
+    const double all_s = work.computing_s * work.threads / list.threads;
+    const double wanted = std::floor(all_s / (60.0 * arguments.task_minutes));
+    const double most =
+        static_cast<double>(std::min<std::size_t>(work.left, std::size_t(arguments.most_tasks)));
+    list.tasks = static_cast<std::size_t>(std::clamp(wanted, 1.0, std::max(1.0, most)));
+    list.task_s = work.ready_s + all_s / static_cast<double>(list.tasks);
+    return list;
+}
+
+/// Posts that a share of the tiles may read: those of a window around them, and the halo.
+double posts_read(const dem::Posts& posts, const dem::Window& tile, double halo_m) {
+    const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
+    const auto line = [&](int first, int count, int all, double step_m) {
+        const double halo = std::min(halo_m / step_m, double(all));
+        return std::min(double(all), first + count + halo) - std::max(0.0, first - halo);
+    };
+    return line(tile.column, tile.columns, posts.grid().columns(), spacing_m.x) *
+           line(tile.row, tile.rows, posts.grid().rows(), spacing_m.y);
+}
+
+}  // namespace
+
+bool PlanArguments::is_for(const Verb& verb) {
+    return verb.command().starts_with("plan ");
+}
+
+void PlanArguments::add_to(Verb verb) {
+    on = true;
+    verb.add_option("--slurm", slurm,
+                    "File to write: submits an array of tasks and the merge of their results")
+        .group("Tasks");
+    verb.add_option("--parallel", parallel, "File to write: a task a line, for GNU parallel")
+        .group("Tasks");
+    verb.add_option("--cpus", threads, "Processors of a task (those of this computer)")
+        .check(in_range(1, 1024))
+        .group("Tasks");
+    verb.add_option("--task-minutes", task_minutes, "Least duration of a task, minutes (10)")
+        .check(in_range(1, 10080))
+        .group("Tasks");
+    verb.add_option("--most-tasks", most_tasks,
+                    "Tasks at most; Slurm's own limit is often 1001 (1000)")
+        .check(in_range(1, 1'000'000))
+        .group("Tasks");
+}
+
+std::vector<std::string> PlanArguments::words(const Verb& verb) const {
+    std::vector<std::string> words = split(verb.command(), ' '), names{"--"};
+    words.erase(words.begin());  // plan
+    for (const GivenOption& option : verb.given()) {
+        static const std::vector<std::string> kOfPlan{"--slurm",        "--parallel",   "--cpus",
+                                                      "--task-minutes", "--most-tasks", "--shard",
+                                                      "--resume"};
+        if (std::ranges::find(kOfPlan, option.name) != kOfPlan.end()) continue;
+        if (option.is_flag) words.push_back(option.name);
+        for (const std::string& value : option.values) {
+            if (option.is_flag) break;
+            if (option.name.starts_with('-'))
+                words.push_back(option.name + "=" + value);
+            else
+                names.push_back(value);
+        }
+    }
+    if (names.size() > 1) words.insert(words.end(), names.begin(), names.end());
+    return words;
+}
+
+void tell_tasks(const PlanArguments& arguments, const PlannedWork& work) {
+    if (work.left == 0) {
+        fmt::print("tasks               none, all is there\n");
+        return;
+    }
+    const TaskList list = tasks_of(arguments, work);
+    fmt::print("tasks               {}, some {} each on {} threads\n", list.tasks,
+               duration_text(list.task_s), list.threads);
+    const auto write = [&](const std::string& path, const std::string& text, const char* who) {
+        if (!path.empty()) write_text(path, text, work.overwrite, who);
+    };
+    write(arguments.slurm, slurm_script(list), "--slurm");
+    write(arguments.parallel, parallel_lines(list), "--parallel");
+    if (!arguments.slurm.empty()) fmt::print("\nsh {}\n", shell_word(arguments.slurm));
+    if (!arguments.parallel.empty())
+        fmt::print("\nparallel < {} && {}\n", shell_word(arguments.parallel),
+                   shell_line("relevo", list.merge));
+}
+
+void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
+                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo) {
+    const RasterEstimate& estimate = plan.estimate;
+    fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
+    fmt::print(
+        "halo                {:.1f} km: ground so far off can change a figure (relief "
+        "{:.0f} m)\n",
+        plan.halo_m / 1000, double{posts.highest_m()} - posts.lowest_m());
+    if (!todo.empty()) {
+        const double bytes = bytes_of_type(posts.about().data_type);
+        double read = 0;
+        for (const output::PlannedTile& tile : todo)
+            read += posts_read(posts, tile.window, plan.halo_m) * bytes;
+        fmt::print("memory              some {:.0f} MiB a task, {:.0f} of them heights\n",
+                   estimate.memory_mib, estimate.heights_mib);
+        fmt::print(
+            "computing           some {:.3g} processor hours, as {:.3g} % of it took {:.2g} s on "
+            "{} "
+            "threads\n",
+            estimate.computing_s * estimate.threads / 3600, 100 * estimate.sampled_share,
+            estimate.sampled_s, estimate.threads);
+        fmt::print("reading             up to {}, with the halo of each tile\n", bytes_text(read));
+        fmt::print("writing             {} before compression\n",
+                   bytes_text(estimate.result_bytes));
+    }
+    // No wider than the DEM is beyond a tile.
+    const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
+    int side = 1;
+    for (const output::PlannedTile& tile : todo)
+        side = std::max({side, tile.window.columns, tile.window.rows});
+    const double side_m = side * std::min(spacing_m.x, spacing_m.y),
+                 beyond_m = std::max(posts.grid().columns() * spacing_m.x,
+                                     posts.grid().rows() * spacing_m.y) -
+                            side_m;
+    const double sides = std::min(plan.halo_m, beyond_m) / side_m;
+    constexpr double kWide = 2;
+    if (sides > kWide)
+        log::warning(
+            fmt::format("the halo is {:.1f} times as wide as a tile, and all of it may be "
+                        "read for each; larger --tiles read less",
+                        sides));
+    const fs::path folder = plan.folder;
+    tell_tasks(arguments, {.unit = "tile",
+                           .left = todo.size(),
+                           .ready_s = estimate.ready_s,
+                           .computing_s = estimate.computing_s,
+                           .threads = estimate.threads,
+                           .memory_mib = estimate.memory_mib,
+                           .words = plan.words,
+                           .merge_words = {"merge", "--output=" + (folder / "mosaic.vrt").string(),
+                                           "--stac=" + (folder / "mosaic.json").string(),
+                                           "--overwrite", "--", plan.folder},
+                           .rasters = plan.tiles * plan.bands,
+                           .overwrite = plan.overwrite});
+}
+
+void add_plan(Verb app) {
+    const Verb verb = app.add_verb(
+        "plan", "Tiles, memory, time and tasks of a command for many computers, before it runs");
+    verb.require_verb(1);
+    const Verb sun = verb.add_verb("sun", "Rasters of the sun, in tiles");
+    sun.require_verb(1);
+    add_sun_hours(sun);
+    add_sun_shadow(sun);
+    add_sun_sky_view(sun);
+    add_sun_horizons(sun);
+    add_run(verb);
+}
+
+}  // namespace relevo::cli

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cli/raster_estimate.h"
+#include "cli/task_scripts.h"
+#include "cli/verb.h"
+#include "output/tile_plan.h"
+
+/// `relevo plan COMMAND...`: what a command takes, and the tasks that do it.
+namespace relevo::cli {
+
+/// Options of the verbs of `plan`.
+struct PlanArguments {
+    bool on = false;
+    std::string slurm, parallel;  ///< files
+    int threads = 0;              ///< of a task; 0: those of this run
+    int task_minutes = 10, most_tasks = 1000;
+
+    /// Whether a verb is one of `plan`.
+    static bool is_for(const Verb& verb);
+    void add_to(Verb verb);
+    /// The words of the command that is planned: of the verb, its options, "--" and the rest.
+    std::vector<std::string> words(const Verb& verb) const;
+};
+
+/// A command that is to be done by many tasks.
+struct PlannedWork {
+    std::string unit;        ///< "tile", "picture"
+    std::size_t left = 0;    ///< of these
+    double ready_s = 0;      ///< of each task, before its work proper
+    double computing_s = 0;  ///< of all, on `threads`
+    int threads = 1;
+    double memory_mib = 0;
+    std::vector<std::string> words, merge_words;
+    std::size_t rasters = 0;  ///< that are merged: tiles times bands
+    bool overwrite = false;   ///< scripts
+};
+
+/// Prints the tasks, and writes the scripts that are asked for.
+/// @throws Error as OutputFile
+void tell_tasks(const PlanArguments& arguments, const PlannedWork& work);
+
+/// A raster in tiles that is planned.
+struct RasterPlan {
+    RasterEstimate estimate;
+    std::size_t tiles = 0, there = 0, bands = 1;
+    std::string kind;   ///< of the tiles: TileArguments::description()
+    double halo_m = 0;  ///< how far off ground can change a figure
+    std::string folder;
+    std::vector<std::string> words;
+    bool overwrite = false;
+};
+
+/// Prints tiles, halo, memory, processor hours and bytes, and tell_tasks().
+/// @param todo  tiles
+void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
+                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo);
+
+}  // namespace relevo::cli

@@ -1,0 +1,54 @@
+#include "cli/raster_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/progress.h"
+#include "light/sweep/sweep.h"
+
+namespace relevo::cli {
+namespace {
+
+// Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how many
+// tiles of all bands it has at once then.
+constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
+constexpr double kTile = 512;  // posts a side
+constexpr double kMiB = 1 << 20;
+
+}  // namespace
+
+RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
+                           int bytes_a_post, int bytes_a_value, std::size_t bands,
+                           const MemoryBudget& memory) {
+    const dem::Grid& grid = posts.grid();
+    // What sweeps keep; those beyond memory have what is kept of the heights, and the file's
+    // blocks.
+    const double heights =
+        posts.in_memory()
+            ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
+            : static_cast<double>(sizeof(float)) * static_cast<double>(memory.posts) +
+                  static_cast<double>(memory.block_bytes);
+    // A result is written from what is kept of it.
+    const double tiles = std::ceil(raster.columns / kTile) * std::ceil(raster.rows / kTile);
+    const double band = bytes_a_value, tile = kTile * kTile * band * static_cast<double>(bands);
+    const double writing = part_posts * band + std::min(kWriting_mib * kMiB, tiles * tile) +
+                           std::min(kTilesAtOnce, 3 * tiles + 2) * tile;
+    return {(heights + std::max(part_posts * bytes_a_post, writing)) / kMiB + kProgram_mib,
+            heights / kMiB};
+}
+
+void RasterEstimate::print() const {
+    fmt::print("posts               {:.0f}, in {} part{}\n", posts, parts, parts == 1 ? "" : "s");
+    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n", memory_mib,
+               heights_mib);
+    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
+               duration_text(computing_s), 100 * sampled_share, sampled_s, threads);
+    fmt::print(
+        "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
+        "folder of the result\n",
+        bands, bands == 1 ? "" : "s", result_bytes / static_cast<double>(bands) / kMiB);
+}
+
+}  // namespace relevo::cli

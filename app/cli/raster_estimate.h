@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "dem/posts.h"
+
+namespace relevo::cli {
+
+/// What making rasters takes, as a small part of them tells.
+struct RasterEstimate {
+    double posts = 0;        ///< of the rasters
+    std::size_t parts = 0;   ///< in which they are made
+    double memory_mib = 0;   ///< of all
+    double heights_mib = 0;  ///< of these, heights
+    double ready_s = 0;      ///< until the work proper begins
+    double computing_s = 0;  ///< all of it
+    double sampled_share = 0, sampled_s = 0;
+    int threads = 1;  ///< on which
+    std::size_t bands = 1;
+    double result_bytes = 0;  ///< before compression
+
+    /// In lines, on standard output.
+    void print() const;
+};
+
+/// Memory of a run [MiB]; all of it, and that of heights.
+struct RasterMemory {
+    double all_mib = 0, heights_mib = 0;
+};
+/// @param part_posts    the most posts of a part
+/// @param raster        a result file
+/// @param bytes_a_post  RasterWanted::bytes_a_post
+/// @param bytes_a_value, bands  of the result
+/// @param memory        dem::LoadOptions::memory
+RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
+                           int bytes_a_post, int bytes_a_value, std::size_t bands,
+                           const MemoryBudget& memory);
+
+}  // namespace relevo::cli

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/files_in_use.h"
+#include "cli/far_ground.h"
+#include "cli/verb.h"
+#include "output/raster_writer.h"
+#include "output/tile_plan.h"
+
+/// Rasters as tiles in a folder: which there are, and which a run makes.
+namespace relevo::cli {
+
+/// --tiles, --halo, --shard, --resume.
+struct TileArguments {
+    std::string tiles, shard;
+    bool resume = false;
+    std::optional<double> halo_km;
+
+    void add_to(Verb verb);
+    bool given() const { return !tiles.empty(); }
+    /// @throws Error (Usage) for --shard or --resume without --tiles
+    void check() const;
+    /// The tiles of a window, and what they are, for people: "of 512 x 512 posts".
+    /// @throws Error (Usage) for a number that no tile has, (BadInput) as output::tiles_of() and
+    ///     output::tiles_of_index()
+    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window) const;
+    std::string description() const;
+};
+
+/// What a command means for figures, in lines: options that change them, and what they were found
+/// to mean, such as times. Names of DEMs are not in it.
+/// @param given     of the verb
+/// @param metadata  of the results
+std::string meaning_of(const std::string& command, const std::vector<GivenOption>& given,
+                       const output::RasterMetadata& metadata);
+
+/// The command without inputs, outputs and what concerns this run alone, for people:
+/// "sun hours --date=2026-06-21".
+std::string command_text(const std::string& command, const std::vector<GivenOption>& given);
+
+/// The folder of a run's tiles.
+class TileFolder {
+  public:
+    /// Reads the folder's plan, or takes this one, and looks for tiles that are there already.
+    /// @param plan      of this run, its digest of the meaning alone; gets that of the DEM, too
+    /// @param is_plan   tiles are counted and not made, those that are there stay
+    /// @throws Error (Usage) for a --shard that is none, (BadInput) where the folder has a plan or
+    ///     tiles of something else, and tiles without --resume or --overwrite
+    TileFolder(std::filesystem::path folder, output::TilePlan plan, const TileArguments& arguments,
+               bool overwrite, bool is_plan);
+
+    /// Writes the plan unless the folder has it.
+    /// @param posts  of the DEM
+    /// @param far    of it; null: all ground is posts
+    void write_plan(const dem::Posts& posts, const FarGround* far) const;
+    /// Opens the file of a tile.
+    OutputFile open(const output::PlannedTile& tile, FilesInUse& files) const;
+
+    /// Whether a tile is there and whole by now, made by another process.
+    bool is_whole(const output::PlannedTile& tile) const;
+
+    const std::filesystem::path& path() const { return folder_; }
+    const output::TilePlan& plan() const { return plan_; }
+    /// That are to be made, of this shard.
+    const std::vector<output::PlannedTile>& todo() const { return todo_; }
+    /// Of this shard, that are there and stay.
+    std::size_t there() const { return there_; }
+
+  private:
+    void check_plan(const std::optional<output::TilePlan>& found) const;
+    void take(const std::vector<output::PlannedTile>& wanted, bool keep);
+
+    std::filesystem::path folder_;
+    output::TilePlan plan_;
+    bool overwrite_, has_plan_ = false;
+    std::vector<output::PlannedTile> todo_;
+    std::vector<std::string> replaced_;  ///< names of tiles that are damaged
+    std::size_t there_ = 0;
+};
+
+}  // namespace relevo::cli

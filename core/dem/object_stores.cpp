@@ -1,0 +1,99 @@
+#include "dem/object_stores.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/object_store.h"
+#include "base/text.h"
+#include "dem/gdal.h"
+#include "dem/gdal_support.h"
+#include "dem/guard.h"
+#include "dem/remote.h"
+
+namespace relevo::dem {
+namespace {
+
+constexpr std::array<std::string_view, 7> kStores = {
+    "/vsis3/", "/vsigs/", "/vsiaz/", "/vsioss/", "/vsiswift/", "/vsihdfs/", "/vsiwebhdfs/"};
+constexpr std::array<std::string_view, 8> kReadOnly = {
+    "/vsicurl/",          "/vsis3_streaming/",   "/vsigs_streaming/",    "/vsiaz_streaming/",
+    "/vsioss_streaming/", "/vsicurl_streaming/", "/vsiswift_streaming/", "/vsicurl?"};
+constexpr std::size_t kAtOnce = 1 << 20;  // bytes
+
+bool begins_with_one_of(std::string_view name, const auto& prefixes) {
+    return std::ranges::any_of(prefixes,
+                               [&](std::string_view prefix) { return name.starts_with(prefix); });
+}
+
+class GdalObjectStore : public ObjectStore {
+  public:
+    bool has_name(std::string_view name) const override {
+        return begins_with_one_of(name, kStores) || begins_with_one_of(name, kReadOnly);
+    }
+
+    void check_writable(const std::string& name) const override {
+        if (begins_with_one_of(name, kReadOnly))
+            bad_input(
+                fmt::format("{}: cannot be written, GDAL only reads there; a name of an object "
+                            "store begins with /vsis3/, /vsigs/ or /vsiaz/",
+                            printable(name)));
+    }
+
+    bool exists(const std::string& name) const override {
+        prepare_gdal();
+        allow_remote();
+        const Presence presence = remote_presence(name);
+        if (presence == Presence::Hidden)
+            bad_input(
+                fmt::format("{}: the store does not say whether it exists (HTTP response "
+                            "code: 403); pass --overwrite to replace what may be there",
+                            printable(name)));
+        return presence == Presence::There;
+    }
+
+    void put(int descriptor, const std::string& name) const override {
+        prepare_gdal();
+        allow_remote();
+        const GdalMessages messages;
+        VSILFILE* const object = VSIFOpenExL(name.c_str(), "wb", /*bSetError=*/1);
+        std::string fault = object ? copy(descriptor, object) : "";
+        // What was not copied whole is not made an object: GDAL gives the parts up.
+        const bool closed = object && VSIFCloseL(object) == 0;
+        if (closed && fault.empty() && !messages.any_failure()) return;
+        if (fault.empty())
+            fault = "the store or the net refuses it; CPL_CURL_VERBOSE=YES shows what it answers";
+        failed(fmt::format("{}: cannot be written, {}", printable(name), fault));
+    }
+
+    void remove(const std::string& name) const noexcept override { VSIUnlink(name.c_str()); }
+
+  private:
+    /// @returns what went wrong; empty: nothing
+    static std::string copy(int descriptor, VSILFILE* object) {
+        std::vector<char> buffer(kAtOnce);
+        for (off_t at = 0;;) {
+            const ssize_t got = pread(descriptor, buffer.data(), buffer.size(), at);
+            if (got < 0) return std::strerror(errno);
+            if (got == 0) return {};
+            const auto count = static_cast<std::size_t>(got);
+            if (VSIFWriteL(buffer.data(), 1, count, object) != count)
+                return "the store or the net ends it halfway";
+            at += got;
+        }
+    }
+};
+
+}  // namespace
+
+void use_object_stores() {
+    static const GdalObjectStore store;
+    install_object_store(&store);
+}
+
+}  // namespace relevo::dem

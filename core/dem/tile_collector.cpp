@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "dem/interpret.h"
+#include "dem/remote.h"
+#include "dem/tile_index_parts.h"
+
+namespace relevo::dem {
+namespace {
+
+/// Whether a name begins with a driver of GDAL's: "NETCDF:a.nc:z", "vrt://a.tif".
+bool has_scheme(std::string_view name) {
+    const std::size_t colon = name.find(':');
+    if (colon == name.npos || colon < 2) return false;
+    return std::ranges::all_of(name.substr(0, colon), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '+' || c == '-' || c == '.';
+    });
+}
+
+/// The file of a location without folder, query and ending, with what no file name has replaced.
+std::string stem_of(std::string_view location) {
+    if (is_remote(location)) location = location.substr(0, location.find('?'));
+    while (location.ends_with('/'))
+        location.remove_suffix(1);
+    location = location.substr(location.find_last_of("/\\") + 1);
+    if (const std::size_t dot = location.rfind('.'); dot != location.npos && dot > 0)
+        location = location.substr(0, dot);
+    std::string name(location);
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ':') c = '_';
+    return name.empty() || name == ".." ? "tile" : name;
+}
+
+bool is_finite(const Extent& e) {
+    return std::isfinite(e.west) && std::isfinite(e.south) && std::isfinite(e.east) &&
+           std::isfinite(e.north);
+}
+
+/// Around points; NaN where one is not a number.
+Extent extent_around(const std::vector<glm::dvec2>& points) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Extent extent{kInfinity, kInfinity, -kInfinity, -kInfinity};
+    for (const glm::dvec2& point : points) {
+        if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            return {kNone, kNone, kNone, kNone};
+        }
+        extent = {std::min(extent.west, point.x), std::min(extent.south, point.y),
+                  std::max(extent.east, point.x), std::max(extent.north, point.y)};
+    }
+    return extent;
+}
+
+}  // namespace
+
+std::string resolved_location(const std::string& folder, const std::string& location) {
+    const auto starts = [&](std::string_view scheme) {
+        return location.size() > scheme.size() &&
+               equal_ignoring_case(std::string_view(location).substr(0, scheme.size()), scheme);
+    };
+    if (starts("http://") || starts("https://")) return "/vsicurl/" + location;
+    if (starts("s3://")) return "/vsis3/" + location.substr(5);
+    if (starts("gs://")) return "/vsigs/" + location.substr(5);
+    if (starts("file:///")) return location.substr(7);
+    if (location.starts_with('/') || has_scheme(location) || folder.empty()) return location;
+    return location.starts_with("./") ? resolved_location(folder, location.substr(2))
+                                      : folder + "/" + location;
+}
+
+Extent extent_of(const TilePosts& posts) {
+    const double right = posts.columns - 0.5, bottom = posts.rows - 0.5;
+    return extent_around({posts.affine(-0.5, -0.5), posts.affine(right, -0.5),
+                          posts.affine(-0.5, bottom), posts.affine(right, bottom)});
+}
+
+TileCollector::TileCollector(const std::string& path, const geo::Crs* tiles_crs)
+    : tiles_crs_(tiles_crs) {
+    index_.path = path;
+    const std::size_t slash = path.rfind('/');
+    folder_ = slash == path.npos ? "" : path.substr(0, std::max<std::size_t>(slash, 1));
+}
+
+void TileCollector::fail(const std::string& what) const {
+    refuse(printable(index_.path), what);
+}
+
+void TileCollector::fail_row(const std::string& location, const std::string& what) const {
+    fail(fmt::format("tile {}{}: {}", row_,
+                     location.empty() ? "" : fmt::format(" ('{}')", printable(location)), what));
+}
+
+const geo::Crs& TileCollector::crs_of(const std::string& text) {
+    const auto known = known_.find(text);
+    if (known != known_.end()) return known->second;
+    return known_.emplace(text, geo::Crs::parse(text, printable(index_.path))).first->second;
+}
+
+int TileCollector::number_of(const geo::Crs& crs) {
+    for (std::size_t i = 0; i < index_.crs.size(); ++i)
+        if (index_.crs[i].text() == crs.text()) return static_cast<int>(i);
+    index_.crs.push_back(crs);
+    return static_cast<int>(index_.crs.size()) - 1;
+}
+
+std::string TileCollector::unique_name(const std::string& location) {
+    const std::string stem = stem_of(location);
+    std::string name = stem;
+    // Of thousands of folders each may have a dem.tif.
+    for (std::size_t& next = next_number_.try_emplace(stem, 2).first->second;
+         !names_.insert(name).second; ++next)
+        name = fmt::format("{}_{}", stem, next);
+    return name;
+}
+
+void TileCollector::add(const std::string& location, IndexedTile tile, const geo::Crs* crs) {
+    if (trimmed(location).empty()) fail_row("", "names no file");
+    const Extent& e = tile.extent;
+    if (!is_finite(e)) fail_row(location, "an outline with a coordinate that is not a number");
+    if (!(e.east > e.west && e.north > e.south)) fail_row(location, "an outline without an area");
+    if (crs) {
+        const glm::dvec2 middle((e.west + e.east) / 2, (e.south + e.north) / 2);
+        if (!std::isfinite(crs->to_geodetic(middle.x, middle.y).lat_rad))
+            fail_row(location,
+                     fmt::format("its middle is at {:.10g}, {:.10g}, which is not on the Earth in "
+                                 "{}; pass the right one with --crs EPSG:n",
+                                 middle.x, middle.y, crs->name()));
+        tile.crs = number_of(*crs);
+    }
+    tile.location = resolved_location(folder_, location);
+    if (!locations_.insert(tile.location).second) {
+        ++index_.repeated;
+        return;
+    }
+    if (index_.tiles.size() == kMostTiles)
+        fail(
+            fmt::format("an index of more than {} tiles; cut it up, for example with ogr2ogr -spat",
+                        kMostTiles));
+    tile.name = unique_name(tile.location);
+    index_.tiles.push_back(std::move(tile));
+}
+
+void TileCollector::add(const std::string& location, const std::vector<glm::dvec2>& outline,
+                        const std::optional<geo::Crs>& outline_crs, const std::string& crs) {
+    ++row_;
+    if (outline.empty()) fail_row(location, "no outline, its place is unknown");
+    const geo::Crs* own = !crs.empty()  ? &crs_of(crs)
+                          : tiles_crs_  ? tiles_crs_
+                          : own_crs_    ? &*own_crs_
+                          : outline_crs ? &*outline_crs
+                                        : nullptr;
+    IndexedTile tile;
+    if (own && outline_crs && own->text() != outline_crs->text()) {
+        std::vector<glm::dvec2> points;
+        for (const glm::dvec2& vertex : outline)
+            points.push_back(own->from_geodetic(outline_crs->to_geodetic(vertex.x, vertex.y)));
+        tile.extent = extent_around(points);
+        if (!is_finite(tile.extent) && is_finite(extent_around(outline)))
+            fail_row(location, fmt::format("its outline in {} has no place in {}; pass the right "
+                                           "CRS with --crs EPSG:n",
+                                           outline_crs->name(), own->name()));
+    } else {
+        tile.extent = extent_around(outline);
+    }
+    add(location, std::move(tile), own);
+}
+
+void TileCollector::add(const std::string& location, const TilePosts& posts,
+                        const std::string& crs) {
+    ++row_;
+    IndexedTile tile;
+    tile.extent = extent_of(posts);
+    tile.posts = posts;
+    add(location, std::move(tile), &crs_of(crs));
+}
+
+TileIndex TileCollector::take(const std::string& format) {
+    if (index_.tiles.empty()) fail("an index without a tile in it");
+    index_.format = format;
+    return std::move(index_);
+}
+
+}  // namespace relevo::dem

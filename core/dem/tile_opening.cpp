@@ -1,0 +1,156 @@
+#include "dem/tile_opening.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "dem/gdal.h"
+#include "dem/gdal_support.h"
+#include "dem/guard.h"
+#include "dem/remote.h"
+
+namespace relevo::dem {
+namespace {
+
+/// Tiles that are there but cannot be opened, before the index is given up.
+constexpr std::size_t kMostBroken = 100;
+
+bool same_file(const std::string& a, const std::string& b) {
+    std::error_code unknown;
+    return std::filesystem::equivalent(a, b, unknown) && !unknown;
+}
+
+/// The first tile that is there and can be opened.
+/// @param piece  becomes it
+std::size_t first_open(const TileIndex& index, const LoadOptions& options,
+                       std::optional<Piece>& piece, Dataset& opened) {
+    std::size_t broken = 0, missing = 0;
+    std::string first_reason;
+    for (std::size_t i = 0; i < index.tiles.size(); ++i) {
+        const IndexedTile& tile = index.tiles[i];
+        if (!is_there(tile.location)) {
+            ++missing;
+            continue;
+        }
+        try {
+            piece.emplace(open_tile_piece(index, tile, options, index.tiles.size(), opened));
+            return i;
+        } catch (const Error& error) {
+            if (is_no_fault_of_a_file(error)) throw;
+            if (broken++ == 0) first_reason = error.what();
+            if (broken == kMostBroken) break;
+        }
+    }
+    if (broken > 0)
+        refuse(printable(index.path),
+               fmt::format("none of its tiles can be opened ({} of {} tried): {}", broken + missing,
+                           index.tiles.size(), first_reason));
+    refuse(printable(index.path),
+           fmt::format("none of its {} tiles is there, the first is {}; \"location\" counts from "
+                       "the folder of the index",
+                       missing, printable(index.tiles.front().location)));
+}
+
+bool is_apart(const Extent& a, const Extent& b) {
+    return a.west >= b.east || b.west >= a.east || a.south >= b.north || b.south >= a.north;
+}
+
+/// Refuses an index whose numbers are not in the CRS that it says, or of other files.
+void refuse_elsewhere(const TileIndex& index, const IndexedTile& tile, const Piece& piece) {
+    const Extent real =
+        extent_of(TilePosts{piece.grid.columns(), piece.grid.rows(), piece.grid.affine()});
+    if (!is_apart(tile.extent, real)) return;
+    const auto text = [](const Extent& e) {
+        return fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}", e.west, e.south, e.east, e.north);
+    };
+    refuse(
+        printable(index.path),
+        fmt::format("says that {} is at {}, but its file is at {} ({}); the index is of other "
+                    "files, or names a wrong CRS",
+                    printable(tile.name), text(tile.extent), text(real), piece.grid.crs().name()));
+}
+
+}  // namespace
+
+bool is_there(const std::string& location) {
+    if (is_remote(location)) {
+        if (!location.starts_with("/vsi")) return true;
+        const Presence presence = remote_presence(location);
+        if (presence == Presence::Hidden)
+            refuse(printable(location),
+                   "may not be read (HTTP response code: 403), and may be missing; try again with "
+                   "the right to list or read it");
+        return presence == Presence::There;
+    }
+    const bool may_be_gdals =
+        location.starts_with("/vsi") || location.find(':') != std::string::npos;
+    if (may_be_gdals && !location.starts_with("/vsi")) return true;
+    if (!location.starts_with("/vsi")) {
+        std::error_code error;
+        const std::filesystem::file_status found = std::filesystem::status(location, error);
+        if (found.type() == std::filesystem::file_type::none)
+            refuse(printable(location),
+                   fmt::format("cannot be asked for, {}; try again", error.message()));
+        return std::filesystem::exists(found);
+    }
+    VSIStatBufL status{};
+    return VSIStatL(location.c_str(), &status) == 0;
+}
+
+bool is_no_fault_of_a_file(const Error& error) {
+    const std::string_view text = error.what();
+    const auto has = [&](std::string_view words) { return text.find(words) != text.npos; };
+    // As remedy_for() says, and what is wrong with the disk or with the rights to read it.
+    return has("ulimit -n") || has("--memory") || has("try again") || has(std::strerror(EIO)) ||
+           has(std::strerror(ESTALE)) || has(std::strerror(EACCES));
+}
+
+bool is_named_index(const std::string& name) {
+    if (is_remote(name) && is_index_name(name)) {
+        prepare_gdal();
+        allow_remote();
+    }
+    return is_tile_index(name);
+}
+
+Piece open_tile_piece(const TileIndex& index, const IndexedTile& tile, const LoadOptions& options,
+                      std::size_t files, Dataset& opened) {
+    if (same_file(index.path, tile.location))
+        refuse(printable(tile.location), "the index itself, expected a raster");
+    try {
+        return open_piece(tile.location, options, files, opened);
+    } catch (const Error&) {
+        if (!is_remote(tile.location) && is_tile_index(tile.location))
+            refuse(printable(tile.location), "an index of tiles, expected a raster");
+        throw;
+    }
+}
+
+OpenIndex open_index(const std::string& path, const LoadOptions& options,
+                     std::optional<Piece>& piece, Dataset& opened) {
+    OpenIndex open;
+    open.index = read_tile_index(path, options.crs);
+    refuse_remote_tiles(open.index);
+    open.sample = first_open(open.index, options, piece, opened);
+    const geo::Crs& crs = piece->grid.crs();
+    const int stated = open.index.tiles[open.sample].crs;
+    const bool is_other =
+        stated >= 0 && open.index.crs[static_cast<std::size_t>(stated)].text() != crs.text();
+    // Outlines in another CRS, or without one, are now known to be of this.
+    if (is_other || stated < 0) {
+        const std::string location = open.index.tiles[open.sample].location;
+        open.index = read_tile_index(path, options.crs, &crs);
+        open.sample = static_cast<std::size_t>(
+            std::ranges::find(open.index.tiles, location, &IndexedTile::location) -
+            open.index.tiles.begin());
+    }
+    refuse_elsewhere(open.index, open.index.tiles[open.sample], *piece);
+    return open;
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/grid.h"
+#include "dem/tile_index.h"
+
+// Where rasters lie on the grid of a DEM. Inside of the layer only.
+
+namespace relevo::dem {
+
+/// More columns or rows than a raster of the whole Earth at 1 m has is a mistake.
+inline constexpr double kMaxPosts = 5e7;
+
+/// The place of a raster whose posts are on a grid, within a fiftieth of a post; nothing where they
+/// are not.
+std::optional<Window> place_on_grid(const Grid& own, const Grid& grid);
+
+/// The posts of a grid that a raster covers with its cells.
+/// @param name, reference  of both, for messages
+/// @throws Error (BadInput) where parts of the raster have no place in the grid's CRS
+Window place_resampled(const Grid& own, const Grid& grid, const std::string& name,
+                       const std::string& reference);
+
+/// The posts of a grid that each tile of an index may have, by what the index says: its place where
+/// its outline runs along cells, else somewhat more.
+/// @throws Error (BadInput) as place_resampled()
+std::vector<Window> reaches_of(const TileIndex& index, const Grid& grid,
+                               const std::string& reference);
+
+}  // namespace relevo::dem

@@ -1,0 +1,254 @@
+#include "output/tile_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+
+#include "base/error.h"
+#include "base/sha256.h"
+#include "base/text.h"
+#include "dem/clip.h"
+#include "dem/gdal.h"
+#include "dem/gdal_support.h"
+#include "dem/tile_index.h"
+#include "output/raster_writer.h"
+
+namespace relevo::output {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kMostTiles = 10'000'000;
+constexpr int kVersion = 1;  // of the file
+
+Json json_of(const dem::Window& window) {
+    return {window.column, window.row, window.columns, window.rows};
+}
+
+dem::Window window_of(const Json& json) {
+    return {json.at(0), json.at(1), json.at(2), json.at(3)};
+}
+
+Json json_of(const dem::NamedTiles& tiles) {
+    return {{"count", tiles.count}, {"first", tiles.first}};
+}
+
+dem::NamedTiles named_of(const Json& json) {
+    return {.count = json.at("count"), .first = json.at("first")};
+}
+
+Json json_of(const TilePlan& plan) {
+    Json tiles = Json::array();
+    for (const PlannedTile& tile : plan.tiles)
+        tiles.push_back({tile.name, json_of(tile.window)});
+    const dem::Statistics& found = plan.statistics;
+    return {{"relevo_plan", kVersion},
+            {"command", plan.command},
+            {"digest", plan.digest},
+            {"dem",
+             {{"files", plan.dems},
+              {"size", {plan.grid.columns(), plan.grid.rows()}},
+              {"geotransform", plan.grid.affine().geotransform()},
+              {"crs", plan.grid.crs().text()},
+              {"lowest_m", found.min_m},
+              {"highest_m", found.max_m},
+              {"posts_with_height", found.valid},
+              {"voids", found.holes},
+              {"outliers", found.outliers},
+              {"content", fmt::format("{:016x}", plan.content)},
+              {"tiles", plan.dem_tiles.tiles},
+              {"missing", json_of(plan.dem_tiles.missing)},
+              {"broken", json_of(plan.dem_tiles.broken)},
+              {"stamp", plan.stamp}}},
+            {"tiles", tiles}};
+}
+
+TilePlan plan_of(const Json& json, const std::string& name) {
+    const Json& dem = json.at("dem");
+    const std::array<double, 6> transform = dem.at("geotransform");
+    TilePlan plan{.command = json.at("command"),
+                  .digest = json.at("digest"),
+                  .dems = dem.at("files"),
+                  .grid = dem::Grid(dem.at("size").at(0), dem.at("size").at(1),
+                                    dem::Affine::of_geotransform(transform),
+                                    geo::Crs::parse(dem.at("crs").get<std::string>(), name)),
+                  .statistics = {.min_m = dem.at("lowest_m"),
+                                 .max_m = dem.at("highest_m"),
+                                 .valid = dem.at("posts_with_height"),
+                                 .holes = dem.at("voids"),
+                                 .outliers = dem.at("outliers")},
+                  .content = std::stoull(dem.at("content").get<std::string>(), nullptr, 16),
+                  .dem_tiles = {.tiles = dem.at("tiles"),
+                                .missing = named_of(dem.at("missing")),
+                                .broken = named_of(dem.at("broken"))},
+                  .stamp = dem.at("stamp"),
+                  .tiles = {}};
+    for (const Json& tile : json.at("tiles"))
+        plan.tiles.push_back({tile.at(0), window_of(tile.at(1))});
+    return plan;
+}
+
+/// Every thinning-th post of a grid.
+dem::Grid thinned_grid(const dem::Posts& posts, const Array2d<float>& thinned_m) {
+    dem::Affine affine = posts.grid().affine();
+    const int step = posts.thinning();
+    affine.x_column *= step, affine.y_column *= step;
+    affine.x_row *= step, affine.y_row *= step;
+    return {thinned_m.width(), thinned_m.height(), affine, posts.grid().crs()};
+}
+
+/// The posts of a window that are in a rectangle, if there are any.
+std::optional<dem::Window> window_within(const dem::Grid& grid, const dem::Clip& clip,
+                                         const dem::Window& window) {
+    try {
+        const dem::Window found = common(dem::window_of(grid, clip, "--tiles"), window);
+        return found.is_empty() ? std::nullopt : std::optional(found);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+/// Has all of a folder's files follow one rule: what this program has made for itself is replaced.
+OutputFile own_file(const fs::path& path) {
+    return {path, /*overwrite=*/true, "plan"};
+}
+
+}  // namespace
+
+std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& window, int side) {
+    const auto count = [side](int posts) { return (posts - 1) / side + 1; };
+    const int columns = count(grid.columns()), rows = count(grid.rows());
+    if (std::int64_t{columns} * rows > kMostTiles)
+        bad_input(fmt::format(
+            "--tiles: {}: makes {} tiles of a DEM of {} x {} posts; expected at "
+            "most {}",
+            side, std::int64_t{columns} * rows, grid.columns(), grid.rows(), kMostTiles));
+    const auto digits = std::to_string(std::max({columns, rows, 1000})).size();
+    std::vector<PlannedTile> tiles;
+    for (int row = window.row / side; row <= (window.end_row() - 1) / side; ++row)
+        for (int column = window.column / side; column <= (window.end_column() - 1) / side;
+             ++column)
+            tiles.push_back(
+                {fmt::format("r{:0{}}_c{:0{}}.tif", row + 1, digits, column + 1, digits),
+                 common(window, {column * side, row * side, side, side})});
+    return tiles;
+}
+
+std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,
+                                        const std::string& path) {
+    const dem::TileIndex index = dem::read_tile_index(path);
+    std::vector<PlannedTile> tiles;
+    for (const dem::IndexedTile& tile : index.tiles) {
+        const dem::Extent& box = tile.extent;
+        dem::Clip clip{box.west, box.south, box.east, box.north, std::nullopt, tile.name};
+        if (tile.crs >= 0 && index.crs[std::size_t(tile.crs)].text() != grid.crs().text())
+            clip.crs = index.crs[std::size_t(tile.crs)];
+        const std::optional<dem::Window> posts = window_within(grid, clip, window);
+        if (!posts) continue;
+        if (tile.name + ".tif" == kPostsFile || tile.name == "plan_means")
+            bad_input(
+                fmt::format("--tiles: {}: a tile has the name \"{}\", which is taken; rename "
+                            "it",
+                            printable(path), tile.name));
+        tiles.push_back({tile.name + ".tif", *posts});
+    }
+    if (tiles.empty())
+        bad_input(fmt::format("--tiles: {}: no tile has a post of the DEM", printable(path)));
+    return tiles;
+}
+
+std::pair<std::size_t, std::size_t> share_of(std::size_t count, std::size_t number,
+                                             std::size_t shares) {
+    return {count * (number - 1) / shares, count * number / shares};
+}
+
+std::string stamp_of(const std::vector<std::string>& files) {
+    std::string text;
+    for (const std::string& file : files) {
+        struct stat found {};
+        text += file;
+        if (stat(file.c_str(), &found) == 0)
+            text += fmt::format("\n{} {}.{:09}", found.st_size, found.st_mtim.tv_sec,
+                                found.st_mtim.tv_nsec);
+        text += '\n';
+    }
+    return sha256_of_text(text);
+}
+
+std::optional<TilePlan> read_plan(const fs::path& folder) {
+    const fs::path path = folder / kPlanFile;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return std::nullopt;
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string name = "plan: " + printable(path.string());
+    const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_object() || !json.contains("relevo_plan"))
+        bad_input(name + ": is no plan of relevo; use another folder");
+    if (json.at("relevo_plan") != kVersion)
+        bad_input(name + ": is of another version of relevo; use another folder");
+    try {
+        return plan_of(json, name);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception&) {
+        bad_input(name + ": is damaged; remove it, and plan again");
+    }
+}
+
+void write_plan(const fs::path& folder, const TilePlan& plan) {
+    OutputFile file = own_file(folder / kPlanFile);
+    file.write(json_of(plan).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.finish();
+}
+
+std::optional<Array2d<float>> read_heights(const fs::path& file) {
+    const std::string path = file.string();
+    std::error_code missing;
+    if (!fs::exists(path, missing)) return std::nullopt;
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    const char* const drivers[] = {"GTiff", nullptr};
+    const dem::Dataset dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
+    const auto refuse = [&] {
+        bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
+                              printable(path), messages.failure(path)));
+    };
+    if (!dataset) refuse();
+    Array2d<float> height_m(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()));
+    if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, 0, height_m.width(),
+                     height_m.height(), height_m.data(), height_m.width(), height_m.height(),
+                     GDT_Float32, 0, 0) != CE_None)
+        refuse();
+    return height_m;
+}
+
+void write_heights(const fs::path& path, const dem::Grid& grid, const Array2d<float>& height_m,
+                   const std::string& definition) {
+    OutputFile file = own_file(path);
+    RasterWriter writer(file, grid, RasterType::Float, {{"height", "m"}});
+    writer.put(0, 0, 0, height_m);
+    writer.finish({{"DEFINITION", definition}});
+}
+
+std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const TilePlan& plan) {
+    std::optional<Array2d<float>> thinned_m = read_heights(folder / kPostsFile);
+    if (!thinned_m) return std::nullopt;
+    return dem::PostsFacts{plan.statistics, std::move(*thinned_m), plan.content, plan.dem_tiles};
+}
+
+void write_posts_facts(const fs::path& folder, const dem::Posts& posts) {
+    const dem::PostsFacts facts = posts.facts();
+    write_heights(folder / kPostsFile, thinned_grid(posts, facts.thinned_m), facts.thinned_m,
+                  fmt::format("every {}th post of the DEM, each way, from the first on; for the "
+                              "tasks of this folder",
+                              posts.thinning()));
+}
+
+}  // namespace relevo::output
