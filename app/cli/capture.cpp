@@ -129,7 +129,7 @@ class Timings {
             return static_cast<double>(bytes) / static_cast<double>(MemoryBudget::kMiB);
         };
         return {{"allowed", memory.mib()},
-                {"pages", mib(memory.page_bytes)},
+                {"tiles", mib(memory.view_bytes)},
                 {"blocks", mib(memory.block_bytes)},
                 {"work", mib(memory.work_bytes)},
                 {"peak", peak_memory_mib()}};

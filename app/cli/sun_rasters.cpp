@@ -59,8 +59,8 @@ void say_allocation(const MemoryBudget& memory) {
     const auto by = [](const std::string& name) {
         return name.empty() ? std::string() : " (" + name + ")";
     };
-    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads,
-                          by(given.threads_by), memory.mib(), by(given.memory_by)));
+    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads, by(given.threads_by),
+                          memory.mib(), by(given.memory_by)));
 }
 
 }  // namespace
@@ -144,8 +144,7 @@ RasterGround RasterArguments::load() const {
     std::optional<dem::PostsFacts> facts;
     bool is_planned = false;
     if (tiles.given()) {
-        if (!dem.values.has("--memory"))
-            options.memory = memory_of_allocation(options.memory);
+        if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
         const auto known = output::read_plan(output.path);
         is_planned = known && known->stamp == stamp_of_dem(dem.paths);

@@ -15,11 +15,13 @@ constexpr std::int64_t kLeastOfPictures_mib = 64;
 /// Light is computed for no more, and finer heights are read where a view needs them: more means
 /// would only have to be read.
 constexpr std::int64_t kMostMeans = std::int64_t{1} << 25;
+/// A DEM of more posts is drawn from means and finer heights sooner than from all of them.
+constexpr std::int64_t kMostDrawn = std::int64_t{1} << 26;
 
-/// Views of 1280 x 1024 pixels need 30 to 60 MiB, whatever the DEM.
-std::int64_t page_bytes_of(std::int64_t bytes) {
-    constexpr std::int64_t kOfAView = 64 * MemoryBudget::kMiB;
-    return std::clamp(bytes / 4, std::min(bytes * 11 / 16, kOfAView), 512 * MemoryBudget::kMiB);
+/// Views of 1280 x 1024 pixels need 40 to 150 MiB, whatever the DEM; no view needs more than 576.
+std::int64_t view_bytes_of(std::int64_t bytes) {
+    constexpr std::int64_t kOfAView = 160 * MemoryBudget::kMiB, kMost = 576 * MemoryBudget::kMiB;
+    return std::clamp(bytes / 4, std::min(bytes * 11 / 16, kOfAView), kMost);
 }
 
 }  // namespace
@@ -31,14 +33,14 @@ MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
     const std::int64_t bytes = mib * kMiB;
     MemoryBudget budget{.total_bytes = bytes,
                         .posts = bytes / kBytesAPost,
-                        .page_bytes = page_bytes_of(bytes),
+                        .view_bytes = view_bytes_of(bytes),
                         .block_bytes = std::clamp(bytes / 8, 8 * kMiB, 256 * kMiB),
                         .work_bytes = std::clamp(bytes / 32, kMiB, 64 * kMiB)};
     const std::int64_t light_bytes = bytes / 16 + std::max<std::int64_t>(0, bytes - 256 * kMiB) / 6;
     budget.light_posts = light_bytes / kBytesALightPost;
     const std::int64_t rest = std::max<std::int64_t>(
-        0, bytes - light_bytes - budget.page_bytes - budget.block_bytes - budget.work_bytes);
-    budget.drawn_posts = rest / kBytesADrawnPost;
+        0, bytes - light_bytes - budget.view_bytes - budget.block_bytes - budget.work_bytes);
+    budget.drawn_posts = std::min(rest / kBytesADrawnPost, kMostDrawn);
     budget.means = std::min(rest / kBytesAMean, kMostMeans);
     return budget;
 }

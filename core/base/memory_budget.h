@@ -21,7 +21,7 @@ struct MemoryBudget {
     std::int64_t drawn_posts = 0;  ///< that pictures hold of a whole DEM
     std::int64_t means = 0;        ///< that they hold of a DEM with more posts
     std::int64_t light_posts = 0;  ///< for which pictures compute shadows
-    std::int64_t page_bytes = 0;   ///< tile pages, on the device
+    std::int64_t view_bytes = 0;   ///< tile pages and triangles, on the device
     std::int64_t block_bytes = 0;  ///< GDAL's cache of blocks, which several DEMs share
     std::int64_t work_bytes = 0;   ///< buffers while heights are read
 

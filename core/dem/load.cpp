@@ -198,9 +198,9 @@ Heightfield load(const Source& source, const MemoryBudget& memory, Array2d<float
     try {
         Heightfield field = read_reduced(source, reduction, std::move(known));
         if (reduction > 1)
-            field.about.assumptions.push_back(fmt::format(
-                "reduced from {} x {} to {} x {} posts, means of {} x {}, to stay within --memory",
-                full.columns(), full.rows(), columns, rows, reduction, reduction));
+            field.about.assumptions.push_back(
+                fmt::format("reduced from {} x {} to {} x {} posts in memory, means of {} x {}",
+                            full.columns(), full.rows(), columns, rows, reduction, reduction));
         report_heights(
             source, field.about,
             field.about.statistics.valid > 0 ? find_collar(field.height_m) : std::nullopt);

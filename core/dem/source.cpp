@@ -43,6 +43,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
     allow_blocks(options.memory.block_bytes);
     auto impl = std::make_unique<Impl>();
     impl->work_bytes = options.memory.work_bytes;
+    impl->block_bytes = options.memory.block_bytes;
     OpenRasters opened = open_rasters(given, options);
     Frame frame = join(opened.pieces, opened.indexes, impl->about, impl->grid);
     impl->rasters.emplace(std::move(opened), std::move(frame), options);

@@ -105,12 +105,13 @@ void Source::Impl::add_means(int number, const Means& means, const Span& columns
     // What is not stored is skipped strip by strip. Tiles that rows of parts have in common are
     // decoded once: strips are as wide as GDAL's cache has room for their tiles, and are gone down
     // one after the other.
-    constexpr std::size_t kMaxCells = std::size_t{1} << 18, kFewestCells = std::size_t{1} << 13,
-                          kCached = std::size_t{1} << 24;
+    constexpr std::size_t kMaxCells = std::size_t{1} << 18, kFewestCells = std::size_t{1} << 13;
+    // With threads at several strips, and cells of up to four bytes.
+    const std::size_t cached = static_cast<std::size_t>(block_bytes) / 16;
     const bool tiled = static_cast<std::size_t>(piece.block_columns) <= kFewestCells / 2;
     const std::size_t most_cells =
         may_skip ? kFewestCells
-        : tiled  ? std::clamp(kCached / static_cast<std::size_t>(piece.block_rows), kFewestCells,
+        : tiled  ? std::clamp(cached / static_cast<std::size_t>(piece.block_rows), kFewestCells,
                               kMaxCells)
                  : kMaxCells;
     const std::vector<Strip> strips = strips_of(across, most_cells);

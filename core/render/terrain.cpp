@@ -25,33 +25,36 @@ namespace {
 constexpr int kMaxHeightPages = 1024;  // 73 MB
 constexpr int kMaxNormalPages = 384;   // 102 MB
 
-/// Parts of MemoryBudget::page_bytes for pages of heights, and for those of normals, water and
+/// Parts of MemoryBudget::view_bytes for pages of heights, and for those of normals, water and
 /// rasters, whose texels all have four bytes.
 constexpr std::int64_t kHeightPart = 5;  // one in so many
 constexpr std::int64_t kHeightPageBytes = std::int64_t{kHeightPage_px} * kHeightPage_px * 16;
+/// What Mesa's software device keeps of triangles until they are drawn, as measured; that of few is
+/// lost among what is measured besides.
+constexpr std::int64_t kTriangleBytes = 300, kFewTriangles = 100'000;
 constexpr std::int64_t kNormalPageBytes = std::int64_t{kNormalPage_px} * kNormalPage_px * 4;
 
 int height_slots_in(const MemoryBudget& memory) {
     return static_cast<int>(std::min<std::int64_t>(
-        kMaxHeightPages, memory.page_bytes / kHeightPart / kHeightPageBytes));
+        kMaxHeightPages, memory.view_bytes / kHeightPart / kHeightPageBytes));
 }
 
 /// @param layers  that share the memory
 int normal_slots_in(const MemoryBudget& memory, std::int64_t layers) {
     return static_cast<int>(std::min<std::int64_t>(
         kMaxNormalPages,
-        memory.page_bytes * (kHeightPart - 1) / kHeightPart / (layers * kNormalPageBytes)));
+        memory.view_bytes * (kHeightPart - 1) / kHeightPart / (layers * kNormalPageBytes)));
 }
 
 /// A view would be coarser than with more memory.
-/// @param page_bytes  that it needs
+/// @param view_bytes  that it needs
 /// @throws Error (BadInput)
-[[noreturn]] void refuse_coarser(const MemoryBudget& memory, std::int64_t page_bytes) {
+[[noreturn]] void refuse_coarser(const MemoryBudget& memory, std::int64_t view_bytes) {
     std::int64_t mib = memory.mib();
-    while (MemoryBudget::of_mib(mib).page_bytes < page_bytes)
+    while (MemoryBudget::of_mib(mib).view_bytes < view_bytes)
         ++mib;
     bad_input(
-        fmt::format("--memory {}: this view needs --memory {} for its tile pages, or a "
+        fmt::format("--memory {}: this view needs --memory {} for its tiles, or a "
                     "smaller --size",
                     memory.mib(), mib));
 }
@@ -284,7 +287,10 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
         view.tolerance = coarser(view.tolerance);
     }
     heights_.require(keys);
-    return ready(view, draws);
+    TileSelection selection = ready(view, draws);
+    view_bytes_ = std::ssize(keys) * kHeightPageBytes +
+                  std::max<std::int64_t>(0, selection.triangles_ - kFewTriangles) * kTriangleBytes;
+    return selection;
 }
 
 TileSelection Terrain::select_in_background(const LodView& wanted) {
@@ -407,6 +413,9 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool determi
             refuse_coarser(options_.memory,
                            kHeightPart * std::ssize(pages) * surface_bytes_ / (kHeightPart - 1));
     }
+    const std::int64_t needed = view_bytes_ + std::ssize(pages) * surface_bytes_;
+    if (loading == Loading::Wait && needed > options_.memory.view_bytes)
+        refuse_coarser(options_.memory, needed);
     const bool came = surface_.load(pages, loading);
     complete_ = complete_ && std::ranges::all_of(pages, [&](const TileKey& page) {
                     return surface_.slot(page) >= 0;

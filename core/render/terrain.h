@@ -200,6 +200,7 @@ class Terrain {
     int normal_levels_ = 1;
     int normal_layers_ = 1;
     std::int64_t surface_bytes_ = 0;  // of a page in all its layers
+    std::int64_t view_bytes_ = 0;     // of the heights and triangles that select() has selected
 
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;

@@ -93,7 +93,8 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
     check_heights(field.about);
     auto dem = loaded_dem(std::move(source), std::move(field), scene, known ? &*known : nullptr);
     // What is wrong with tiles is only found by reading them.
-    if (!known && !dem->source->tiles().has_faults()) cache.write(dem->field, *dem->pyramid, dem->drawn.water);
+    if (!known && !dem->source->tiles().has_faults())
+        cache.write(dem->field, *dem->pyramid, dem->drawn.water);
     dem->took_ms = milliseconds_since(began);
     return dem;
 }

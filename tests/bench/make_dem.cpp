@@ -51,7 +51,7 @@ Arguments parse(int argc, char** argv) {
 /// Creation options of GDAL's GeoTIFF driver.
 std::vector<std::string> creation_options(const std::string& layout) {
     if (layout.empty()) return {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2"};
-    std::vector<std::string> options{"COMPRESS=LZW", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"};
+    std::vector<std::string> options{"COMPRESS=LZW", "BIGTIFF=IF_SAFER"};
     if (layout == "strips1" || layout == "strips64")
         options.push_back("BLOCKYSIZE=" + layout.substr(6));
     else if (layout == "tiles256")

@@ -236,7 +236,7 @@ TEST(IndexMosaic, MissingAndBrokenTilesAreVoidsAndNamed) {
     log::set_sink([&](log::Level level, std::string_view text) {
         if (level == log::Level::Warning) warned.emplace_back(text);
     });
-    const Heightfield field = load(source, 1 << 20);
+    const Heightfield field = load(source, MemoryBudget::of_posts(1 << 20));
     log::set_sink({});
     ASSERT_EQ(warned.size(), 2u);
     EXPECT_EQ(warned[0], index + ": 1 (t1_1) of 14 tiles are missing: their posts are voids");
@@ -295,7 +295,7 @@ TEST(IndexMosaic, OverlappingTilesThatDisagreeAreNamed) {
     EXPECT_EQ(source.tiles().stepped.count, 0);
     std::vector<std::string> said;
     log::set_sink([&](log::Level, std::string_view text) { said.emplace_back(text); });
-    load(source, 1 << 20);
+    load(source, MemoryBudget::of_posts(1 << 20));
     log::set_sink({});
     EXPECT_THAT(said, testing::Contains(HasSubstr(
                           ": 2 (over (by up to 1000 m), over_that (by up to 2000 m)) of 14 tiles "

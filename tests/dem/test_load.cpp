@@ -314,7 +314,7 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
     EXPECT_THAT(
         f.about.assumptions,
         Contains(
-            "reduced from 100 x 60 to 50 x 30 posts, means of 2 x 2, to stay within --memory"));
+            "reduced from 100 x 60 to 50 x 30 posts in memory, means of 2 x 2"));
 }
 
 TEST(Load, OtherFormats) {

@@ -199,7 +199,7 @@ TEST(SunOverlay, IsSavedOfEveryPostAlsoWhereMemoryHasFewer) {
     std::filesystem::current_path(folder);
     run(fmt::format("sun shadow {} --time 2026-12-24T16:00Z -o {}", larger,
                     (folder / "command.tif").string()));
-    const OverlayWanted wanted = of(larger, kMask, 400'000);
+    const OverlayWanted wanted = of(larger, kMask, MemoryBudget::of_posts(400'000));
     ASSERT_GT(wanted.dem->field.reduction, 1);
     OverlayWork work([] {});
     work.want(wanted);
