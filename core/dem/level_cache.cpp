@@ -172,18 +172,19 @@ std::vector<CachedDem> cached_dems(const CacheFolder& folder) {
     return dems;
 }
 
-LevelCache::LevelCache(std::span<const std::string> paths, const LoadOptions& options,
+LevelCache::LevelCache(std::span<const std::string> paths, const LoadOptions& options, Holes holes,
                        CacheFolder folder)
     : paths_(paths.begin(), paths.end()),
       options_(options),
+      holes_(holes),
       folder_(std::move(folder)),
       key_(options.cached ? key() : std::nullopt) {}
 
 std::optional<std::string> LevelCache::key() const {
     const std::optional<std::string> state = state_of_files(paths_);
     if (!state) return std::nullopt;
-    return fmt::format("levels {} of relevo {}, GDAL {}\n{}{}", kFormat, RELEVO_VERSION,
-                       gdal_version(), text_of(options_), *state);
+    return fmt::format("levels {} of relevo {}, GDAL {}\nholes {}\n{}{}", kFormat, RELEVO_VERSION,
+                       gdal_version(), static_cast<int>(holes_), text_of(options_), *state);
 }
 
 std::string LevelCache::name_of(const std::string& key, int reduction) {

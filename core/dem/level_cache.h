@@ -9,6 +9,7 @@
 
 #include "base/array2d.h"
 #include "base/cache_folder.h"
+#include "dem/fill_holes.h"
 #include "dem/heightfield.h"
 #include "dem/pyramid.h"
 #include "dem/source.h"
@@ -45,7 +46,9 @@ class LevelCache {
 
     /// Of no use, unless LoadOptions::cached is set and changes of all files can be seen.
     /// @param paths, options  as Source::open() was called with
-    LevelCache(std::span<const std::string> paths, const LoadOptions& options, CacheFolder folder);
+    /// @param holes  how voids are drawn, on which bounds and water depend
+    LevelCache(std::span<const std::string> paths, const LoadOptions& options, Holes holes,
+               CacheFolder folder);
 
     /// Whether read() is likely to find something.
     bool has(int reduction) const;
@@ -63,6 +66,7 @@ class LevelCache {
 
     std::vector<std::string> paths_;
     LoadOptions options_;
+    Holes holes_;
     CacheFolder folder_;
     std::optional<std::string> key_;
 };

@@ -69,8 +69,10 @@ Pyramid::Pyramid(const Array2d<float>& posts_m)
 }
 
 Pyramid::Pyramid(const Heightfield& means, const Source& source, const MemoryBudget& memory,
-                 const TileBounds* known)
-    : source_(&source), sizes_{{source.grid().columns(), source.grid().rows()}} {
+                 Voids voids, const TileBounds* known)
+    : source_(&source),
+      fills_voids_(voids == Voids::Filled),
+      sizes_{{source.grid().columns(), source.grid().rows()}} {
     assert(means.reduction >= 2);
     first_ = std::bit_width(static_cast<unsigned>(means.reduction));
     levels_.resize(static_cast<std::size_t>(first_));
@@ -89,8 +91,8 @@ Pyramid::Pyramid(const Heightfield& means, const Source& source, const MemoryBud
 }
 
 Pyramid Pyramid::of(const Heightfield& field, const Source* source, const MemoryBudget& memory,
-                    const TileBounds* known) {
-    return source && field.reduction > 1 ? Pyramid(field, *source, memory, known)
+                    Voids voids, const TileBounds* known) {
+    return source && field.reduction > 1 ? Pyramid(field, *source, memory, voids, known)
                                          : Pyramid(field.height_m);
 }
 
@@ -296,6 +298,30 @@ Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 f
     return nodes;
 }
 
+Array2d<float> Pyramid::read_filled(const Window& window, int side) const {
+    const glm::ivec2 size(window.columns / side, window.rows / side);
+    Array2d<float> read = source_->read(window, size.x, size.y);
+    if (!fills_voids_) return read;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+            if (std::isnan(read.at(x, y)))
+                read.at(x, y) = between_nodes(glm::dvec2(window.column, window.row) +
+                                              glm::dvec2(x, y) * double(side) + 0.5 * (side - 1));
+    return read;
+}
+
+float Pyramid::between_nodes(const glm::dvec2& post) const {
+    const glm::ivec2 last = size(first_) - 1;
+    const glm::dvec2 at = glm::clamp(post / double(1 << first_), glm::dvec2(0), glm::dvec2(last));
+    const glm::ivec2 low = glm::min(glm::ivec2(at), glm::max(last - 1, 0)),
+                     high = glm::min(low + 1, last);
+    const glm::vec2 share(at - glm::dvec2(low));
+    const auto across = [&](int row) {
+        return glm::mix(height(first_, low.x, row), height(first_, high.x, row), share.x);
+    };
+    return glm::mix(across(low.y), across(high.y), share.y);
+}
+
 Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int rows) const {
     // One node more on each side, for the means next to voids; then nodes on the DEM alone.
     const glm::ivec2 last = size(level) - 1;
@@ -310,7 +336,7 @@ Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int
         const glm::ivec2 low = glm::max(post(level, from) - level, glm::ivec2(0));
         const glm::ivec2 high = glm::min(post(level, to) + level, posts - 1);
         const Window window{low.x, low.y, high.x - low.x + 1, high.y - low.y + 1};
-        const Array2d<float> read = source_->read(window, window.columns, window.rows);
+        const Array2d<float> read = read_filled(window, 1);
         nodes = {Array2d<float>(count.x, count.y), Array2d<std::uint8_t>(count.x, count.y), {}};
         for (int y = 0; y < count.y; ++y) {
             for (int x = 0; x < count.x; ++x) {
@@ -335,8 +361,8 @@ Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int
         const glm::ivec2 low = glm::clamp(2 * from - 1, glm::ivec2(0), means - 1);
         const glm::ivec2 high = glm::clamp(2 * to, low, means - 1);
         const glm::ivec2 size = high - low + 1;
-        const Array2d<float> read = source_->read(
-            {low.x * side, low.y * side, size.x * side, size.y * side}, size.x, size.y);
+        const Array2d<float> read =
+            read_filled({low.x * side, low.y * side, size.x * side, size.y * side}, side);
         nodes = nodes_of_means(read, low, level, from, count);
     }
 

@@ -39,6 +39,8 @@ class Pyramid {
   public:
     /// Heights and vertical error of a tile.
     struct Bounds;
+    /// Whether posts without a height keep none where the means around them have some.
+    enum class Voids { Kept, Filled };
     /// The bounds of all tiles, which cost more than the levels themselves: they can be kept.
     struct TileBounds;
 
@@ -50,16 +52,17 @@ class Pyramid {
     /// @param means   as returned by load(): means of a power of two posts; must outlive this
     /// @param source  of the finer levels; must outlive this
     /// @param memory  for the pieces that are sampled
+    /// @param voids   of the finer levels
     /// @param known   tile_bounds() of an equal pyramid; null: they are computed
     /// @throws Error (BadInput) if the file is damaged, also from block()
     Pyramid(const Heightfield& means, const Source& source,
             const MemoryBudget& memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib),
-            const TileBounds* known = nullptr);
+            Voids voids = Voids::Kept, const TileBounds* known = nullptr);
 
     /// Pyramid of a heightfield of posts or of means.
     /// @param source  null: there are no levels finer than the heightfield
     static Pyramid of(const Heightfield& field, const Source* source, const MemoryBudget& memory,
-                      const TileBounds* known = nullptr);
+                      Voids voids = Voids::Kept, const TileBounds* known = nullptr);
 
     int levels() const { return static_cast<int>(sizes_.size()); }
     int columns() const { return sizes_.front().x; }  ///< of level 0
@@ -155,10 +158,16 @@ class Pyramid {
     Level nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean, int level,
                          glm::ivec2 first, glm::ivec2 count) const;
     Block read_block(int level, glm::ivec2 first, int columns, int rows) const;
+    /// Reads means of side x side posts; voids get what lies between the nodes in memory, if
+    /// wanted.
+    Array2d<float> read_filled(const Window& window, int side) const;
+    /// Height between the nodes of the finest level in memory; NaN next to one without a height.
+    float between_nodes(const glm::dvec2& post) const;
     void sample_errors(std::int64_t max_nodes);
 
     const Array2d<float>* posts_m_ = nullptr;
     const Source* source_ = nullptr;
+    bool fills_voids_ = false;  // of levels finer than those in memory
     int first_ = 0;
     std::vector<glm::ivec2> sizes_;  // of all levels
     std::vector<Level> levels_;      // empty below first_; the heights of level 0 are posts_m_

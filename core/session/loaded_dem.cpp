@@ -13,18 +13,14 @@ namespace relevo::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Voids = dem::Pyramid::Voids;
 
 /// @param known  water that was found before; null: it is found
 LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes, dem::Water* known) {
     LoadedDem::Drawn drawn;
-    // Voids of a reduced DEM stay cut: finer levels of detail are read from the file, with voids.
-    const bool all = field.reduction == 1;
     if (field.about.statistics.holes > 0) {
-        const dem::Holes done = all ? holes : dem::Holes::Cut;
-        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, done);
-        drawn.holes_text = filled.text(done);
-        if (!all && holes != dem::Holes::Cut)
-            drawn.holes_text += ", because the DEM is larger than --memory";
+        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, holes);
+        drawn.holes_text = filled.text(holes);
         drawn.has_covers = filled.covered_posts > 0;
         if (filled.filled_posts + filled.covered_posts > 0) {
             drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
@@ -60,8 +56,10 @@ std::shared_ptr<LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
     auto dem = std::make_shared<LoadedDem>(
         LoadedDem{.source = std::move(source), .field = std::move(field)});
     dem->drawn = drawn_of(dem->field, scene.holes, known ? &known->water : nullptr);
-    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get(), scene.dem.memory,
-                                          known ? &known->bounds : nullptr));
+    dem->pyramid.emplace(
+        dem::Pyramid::of(dem->to_draw(), dem->source.get(), scene.dem.memory,
+                         scene.holes == dem::Holes::Cut ? Voids::Kept : Voids::Filled,
+                         known ? &known->bounds : nullptr));
     return dem;
 }
 
@@ -74,7 +72,7 @@ dem::LevelCache cache_of(const dem::Grid& grid, int reduction, const scene::Scen
     dem::LoadOptions options = scene.dem;
     const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
     options.cached = options.cached && reduction > 1 && posts >= dem::LevelCache::kLeastPosts;
-    return {scene.dems, options, dem::user_level_cache()};
+    return {scene.dems, options, scene.holes, dem::user_level_cache()};
 }
 
 }  // namespace

@@ -182,8 +182,8 @@ TEST(ExportVerb, SaysWhatIsWrong) {
     expect_failure({"export", "heightmap", dem, "-o", out("a.png"), "--range", "300,900"}, 3,
                    "--range: 300,900: expected to contain all heights, 236 to 1076 m");
     expect_failure({"export", "heightmap", dem, "-o", out("a.png"), "--size", "65536x65536"}, 3,
-                   fmt::format("{}: 65536 x 65536 heights take 16385 MiB, expected at most 1024; "
-                               "pass --size 4097x4097, --crop W,S,E,N or --memory 16385",
+                   fmt::format("{}: 65536 x 65536 heights take 49152 MiB, expected at most 3072; "
+                               "pass --size 4097x4097, --crop W,S,E,N or --memory 49152",
                                dem));
     EXPECT_FALSE(fs::exists(glb) || fs::exists(stl) || fs::exists(out("a.png")));
 }

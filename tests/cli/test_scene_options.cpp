@@ -109,7 +109,7 @@ TEST(SceneOptions, ADefaultOnTheLineReplacesWhatASceneSays) {
     CLI::App app;
     SceneArguments arguments;
     arguments.add_to(Verb(app));
-    app.parse(fmt::format("--scene {} --memory 1024 --encoding none", path));
+    app.parse(fmt::format("--scene {} --memory 3072 --encoding none", path));
     const Scene scene = arguments.scene();
     EXPECT_EQ(scene.dem.memory.mib(), MemoryBudget::kDefault_mib);
     EXPECT_EQ(scene.dem.encoding, dem::Encoding::None);

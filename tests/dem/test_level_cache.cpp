@@ -58,7 +58,7 @@ struct Drawn {
           water(find_water(field.height_m, field.grid)),
           pyramid(Pyramid::of(field, &source, given.memory)) {}
 
-    LevelCache cache() const { return {paths, options, place()}; }
+    LevelCache cache() const { return {paths, options, Holes::Fill, place()}; }
     static CacheFolder place() { return {folder() / "cache", std::int64_t{1} << 26}; }
 };
 
@@ -102,7 +102,8 @@ TEST(LevelCache, GivesBackWhatPicturesAreMadeOf) {
     EXPECT_EQ(again.about.statistics, drawn.field.about.statistics);
     EXPECT_EQ(again.about.assumptions, drawn.field.about.assumptions);
     EXPECT_EQ(again.reduction, 4);
-    expect_same(Pyramid::of(again, &drawn.source, drawn.options.memory, &levels->bounds),
+    expect_same(Pyramid::of(again, &drawn.source, drawn.options.memory, Pyramid::Voids::Kept,
+                            &levels->bounds),
                 drawn.pyramid);
     const Water& water = levels->water;
     EXPECT_EQ(water.kind, drawn.water.kind);
@@ -123,7 +124,7 @@ TEST(LevelCache, WhatChangesHeightsIsAnotherEntry) {
     drawn.cache().write(drawn.field, drawn.pyramid, drawn.water);
     const auto finds = [&](const LoadOptions& options, const std::string& of, int reduction = 4) {
         const std::vector<std::string> paths{of};
-        return LevelCache(paths, options, Drawn::place())
+        return LevelCache(paths, options, Holes::Fill, Drawn::place())
             .read(drawn.source.grid(), reduction)
             .has_value();
     };

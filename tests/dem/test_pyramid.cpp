@@ -292,5 +292,33 @@ TEST(Pyramid, NodesOfMeansLieOnTheirPosts) {
     }
 }
 
+TEST(Pyramid, VoidsOfLevelsThatAreReadLieBetweenTheMeansAroundThem) {
+    constexpr float kVoid = -9999;
+    const auto is_void = [](int column, int row) {
+        return column >= 499 && column < 505 && row >= 299 && row < 305;
+    };
+    test::Raster raster{.columns = 1000, .rows = 700, .nodata = kVoid};
+    raster.value = [&](int column, int row, int) {
+        return is_void(column, row) ? double(kVoid) : plane_m(column, row);
+    };
+    const std::string path = test::write_raster(test::scratch_dir("pyramid") / "hole.tif", raster);
+    const Source source = Source::open(path);
+    const Heightfield means = load(source, MemoryBudget::of_posts(1000 * 700 / 64));
+    ASSERT_EQ(means.reduction, 8);
+    const auto memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
+    for (int level = 0; level < 3; ++level) {
+        const glm::ivec2 hole(502 >> level, 302 >> level);
+        const Pyramid kept(means, source, memory, Pyramid::Voids::Kept);
+        EXPECT_LT(kept.block(level, hole, 1, 1).coverage.at(0, 0), 1) << level;
+        const Pyramid filled(means, source, memory, Pyramid::Voids::Filled);
+        const Pyramid::Block block = filled.block(level, hole, 1, 1);
+        EXPECT_EQ(block.coverage.at(0, 0), 1) << level;
+        const glm::ivec2 post = filled.post(level, hole);
+        EXPECT_NEAR(block.height_m.at(0, 0), plane_m(post.x, post.y),
+                    6 * (plane_m(1, 1) - plane_m(0, 0)))
+            << level;
+    }
+}
+
 }  // namespace
 }  // namespace relevo::dem

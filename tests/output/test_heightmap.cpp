@@ -92,11 +92,11 @@ TEST(ReadGround, MorePostsAreBetweenTheFirstAndTheLast) {
 
 TEST(ReadGround, RefusesWhatMemoryDoesNotHold) {
     dem::LoadOptions how;
-    how.memory = MemoryBudget::of_posts(10000);
+    how.memory = MemoryBudget::of_mib(1);
     const std::string error = test::error_of([&] { bundled({.remedy = "--size 65x65"}, how); });
     EXPECT_TRUE(
-        error.ends_with("jacksboro.tif: 403 x 344 heights take 1 MiB, expected at most 0; "
-                        "pass --size 65x65, --crop W,S,E,N or --memory 1"))
+        error.ends_with("jacksboro.tif: 403 x 344 heights take 2 MiB, expected at most 1; "
+                        "pass --size 65x65, --crop W,S,E,N or --memory 2"))
         << error;
     EXPECT_EQ(bundled({.size = glm::ivec2(65, 65)}, how).field.grid.rows(), 65);
 }
