@@ -98,6 +98,25 @@ TEST_F(RemoteIndex, AStoreWithoutTheTilesIsNotAskedForAllOfThem) {
     EXPECT_FALSE(std::filesystem::exists(result_));
 }
 
+// GDAL does not say why it cannot look into an archive.
+TEST_F(RemoteIndex, ATileInAnArchiveThatTheStoreDoesNotGiveIsNotMissing) {
+    const std::string archive = "/vsis3/bucket/t.zip";
+    const std::string index =
+        write_index(dir_ / "zip.fgb", "FlatGeobuf",
+                    {{"/vsizip/" + archive + "/t.tif", {500000, 5199000, 501000, 5200000}}});
+    for (const int code : {404, 403, 500}) {
+        ObjectStoreServer store([code](const Request& request, int) {
+            return request.path == "/bucket/t.zip" ? ObjectStoreServer::status(code) : Fault{};
+        });
+        store.put("/bucket/index.fgb", bytes_of(index));
+        const Result run = shadow(store);
+        EXPECT_EQ(run.status, 3);
+        EXPECT_THAT(run.err, HasSubstr(code == 404   ? "none of its 1 tiles is there"
+                                       : code == 403 ? "t.zip/t.tif: may not be read"
+                                                     : "t.zip: cannot be asked for"));
+    }
+}
+
 struct Bad {
     const char* name;
     Fault fault;

@@ -145,6 +145,12 @@ TEST(TileIndex, ItsFilesAreKnownWithoutTheRightCrs) {
         std::ofstream(tile) << "here";
     const std::vector<std::filesystem::path> files = files_of(std::vector{path});
     EXPECT_THAT(files, ElementsAre(path, tiles[0], tiles[1]));
+    const std::string stac = (folder() / "i.json").string();
+    std::ofstream(stac) << R"({"type": "FeatureCollection", "features": [{"type": "Feature", )"
+                           R"("stac_version": "1.1.0", "properties": {"proj:code": "EPSG:0", )"
+                           R"("proj:bbox": [0, 0, 1, 1]}, "assets": {"a": {"href": )"
+                           R"("tiles/a.tif", "roles": ["data"]}}}]})";
+    EXPECT_THAT(tile_locations(stac), ElementsAre(tiles[0]));
 }
 
 TEST(TileIndex, NamesAreUnique) {
