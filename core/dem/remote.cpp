@@ -55,6 +55,7 @@ std::string archive_of(const std::string& name) {
     std::string inner = name.substr(name.find('/', 1));
     inner.erase(0, inner.starts_with("//") || inner.starts_with("/{") ? 1 : 0);
     if (inner.starts_with('{')) return inner.substr(1, inner.find('}') - 1);
+    if (!inner.starts_with("/vsi")) return {};  // "/vsisubfile/0_9,/vsicurl/..."
     const std::string lower_case = lower(inner);
     for (const std::string_view ending : {".zip/", ".kmz/", ".tar/", ".tgz/", ".tar.gz/"})
         if (const std::size_t at = lower_case.find(ending); at != lower_case.npos)
