@@ -42,7 +42,10 @@ std::vector<output::PlannedTile> whole_tiles(const Arguments& arguments,
         const std::string name = (fs::path(arguments.folder) / plan.tiles[i].name).string();
         if (others++ < kMostNamed) log::error(fmt::format("{}: {}", printable(name), found[i].why));
     }
-    if (others > 0 && (!arguments.allow_missing || whole.empty()))
+    if (whole.empty())
+        failed(fmt::format("merge: none of {} tiles is there and whole; make them with --resume",
+                           found.size()));
+    if (others > 0 && !arguments.allow_missing)
         failed(
             fmt::format("merge: {} of {} tiles are missing or not whole; make them with "
                         "--resume, or pass --allow-missing",

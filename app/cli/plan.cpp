@@ -98,13 +98,27 @@ void PlanArguments::add_to(Verb verb) {
         .group("Tasks");
 }
 
+void PlanArguments::check(const FilesInUse& files, const std::string& shard, bool overwrite) const {
+    if (!on) return;
+    if (!shard.empty())
+        bad_usage("--shard: a plan is of all tasks, and gives each of them its part; pass none");
+    if (!slurm.empty()) files.open_alone(slurm, overwrite, "--slurm");
+    if (!parallel.empty()) files.open_alone(parallel, overwrite, "--parallel");
+}
+
+std::vector<fs::path> PlanArguments::scripts() const {
+    std::vector<fs::path> names;
+    for (const std::string& name : {slurm, parallel})
+        if (!name.empty()) names.emplace_back(name);
+    return names;
+}
+
 std::vector<std::string> PlanArguments::words(const Verb& verb) const {
     std::vector<std::string> words = split(verb.command(), ' '), names{"--"};
     words.erase(words.begin());  // plan
     for (const GivenOption& option : verb.given()) {
         static const std::vector<std::string> kOfPlan{"--slurm",        "--parallel",   "--cpus",
-                                                      "--task-minutes", "--most-tasks", "--shard",
-                                                      "--resume"};
+                                                      "--task-minutes", "--most-tasks", "--resume"};
         if (std::ranges::find(kOfPlan, option.name) != kOfPlan.end()) continue;
         if (option.is_flag) words.push_back(option.name);
         for (const std::string& value : option.values) {

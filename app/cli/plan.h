@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/files_in_use.h"
 #include "cli/raster_estimate.h"
 #include "cli/task_scripts.h"
 #include "cli/verb.h"
@@ -22,6 +24,13 @@ struct PlanArguments {
     /// Whether a verb is one of `plan`.
     static bool is_for(const Verb& verb);
     void add_to(Verb verb);
+    /// Refuses before any work what a plan has no use for, and names of scripts that cannot be
+    /// written: opens each, and drops it.
+    /// @param shard  what --shard says
+    /// @throws Error (Usage) for --shard, and as FilesInUse::open_alone()
+    void check(const FilesInUse& files, const std::string& shard, bool overwrite) const;
+    /// The names of the scripts that are asked for.
+    std::vector<std::filesystem::path> scripts() const;
     /// The words of the command that is planned: of the verb, its options, "--" and the rest.
     std::vector<std::string> words(const Verb& verb) const;
 };

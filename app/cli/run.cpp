@@ -139,6 +139,8 @@ class Run {
             for (const fs::path& path : files_of(shot))
                 outputs.push_back(path);
         }
+        for (const fs::path& script : arguments_.plan.scripts())
+            outputs.push_back(script);
         files_.check_planned(outputs, "run");
     }
 
@@ -406,6 +408,7 @@ class Run {
 
 void run_job(const JobArguments& arguments) {
     JobRun work;
+    arguments.plan.check(work.files, arguments.shard, arguments.overwrite);
     work.read(arguments);
     if ((arguments.plan.on || arguments.missing) &&
         (!arguments.contact_sheet.empty() || work.job.is_film()))

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/allocation.h"
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
@@ -105,25 +107,50 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
                        "Estimate time and memory from a small part; write nothing");
 }
 
+namespace {
+
+/// Refuses names of what a run in tiles writes besides its tiles, before any work.
+void check_results(const RasterArguments& arguments, const std::filesystem::path& folder,
+                   const FilesInUse& files) {
+    const bool overwrite = arguments.output.overwrite;
+    std::vector<std::filesystem::path> results = arguments.plan.scripts();
+    const std::filesystem::path of_plan = (folder / output::kPlanFile).lexically_normal();
+    for (const std::filesystem::path& script : results)
+        if (script.lexically_normal().parent_path() == of_plan.parent_path())
+            make_folder_of(of_plan, "-o");  // as the plan would
+    arguments.plan.check(files, arguments.tiles.shard, overwrite);
+    results.push_back(folder);
+    std::ranges::copy(output::plan_files(folder), std::back_inserter(results));
+    files.check_planned(results, "-o");
+    if (!overwrite) check_plan_files(folder);
+}
+
+}  // namespace
+
 OutputFile* RasterArguments::open(FilesInUse& files) const {
     output::check_creation_options(creation_options);
     tiles.check();
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
     const std::filesystem::path folder = output.path;
-    if (object_store_of((folder / "plan.json").native()))
+    if (object_store_of((folder / output::kPlanFile).native()))
         bad_usage(fmt::format("-o: {}: tiles are made in a folder of this machine, and read there",
                               printable(output.path)));
     dem::add_named(dem.paths, files);
     if (output.overwrite)
         for (const std::filesystem::path& path : dem::files_of(dem.paths))
             files.add_input(path, "a file that the DEM is read from,");
-    files.check_planned({folder / "plan.json", folder / "plan.tif", folder / "plan_means.tif"},
-                        "-o");
+    if (!parse_number(tiles.tiles)) files.add_input(tiles.tiles, "the index of tiles");
+    check_results(*this, folder, files);
     return nullptr;
 }
 
 namespace {
+
+/// --crs is about the DEM, and so about the index of tiles where the DEM is that index.
+std::string crs_of_tiles(const RasterArguments& arguments) {
+    return contains(arguments.dem.paths, arguments.tiles.tiles) ? arguments.dem.options().crs : "";
+}
 
 /// Of all files that the DEM is read from, also those that a name stands for.
 std::string stamp_of_dem(const std::vector<std::string>& paths) {
@@ -146,7 +173,7 @@ RasterGround RasterArguments::load() const {
     if (tiles.given()) {
         if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
-        const auto known = output::read_plan(output.path);
+        const auto known = plan_of(output.path, output.overwrite);
         is_planned = known && known->stamp == stamp_of_dem(dem.paths);
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
@@ -225,7 +252,8 @@ void RasterRun::choose_tiles() {
                                      .content = posts.content(),
                                      .dem_tiles = posts.about().tiles,
                                      .stamp = stamp_of_dem(arguments_.dem.paths),
-                                     .tiles = arguments_.tiles.of(posts.grid(), ground_.window)},
+                                     .tiles = arguments_.tiles.of(posts.grid(), ground_.window,
+                                                                  crs_of_tiles(arguments_))},
                     arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
     todo_ = folder_->todo();
     if (!arguments_.dry_run) folder_->write_plan(posts, far_ ? &*far_ : nullptr);

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "base/files_in_use.h"
+#include "base/percent.h"
 #include "chart/shaded_relief.h"
 #include "cli/commands.h"
 #include "cli/shared.h"
@@ -21,21 +22,7 @@ struct Arguments {
 std::string path_of(std::string_view name) {
     constexpr std::string_view kFile = "file://";
     if (!name.starts_with(kFile)) return std::string(name);
-    name.remove_prefix(kFile.size());
-    std::string path;
-    const auto digit = [](char c) {
-        const std::size_t at =
-            std::string_view("0123456789abcdef")
-                .find(static_cast<char>(c >= 'A' && c <= 'F' ? c - 'A' + 'a' : c));
-        return at == std::string_view::npos ? -1 : static_cast<int>(at);
-    };
-    for (std::size_t i = 0; i < name.size(); ++i) {
-        const bool is_code = name[i] == '%' && i + 2 < name.size() && digit(name[i + 1]) >= 0 &&
-                             digit(name[i + 2]) >= 0;
-        path += is_code ? static_cast<char>(16 * digit(name[i + 1]) + digit(name[i + 2])) : name[i];
-        if (is_code) i += 2;
-    }
-    return path;
+    return percent_decoded(name.substr(kFile.size()));
 }
 
 void thumbnail(const Arguments& arguments) {

@@ -87,10 +87,10 @@ void TileArguments::check() const {
     if (!given() && halo_km) bad_usage("--halo: needs --tiles");
 }
 
-std::vector<output::PlannedTile> TileArguments::of(const dem::Grid& grid,
-                                                   const dem::Window& window) const {
+std::vector<output::PlannedTile> TileArguments::of(const dem::Grid& grid, const dem::Window& window,
+                                                   const std::string& crs) const {
     const auto side = parse_number(tiles);
-    if (!side) return output::tiles_of_index(grid, window, tiles);
+    if (!side) return output::tiles_of_index(grid, window, tiles, crs);
     constexpr double kLeast = 64, kMost = 1 << 20;
     if (!(*side >= kLeast && *side <= kMost && *side == std::floor(*side)))
         bad_usage(fmt::format("--tiles: {}: expected a whole number from {} to {}, or an index",
@@ -120,6 +120,21 @@ std::string command_text(const std::string& command, const std::vector<GivenOpti
     return text;
 }
 
+std::optional<output::TilePlan> plan_of(const fs::path& folder, bool overwrite) {
+    if (overwrite && contains(output::foreign_plan_files(folder), folder / output::kPlanFile))
+        return std::nullopt;
+    return output::read_plan(folder);
+}
+
+void check_plan_files(const fs::path& folder) {
+    const std::vector<fs::path> foreign = output::foreign_plan_files(folder);
+    if (!foreign.empty())
+        bad_input(
+            fmt::format("-o: {}: exists, and a plan of tiles needs its name; use another "
+                        "folder, or pass --overwrite to replace it",
+                        printable(foreign.front().string())));
+}
+
 TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileArguments& arguments,
                        bool overwrite, bool is_plan)
     : folder_(std::move(folder)), plan_(std::move(plan)), overwrite_(overwrite) {
@@ -128,7 +143,7 @@ TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileArgumen
     if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
         bad_input(fmt::format("-o: {}: is a file; with --tiles it is a folder",
                               printable(folder_.string())));
-    const std::optional<output::TilePlan> found = output::read_plan(folder_);
+    const std::optional<output::TilePlan> found = plan_of(folder_, overwrite);
     if (!overwrite) check_plan(found);
     has_plan_ = found && found->digest == plan_.digest && found->tiles == plan_.tiles &&
                 found->stamp == plan_.stamp;

@@ -25,10 +25,13 @@ struct TileArguments {
     bool given() const { return !tiles.empty(); }
     /// @throws Error (Usage) for --shard or --resume without --tiles
     void check() const;
-    /// The tiles of a window, and what they are, for people: "of 512 x 512 posts".
+    /// The tiles of a window.
+    /// @param crs  of an index, as `--crs` takes it; empty: what the index says
     /// @throws Error (Usage) for a number that no tile has, (BadInput) as output::tiles_of() and
     ///     output::tiles_of_index()
-    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window) const;
+    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window,
+                                        const std::string& crs) const;
+    /// What the tiles are, for people: "of 512 x 512 posts".
     std::string description() const;
 };
 
@@ -42,6 +45,14 @@ std::string meaning_of(const std::string& command, const std::vector<GivenOption
 /// The command without inputs, outputs and what concerns this run alone, for people:
 /// "sun hours --date=2026-06-21".
 std::string command_text(const std::string& command, const std::vector<GivenOption>& given);
+
+/// The plan of a folder, if it has one. With --overwrite a file of another kind is none.
+/// @throws Error (BadInput) as output::read_plan()
+std::optional<output::TilePlan> plan_of(const std::filesystem::path& folder, bool overwrite);
+
+/// Refuses a folder in which a plan would replace files that are not of a plan.
+/// @throws Error (BadInput) naming the first
+void check_plan_files(const std::filesystem::path& folder);
 
 /// The folder of a run's tiles.
 class TileFolder {

@@ -58,11 +58,14 @@ void FilesInUse::check_planned(const std::vector<std::filesystem::path>& results
             if (const auto found = inputs.find(*identity); found != inputs.end())
                 refuse(result, who, found->second->path, found->second->what);
         const auto [other, fresh] = planned.emplace(destination(result), &result);
-        if (!fresh)
-            bad_input(fmt::format(
-                "{}: {} and {}: a symbolic link makes them one file, {}; name them apart", who,
-                printable(other->second->string()), printable(result.string()),
-                printable(other->first.string())));
+        if (fresh) continue;
+        if (other->second->lexically_normal() == result.lexically_normal())
+            bad_input(fmt::format("{}: {}: another result has this name; give each its own", who,
+                                  printable(result.string())));
+        bad_input(
+            fmt::format("{}: {} and {}: a symbolic link makes them one file, {}; name them apart",
+                        who, printable(other->second->string()), printable(result.string()),
+                        printable(other->first.string())));
     }
 }
 

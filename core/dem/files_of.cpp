@@ -95,9 +95,9 @@ class Collector {
 std::vector<fs::path> files_of_index(const std::string& path) {
     std::vector<fs::path> files{file_behind(path)};
     try {
-        for (const IndexedTile& tile : read_tile_index(path).tiles)
-            if (!is_remote(tile.location))
-                if (fs::path file = file_behind(tile.location); !file.empty())
+        for (const std::string& location : tile_locations(path))
+            if (!is_remote(location))
+                if (fs::path file = file_behind(location); !file.empty())
                     files.push_back(std::move(file));
     } catch (const Error&) {
         // What reads it says so.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@ constexpr std::array<std::string_view, 7> kStores = {
 constexpr std::array<std::string_view, 8> kReadOnly = {
     "/vsicurl/",          "/vsis3_streaming/",   "/vsigs_streaming/",    "/vsiaz_streaming/",
     "/vsioss_streaming/", "/vsicurl_streaming/", "/vsiswift_streaming/", "/vsicurl?"};
+constexpr std::array<std::string_view, 2> kInParts = {"/vsis3/", "/vsioss/"};
 constexpr std::size_t kAtOnce = 1 << 20;  // bytes
 
 bool begins_with_one_of(std::string_view name, const auto& prefixes) {
@@ -62,10 +64,13 @@ class GdalObjectStore : public ObjectStore {
         allow_remote();
         const GdalMessages messages;
         VSILFILE* const object = VSIFOpenExL(name.c_str(), "wb", /*bSetError=*/1);
-        std::string fault = object ? copy(descriptor, object) : "";
+        bool is_read = true;
+        std::string fault = object ? copy(descriptor, object, is_read) : "";
         // What was not copied whole is not made an object: GDAL gives the parts up.
         const bool closed = object && VSIFCloseL(object) == 0;
         if (closed && fault.empty() && !messages.any_failure()) return;
+        // Those that take no parts make one of what came.
+        if (!is_read && !begins_with_one_of(name, kInParts)) VSIUnlink(name.c_str());
         if (fault.empty())
             fault = "the store or the net refuses it; CPL_CURL_VERBOSE=YES shows what it answers";
         failed(fmt::format("{}: cannot be written, {}", printable(name), fault));
@@ -74,18 +79,30 @@ class GdalObjectStore : public ObjectStore {
     void remove(const std::string& name) const noexcept override { VSIUnlink(name.c_str()); }
 
   private:
+    /// @param is_read  becomes false where the file cannot be read to its end
     /// @returns what went wrong; empty: nothing
-    static std::string copy(int descriptor, VSILFILE* object) {
+    static std::string copy(int descriptor, VSILFILE* object, bool& is_read) {
         std::vector<char> buffer(kAtOnce);
         for (off_t at = 0;;) {
             const ssize_t got = pread(descriptor, buffer.data(), buffer.size(), at);
-            if (got < 0) return std::strerror(errno);
+            if (got < 0) {
+                const int error = errno;
+                is_read = false;
+                give_up(object);
+                return std::strerror(error);
+            }
             if (got == 0) return {};
             const auto count = static_cast<std::size_t>(got);
             if (VSIFWriteL(buffer.data(), 1, count, object) != count)
                 return "the store or the net ends it halfway";
             at += got;
         }
+    }
+
+    /// Has GDAL make no object when it is closed. Version 3.6 has no call for that, but it takes a
+    /// seek for an error, after which it gives up.
+    static void give_up(VSILFILE* object) {
+        VSIFSeekL(object, std::numeric_limits<vsi_l_offset>::max(), SEEK_SET);
     }
 };
 

@@ -138,6 +138,7 @@ Dataset open_dataset(std::string& path) {
     prepare_gdal();
     // Names that are no file may still mean something to GDAL: "/vsizip/...", "NETCDF:a.nc:topo".
     if (is_remote(path)) allow_remote();
+    refuse_silent(path);
     refuse_unreadable(path);
     GdalMessages messages;
     refuse_unsafe_vrt(path);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "dem/gdal.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -45,7 +46,29 @@ bool is_remote(std::string_view name) {
     return false;
 }
 
+namespace {
+
+/// The file in the net that has another in it: "/vsicurl/https://a.org/b.zip" of
+/// "/vsizip/vsicurl/https://a.org/b.zip/c.tif"; empty for other names.
+std::string archive_of(const std::string& name) {
+    if (!is_local_file_system(name) || !is_remote(name)) return {};
+    std::string inner = name.substr(name.find('/', 1));
+    inner.erase(0, inner.starts_with("//") || inner.starts_with("/{") ? 1 : 0);
+    if (inner.starts_with('{')) return inner.substr(1, inner.find('}') - 1);
+    if (!inner.starts_with("/vsi")) return {};  // "/vsisubfile/0_9,/vsicurl/..."
+    const std::string lower_case = lower(inner);
+    for (const std::string_view ending : {".zip/", ".kmz/", ".tar/", ".tgz/", ".tar.gz/"})
+        if (const std::size_t at = lower_case.find(ending); at != lower_case.npos)
+            return inner.substr(0, at + ending.size() - 1);
+    return inner;  // "/vsigzip/vsicurl/https://a.org/b.tif.gz"
+}
+
+}  // namespace
+
 Presence remote_presence(const std::string& name) {
+    // GDAL does not say why it cannot look into an archive.
+    if (const std::string archive = archive_of(name); !archive.empty())
+        if (const Presence found = remote_presence(archive); found != Presence::There) return found;
     VSIErrorReset();
     VSIStatBufL status{};
     if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_SET_ERROR_FLAG) == 0)
@@ -56,6 +79,11 @@ Presence remote_presence(const std::string& name) {
     if (reason.ends_with(" 403")) return Presence::Hidden;
     VSICurlPartialClearCache(name.c_str());
     refuse(name, fmt::format("cannot be asked for, {}; try again", reason));
+}
+
+void refuse_silent(const std::string& name) {
+    if (name.starts_with("/vsi") && !name.starts_with("/vsistdin") && is_remote(name))
+        remote_presence(name);
 }
 
 std::optional<NetworkUse> network_use() {

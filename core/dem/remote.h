@@ -20,6 +20,11 @@ enum class Presence { There, Missing, Hidden };
 /// @throws Error (BadInput) `NAME: cannot be asked for, why` where there is no answer
 Presence remote_presence(const std::string& name);
 
+/// Refuses a name of a store that gives no answer: GDAL would wait for it several times. Other
+/// names, and those that are missing, pass.
+/// @throws Error (BadInput) as remote_presence()
+void refuse_silent(const std::string& name);
+
 /// What GDAL has asked of stores and servers since the process began, and what came of it.
 struct NetworkUse {
     std::int64_t requests = 0, read_bytes = 0, written_bytes = 0;

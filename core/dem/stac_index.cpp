@@ -56,8 +56,9 @@ const json* asset_of(const json& item) {
 
 class StacReader {
   public:
-    StacReader(const std::string& path, std::string crs, const geo::Crs* tiles_crs)
-        : tiles_(path, tiles_crs), crs_(std::move(crs)), wgs84_(geo::Crs()) {
+    StacReader(std::string crs, TileCollector& tiles)
+        : tiles_(tiles), crs_(std::move(crs)), wgs84_(geo::Crs()) {
+        tiles_.set_uris();
         if (!crs_.empty()) tiles_.set_crs(tiles_.crs_of(crs_));
     }
 
@@ -80,14 +81,11 @@ class StacReader {
         }
         if (!why.empty()) fail(why);
         if (const json* box = member(item, *asset, "proj:bbox"); box && !crs.empty())
-            return tiles_.add(href, corners(numbers(*box), /*in_degrees=*/false),
+            return tiles_.add(href, {corners(numbers(*box), /*in_degrees=*/false)},
                               tiles_.crs_of(crs), crs);
         // What a polygon of GeoJSON is in.
         tiles_.add(href, outline_of(item), wgs84_, crs);
     }
-
-    TileIndex take() { return tiles_.take("STAC"); }
-    const TileCollector& tiles() const { return tiles_; }
 
   private:
     static std::string crs_text(const json& item, const json& asset) {
@@ -147,31 +145,37 @@ class StacReader {
                          Affine::of_geotransform(g)};
     }
 
-    /// Vertices of the geometry, else of the bbox.
-    static std::vector<glm::dvec2> outline_of(const json& item) {
-        std::vector<glm::dvec2> vertices;
+    /// Rings of the geometry, else the bbox.
+    static Outline outline_of(const json& item) {
+        Outline outline;
         const auto geometry = item.find("geometry");
         if (geometry != item.end() && geometry->is_object() && geometry->contains("coordinates"))
-            add_positions((*geometry)["coordinates"], vertices);
-        if (vertices.empty() && item.contains("bbox"))
-            vertices = corners(numbers(item["bbox"]), /*in_degrees=*/true);
-        return vertices;
+            add_rings((*geometry)["coordinates"], outline);
+        if (outline.empty() && item.contains("bbox"))
+            outline = {corners(numbers(item["bbox"]), /*in_degrees=*/true)};
+        return outline;
     }
 
-    // No deeper than kDeepest, by the parser.
-    static void add_positions(const json& list, std::vector<glm::dvec2>& vertices) {
-        if (!list.is_array() || list.empty()) return;
-        if (list[0].is_array()) {
+    /// Of polygons, however deep in lists. No deeper than kDeepest, by the parser.
+    static void add_rings(const json& list, Outline& outline) {
+        const auto has_lists = [](const json& of) {
+            return of.is_array() && !of.empty() && of[0].is_array();
+        };
+        if (!has_lists(list)) return;
+        if (has_lists(list[0])) {
             for (const json& inner : list)
-                add_positions(inner, vertices);
+                add_rings(inner, outline);
             return;
         }
-        const std::vector<double> position = numbers(list);
-        vertices.push_back(position.size() >= 2 ? glm::dvec2(position[0], position[1])
+        std::vector<glm::dvec2>& ring = outline.emplace_back();
+        for (const json& at : list) {
+            const std::vector<double> position = numbers(at);
+            ring.push_back(position.size() >= 2 ? glm::dvec2(position[0], position[1])
                                                 : glm::dvec2(NAN));
+        }
     }
 
-    TileCollector tiles_;
+    TileCollector& tiles_;
     std::string crs_;
     std::optional<geo::Crs> wgs84_;
     std::size_t count_ = 0;
@@ -179,9 +183,8 @@ class StacReader {
 
 }  // namespace
 
-TileIndex read_stac(const std::string& path, const std::string& text, const std::string& crs,
-                    const geo::Crs* tiles_crs) {
-    StacReader reader(path, crs, tiles_crs);
+TileIndex read_stac(const std::string& text, const std::string& crs, TileCollector& tiles) {
+    StacReader reader(crs, tiles);
     bool in_features = false;
     // Items are taken and dropped one by one, so that their number costs no memory.
     const auto callback = [&](int depth, json::parse_event_t event, json& parsed) {
@@ -196,15 +199,15 @@ TileIndex read_stac(const std::string& path, const std::string& text, const std:
     try {
         root = json::parse(text, callback);
     } catch (const json::out_of_range&) {
-        reader.tiles().fail("a number too large for a program, expected JSON of a STAC catalogue");
+        tiles.fail("a number too large for a program, expected JSON of a STAC catalogue");
     } catch (const json::parse_error& error) {
-        reader.tiles().fail(
+        tiles.fail(
             fmt::format("no well-formed JSON at byte {}; the file is damaged or "
                         "incomplete",
                         error.byte));
     }
     if (root.is_object() && root.value("type", json()) == "Feature") reader.item(root);
-    return reader.take();
+    return tiles.take("STAC");
 }
 
 }  // namespace relevo::dem

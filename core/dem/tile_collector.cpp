@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "base/percent.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "dem/interpret.h"
 #include "dem/remote.h"
 #include "dem/tile_index_parts.h"
@@ -56,6 +58,27 @@ Extent extent_around(const std::vector<glm::dvec2>& points) {
     return extent;
 }
 
+/// All vertices of an outline. RFC 7946, section 3.1.9: one that crosses the antimeridian is cut
+/// there. Its western parts are moved a turn on where that makes one narrower box of all parts.
+/// @param turn  in units of its CRS; 0: projected
+std::vector<glm::dvec2> vertices_of(const Outline& outline, double turn) {
+    std::vector<glm::dvec2> as_given, moved;
+    for (const std::vector<glm::dvec2>& part : outline) {
+        const Extent box = extent_around(part);
+        const double east = box.west + box.east < 0 ? turn : 0;
+        for (const glm::dvec2& vertex : part) {
+            as_given.push_back(vertex);
+            moved.emplace_back(vertex.x + east, vertex.y);
+        }
+    }
+    const Extent a = extent_around(as_given), b = extent_around(moved);
+    return b.east - b.west < a.east - a.west ? moved : as_given;
+}
+
+double turn_of(const std::optional<geo::Crs>& crs) {
+    return crs && crs->is_geographic() ? 2 * kPi / crs->unit_si() : 0;
+}
+
 }  // namespace
 
 std::string resolved_location(const std::string& folder, const std::string& location) {
@@ -72,14 +95,25 @@ std::string resolved_location(const std::string& folder, const std::string& loca
                                       : folder + "/" + location;
 }
 
+std::string resolved_uri(const std::string& folder, const std::string& uri) {
+    constexpr std::string_view kFile = "file://";
+    if (uri.starts_with(kFile)) return percent_decoded(std::string_view(uri).substr(kFile.size()));
+    if (has_scheme(uri) || uri.starts_with("/vsi") || folder.find("/vsicurl") != folder.npos)
+        return resolved_location(folder, uri);
+    std::string name = percent_decoded(uri);
+    while (name.starts_with("./"))
+        name.erase(0, 2);
+    return name.starts_with('/') || folder.empty() ? name : folder + "/" + name;
+}
+
 Extent extent_of(const TilePosts& posts) {
     const double right = posts.columns - 0.5, bottom = posts.rows - 0.5;
     return extent_around({posts.affine(-0.5, -0.5), posts.affine(right, -0.5),
                           posts.affine(-0.5, bottom), posts.affine(right, bottom)});
 }
 
-TileCollector::TileCollector(const std::string& path, const geo::Crs* tiles_crs)
-    : tiles_crs_(tiles_crs) {
+TileCollector::TileCollector(const std::string& path, const geo::Crs* tiles_crs, Wanted wanted)
+    : tiles_crs_(tiles_crs), wanted_(wanted) {
     index_.path = path;
     const std::size_t slash = path.rfind('/');
     folder_ = slash == path.npos ? "" : path.substr(0, std::max<std::size_t>(slash, 1));
@@ -95,16 +129,22 @@ void TileCollector::fail_row(const std::string& location, const std::string& wha
 }
 
 const geo::Crs& TileCollector::crs_of(const std::string& text) {
+    if (wanted_ == Wanted::Locations) return wgs84_;
     const auto known = known_.find(text);
     if (known != known_.end()) return known->second;
+    if (known_.size() == kMostCrs)
+        fail(
+            fmt::format("an index of tiles in more than {} different coordinate reference "
+                        "systems; cut it up, for example with ogr2ogr -where",
+                        kMostCrs));
     return known_.emplace(text, geo::Crs::parse(text, printable(index_.path))).first->second;
 }
 
 int TileCollector::number_of(const geo::Crs& crs) {
-    for (std::size_t i = 0; i < index_.crs.size(); ++i)
-        if (index_.crs[i].text() == crs.text()) return static_cast<int>(i);
-    index_.crs.push_back(crs);
-    return static_cast<int>(index_.crs.size()) - 1;
+    const auto [number, fresh] =
+        number_of_crs_.try_emplace(crs.text(), static_cast<int>(index_.crs.size()));
+    if (fresh) index_.crs.push_back(crs);
+    return number->second;
 }
 
 std::string TileCollector::unique_name(const std::string& location) {
@@ -117,21 +157,29 @@ std::string TileCollector::unique_name(const std::string& location) {
     return name;
 }
 
-void TileCollector::add(const std::string& location, IndexedTile tile, const geo::Crs* crs) {
+void TileCollector::begin_row(const std::string& location) {
+    ++row_;
     if (trimmed(location).empty()) fail_row("", "names no file");
+}
+
+/// Refuses a place that is none.
+void TileCollector::settle_crs(const std::string& location, IndexedTile& tile,
+                               const geo::Crs* crs) {
     const Extent& e = tile.extent;
     if (!is_finite(e)) fail_row(location, "an outline with a coordinate that is not a number");
     if (!(e.east > e.west && e.north > e.south)) fail_row(location, "an outline without an area");
-    if (crs) {
-        const glm::dvec2 middle((e.west + e.east) / 2, (e.south + e.north) / 2);
-        if (!std::isfinite(crs->to_geodetic(middle.x, middle.y).lat_rad))
-            fail_row(location,
-                     fmt::format("its middle is at {:.10g}, {:.10g}, which is not on the Earth in "
-                                 "{}; pass the right one with --crs EPSG:n",
-                                 middle.x, middle.y, crs->name()));
-        tile.crs = number_of(*crs);
-    }
-    tile.location = resolved_location(folder_, location);
+    if (!crs) return;
+    const glm::dvec2 middle((e.west + e.east) / 2, (e.south + e.north) / 2);
+    if (!std::isfinite(crs->to_geodetic(middle.x, middle.y).lat_rad))
+        fail_row(location,
+                 fmt::format("its middle is at {:.10g}, {:.10g}, which is not on the Earth in "
+                             "{}; pass the right one with --crs EPSG:n",
+                             middle.x, middle.y, crs->name()));
+    tile.crs = number_of(*crs);
+}
+
+void TileCollector::keep(const std::string& location, IndexedTile tile) {
+    tile.location = uris_ ? resolved_uri(folder_, location) : resolved_location(folder_, location);
     if (!locations_.insert(tile.location).second) {
         ++index_.repeated;
         return;
@@ -144,10 +192,12 @@ void TileCollector::add(const std::string& location, IndexedTile tile, const geo
     index_.tiles.push_back(std::move(tile));
 }
 
-void TileCollector::add(const std::string& location, const std::vector<glm::dvec2>& outline,
+void TileCollector::add(const std::string& location, const Outline& outline,
                         const std::optional<geo::Crs>& outline_crs, const std::string& crs) {
-    ++row_;
-    if (outline.empty()) fail_row(location, "no outline, its place is unknown");
+    begin_row(location);
+    if (wanted_ == Wanted::Locations) return keep(location, {});
+    const std::vector<glm::dvec2> vertices = vertices_of(outline, turn_of(outline_crs));
+    if (vertices.empty()) fail_row(location, "no outline, its place is unknown");
     const geo::Crs* own = !crs.empty()  ? &crs_of(crs)
                           : tiles_crs_  ? tiles_crs_
                           : own_crs_    ? &*own_crs_
@@ -156,26 +206,34 @@ void TileCollector::add(const std::string& location, const std::vector<glm::dvec
     IndexedTile tile;
     if (own && outline_crs && own->text() != outline_crs->text()) {
         std::vector<glm::dvec2> points;
-        for (const glm::dvec2& vertex : outline)
+        const double turn = turn_of(outline_crs), own_turn = turn_of(*own);
+        for (const glm::dvec2& vertex : vertices) {
             points.push_back(own->from_geodetic(outline_crs->to_geodetic(vertex.x, vertex.y)));
+            // On the turn that the outline is on.
+            if (turn > 0 && own_turn > 0)
+                points.back().x +=
+                    own_turn * std::round(vertex.x / turn - points.back().x / own_turn);
+        }
         tile.extent = extent_around(points);
-        if (!is_finite(tile.extent) && is_finite(extent_around(outline)))
+        if (!is_finite(tile.extent) && is_finite(extent_around(vertices)))
             fail_row(location, fmt::format("its outline in {} has no place in {}; pass the right "
                                            "CRS with --crs EPSG:n",
                                            outline_crs->name(), own->name()));
     } else {
-        tile.extent = extent_around(outline);
+        tile.extent = extent_around(vertices);
     }
-    add(location, std::move(tile), own);
+    settle_crs(location, tile, own);
+    keep(location, std::move(tile));
 }
 
 void TileCollector::add(const std::string& location, const TilePosts& posts,
                         const std::string& crs) {
-    ++row_;
+    begin_row(location);
     IndexedTile tile;
     tile.extent = extent_of(posts);
     tile.posts = posts;
-    add(location, std::move(tile), &crs_of(crs));
+    if (wanted_ == Wanted::Tiles) settle_crs(location, tile, &crs_of(crs));
+    keep(location, std::move(tile));
 }
 
 TileIndex TileCollector::take(const std::string& format) {

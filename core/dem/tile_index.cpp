@@ -168,15 +168,14 @@ void refuse_long_json(const std::string& path, std::uint64_t bytes) {
                                             kMostJson >> 20, kLocation));
 }
 
-/// Adds all vertices of a geometry.
-void collect(OGRGeometryH geometry, std::vector<glm::dvec2>& vertices) {
+/// Adds the rings of a geometry.
+void collect(OGRGeometryH geometry, Outline& outline) {
     for (int i = 0; i < OGR_G_GetGeometryCount(geometry); ++i)
-        collect(OGR_G_GetGeometryRef(geometry, i), vertices);
+        collect(OGR_G_GetGeometryRef(geometry, i), outline);
     const int count = OGR_G_GetGeometryCount(geometry) == 0 ? OGR_G_GetPointCount(geometry) : 0;
     if (count <= 0) return;
-    const std::size_t before = vertices.size();
-    vertices.resize(before + static_cast<std::size_t>(count));
-    OGR_G_GetPoints(geometry, &vertices[before].x, sizeof(glm::dvec2), &vertices[before].y,
+    std::vector<glm::dvec2>& ring = outline.emplace_back(static_cast<std::size_t>(count));
+    OGR_G_GetPoints(geometry, &ring.front().x, sizeof(glm::dvec2), &ring.front().y,
                     sizeof(glm::dvec2), nullptr, 0);
 }
 
@@ -193,10 +192,9 @@ std::optional<geo::Crs> crs_of(OGRLayerH layer, TileCollector& tiles) {
     return tiles.crs_of(text);
 }
 
-TileIndex read_layer(const std::string& path, const std::string& crs, const geo::Crs* tiles_crs) {
+TileIndex read_layer(const std::string& path, const std::string& crs, TileCollector& tiles) {
     GdalMessages messages;
     const Vectors vectors = open_vectors(path);
-    TileCollector tiles(path, tiles_crs);
     const OGRLayerH layer = vectors.dataset ? layer_of_tiles(vectors.dataset.get()) : nullptr;
     if (!layer) tiles.fail(fmt::format("no index of tiles, {}", messages.failure(path)));
     const std::optional<geo::Crs> outlines_crs =
@@ -210,7 +208,7 @@ TileIndex read_layer(const std::string& path, const std::string& crs, const geo:
                         "with ogr2ogr -spat",
                         OGR_L_GetFeatureCount(layer, FALSE), kMostTiles));
     OGR_L_ResetReading(layer);
-    std::vector<glm::dvec2> outline;
+    Outline outline;
     while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
         outline.clear();
         if (const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get()))
@@ -223,6 +221,21 @@ TileIndex read_layer(const std::string& path, const std::string& crs, const geo:
         tiles.fail(fmt::format("cannot be read to its end, {}; the file is damaged or incomplete",
                                printable(messages.failure(path))));
     return tiles.take(GDALGetDriverShortName(GDALGetDatasetDriver(vectors.dataset.get())));
+}
+
+TileIndex read(const std::string& path, const std::string& crs, TileCollector& tiles) {
+    prepare_gdal();
+    refuse_unreadable(path);
+    if (is_json(path)) {
+        VSIStatBufL status{};
+        VSIStatL(path.c_str(), &status);
+        refuse_long_json(path, static_cast<std::uint64_t>(status.st_size));
+    }
+    if (!is_json(path) || json_kind(path) != JsonKind::Stac) return read_layer(path, crs, tiles);
+    const std::string text =
+        is_packed(path) ? unpacked(path, kMostJson) : bytes_of(path, kMostJson + 1);
+    refuse_long_json(path, text.size());
+    return read_stac(text, crs, tiles);
 }
 
 }  // namespace
@@ -269,19 +282,18 @@ std::string why_no_index(const std::string& path) {
 
 TileIndex read_tile_index(const std::string& path, const std::string& crs,
                           const geo::Crs* tiles_crs) {
-    prepare_gdal();
-    refuse_unreadable(path);
-    if (is_json(path)) {
-        VSIStatBufL status{};
-        VSIStatL(path.c_str(), &status);
-        refuse_long_json(path, static_cast<std::uint64_t>(status.st_size));
-    }
-    if (!is_json(path) || json_kind(path) != JsonKind::Stac)
-        return read_layer(path, crs, tiles_crs);
-    const std::string text =
-        is_packed(path) ? unpacked(path, kMostJson) : bytes_of(path, kMostJson + 1);
-    refuse_long_json(path, text.size());
-    return read_stac(path, text, crs, tiles_crs);
+    TileCollector tiles(path, tiles_crs);
+    return read(path, crs, tiles);
+}
+
+std::vector<std::string> tile_locations(const std::string& path) {
+    TileCollector tiles(path, nullptr, TileCollector::Wanted::Locations);
+    TileIndex index = read(path, "", tiles);
+    std::vector<std::string> locations;
+    locations.reserve(index.tiles.size());
+    for (IndexedTile& tile : index.tiles)
+        locations.push_back(std::move(tile.location));
+    return locations;
 }
 
 void refuse_remote_tiles(const TileIndex& index) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -19,19 +21,59 @@ namespace {
 
 /// Tiles that are there but cannot be opened, before the index is given up.
 constexpr std::size_t kMostBroken = 100;
+constexpr std::chrono::seconds kPatience{15};  ///< until one of the tiles is open
 
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code unknown;
     return std::filesystem::equivalent(a, b, unknown) && !unknown;
 }
 
+/// The tiles that are asked for until one is there: all, but of a store, where each is a request,
+/// some first ones and some of all over the index.
+std::vector<std::size_t> candidates(const TileIndex& index) {
+    constexpr std::size_t kFirst = 50, kAllOver = 50;
+    const std::size_t count = index.tiles.size();
+    const bool is_short = count <= kFirst + kAllOver;
+    const auto on_net = [](const IndexedTile& tile) { return is_remote(tile.location); };
+    std::vector<std::size_t> chosen(count);
+    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    if (is_short || !std::ranges::any_of(index.tiles, on_net)) return chosen;
+    chosen.resize(kFirst);
+    for (std::size_t i = 1; i <= kAllOver; ++i)
+        chosen.push_back(kFirst + (count - kFirst) * i / kAllOver - 1);
+    return chosen;
+}
+
+/// "/vsicurl/https://a.org", "/vsis3/bucket": the name up to the host, or the bucket.
+std::string store_of(const std::string& location) {
+    const std::size_t scheme = location.find("://");
+    const std::size_t from = scheme != location.npos ? scheme + 3 : location.find('/', 1) + 1;
+    return location.substr(0, location.find('/', from));
+}
+
+[[noreturn]] void refuse_missing(const TileIndex& index, std::size_t asked) {
+    const std::string& first = index.tiles.front().location;
+    if (asked == index.tiles.size())
+        refuse(printable(index.path),
+               fmt::format("none of its {} tiles is there, the first is {}; \"location\" counts "
+                           "from the folder of the index",
+                           asked, printable(first)));
+    refuse(printable(index.path),
+           fmt::format("none of {} tiles that were asked for, of {}, is in {}, the first is {}; "
+                       "the index may be older than the store",
+                       asked, index.tiles.size(), printable(store_of(first)), printable(first)));
+}
+
 /// The first tile that is there and can be opened.
 /// @param piece  becomes it
 std::size_t first_open(const TileIndex& index, const LoadOptions& options,
                        std::optional<Piece>& piece, Dataset& opened) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point began = Clock::now();
     std::size_t broken = 0, missing = 0;
     std::string first_reason;
-    for (std::size_t i = 0; i < index.tiles.size(); ++i) {
+    for (const std::size_t i : candidates(index)) {
+        if (Clock::now() - began > kPatience) break;
         const IndexedTile& tile = index.tiles[i];
         if (!is_there(tile.location)) {
             ++missing;
@@ -50,10 +92,7 @@ std::size_t first_open(const TileIndex& index, const LoadOptions& options,
         refuse(printable(index.path),
                fmt::format("none of its tiles can be opened ({} of {} tried): {}", broken + missing,
                            index.tiles.size(), first_reason));
-    refuse(printable(index.path),
-           fmt::format("none of its {} tiles is there, the first is {}; \"location\" counts from "
-                       "the folder of the index",
-                       missing, printable(index.tiles.front().location)));
+    refuse_missing(index, missing);
 }
 
 bool is_apart(const Extent& a, const Extent& b) {
@@ -114,6 +153,7 @@ bool is_named_index(const std::string& name) {
     if (is_remote(name) && is_index_name(name)) {
         prepare_gdal();
         allow_remote();
+        refuse_silent(name);
     }
     return is_tile_index(name);
 }

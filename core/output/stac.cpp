@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/percent.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/gdal.h"
@@ -169,6 +170,17 @@ Json bands_of(GDALDatasetH dataset) {
     return bands;
 }
 
+/// How a collection names a file: as a URI. What is not one stays: buckets' keys, GDAL's names.
+/// @param base  as stac_text() takes it
+std::string href_of(const fs::path& collection, const fs::path& tile, const std::string& base) {
+    if (base.empty()) return percent_encoded(name_from(collection, tile));
+    const auto starts = [&](const char* scheme) { return base.starts_with(scheme); };
+    const std::string name = tile.filename().string(), slash = base.ends_with('/') ? "" : "/";
+    if (starts("s3://") || starts("gs://") || starts("/vsi")) return base + slash + name;
+    const bool is_url = base.find("://") != std::string::npos;
+    return (is_url ? base : percent_encoded(base)) + slash + percent_encoded(name);
+}
+
 /// @param href  of the tile's file
 Json item_of(const std::string& href, const fs::path& folder, const TilePlan& plan,
              const PlannedTile& tile) {
@@ -181,7 +193,8 @@ Json item_of(const std::string& href, const fs::path& folder, const TilePlan& pl
     Json item{
         {"type", "Feature"},
         {"stac_version", "1.1.0"},
-        {"stac_extensions", {"https://stac-extensions.github.io/projection/v2.0.0/schema.json"}},
+        // The version that has both proj:code and proj:epsg: 2.0.0 forbids the latter.
+        {"stac_extensions", {"https://stac-extensions.github.io/projection/v1.2.0/schema.json"}},
         {"id", fs::path(tile.name).stem().string()}};
     add_outline(item, outline_of(plan.grid, tile.window));
     Json properties = Json::object();
@@ -203,13 +216,9 @@ Json item_of(const std::string& href, const fs::path& folder, const TilePlan& pl
 std::string stac_text(const fs::path& path, const fs::path& folder, const std::string& base,
                       const TilePlan& plan, const std::vector<PlannedTile>& tiles) {
     dem::prepare_gdal();
-    const auto href = [&](const PlannedTile& tile) {
-        if (base.empty()) return name_from(path, folder / tile.name);
-        return base + (base.ends_with('/') ? "" : "/") + tile.name;
-    };
     Json items = Json::array();
     for (const PlannedTile& tile : tiles)
-        items.push_back(item_of(href(tile), folder, plan, tile));
+        items.push_back(item_of(href_of(path, folder / tile.name, base), folder, plan, tile));
     const Json collection{{"type", "FeatureCollection"},
                           {"stac_version", "1.1.0"},
                           {"features", items},

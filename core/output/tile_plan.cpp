@@ -27,6 +27,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kMostTiles = 10'000'000;
 constexpr int kVersion = 1;  // of the file
+constexpr const char *kVersionKey = "relevo_plan", *kHeightsKey = "RELEVO_PLAN";
+constexpr std::array<const char*, 2> kGeoTiff = {"GTiff", nullptr};
 
 Json json_of(const dem::Window& window) {
     return {window.column, window.row, window.columns, window.rows};
@@ -49,7 +51,7 @@ Json json_of(const TilePlan& plan) {
     for (const PlannedTile& tile : plan.tiles)
         tiles.push_back({tile.name, json_of(tile.window)});
     const dem::Statistics& found = plan.statistics;
-    return {{"relevo_plan", kVersion},
+    return {{kVersionKey, kVersion},
             {"command", plan.command},
             {"digest", plan.digest},
             {"dem",
@@ -115,6 +117,24 @@ std::optional<dem::Window> window_within(const dem::Grid& grid, const dem::Clip&
     }
 }
 
+/// Whether a file begins as write_plan() has it begin.
+bool is_plan(const fs::path& path) {
+    constexpr std::size_t kHead = 64;
+    std::string head(kHead, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head.find(kVersionKey) != std::string::npos;
+}
+
+/// Whether a file is one of write_heights().
+bool has_heights_of_plan(const fs::path& path) {
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    const dem::Dataset dataset(
+        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, kGeoTiff.data(), nullptr, nullptr));
+    return dataset && GDALGetMetadataItem(dataset.get(), kHeightsKey, nullptr);
+}
+
 /// Has all of a folder's files follow one rule: what this program has made for itself is replaced.
 OutputFile own_file(const fs::path& path) {
     return {path, /*overwrite=*/true, "plan"};
@@ -142,8 +162,8 @@ std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& wind
 }
 
 std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,
-                                        const std::string& path) {
-    const dem::TileIndex index = dem::read_tile_index(path);
+                                        const std::string& path, const std::string& crs) {
+    const dem::TileIndex index = dem::read_tile_index(path, crs);
     std::vector<PlannedTile> tiles;
     for (const dem::IndexedTile& tile : index.tiles) {
         const dem::Extent& box = tile.extent;
@@ -152,7 +172,7 @@ std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window
             clip.crs = index.crs[std::size_t(tile.crs)];
         const std::optional<dem::Window> posts = window_within(grid, clip, window);
         if (!posts) continue;
-        if (tile.name + ".tif" == kPostsFile || tile.name == "plan_means")
+        if (tile.name + ".tif" == kPostsFile || tile.name + ".tif" == kMeansFile)
             bad_input(
                 fmt::format("--tiles: {}: a tile has the name \"{}\", which is taken; rename "
                             "it",
@@ -182,6 +202,21 @@ std::string stamp_of(const std::vector<std::string>& files) {
     return sha256_of_text(text);
 }
 
+std::vector<fs::path> plan_files(const fs::path& folder) {
+    return {folder / kPlanFile, folder / kPostsFile, folder / kMeansFile};
+}
+
+std::vector<fs::path> foreign_plan_files(const fs::path& folder) {
+    std::vector<fs::path> foreign;
+    for (const fs::path& path : plan_files(folder)) {
+        std::error_code missing;
+        if (!fs::exists(fs::symlink_status(path, missing))) continue;
+        if (!(path.filename() == kPlanFile ? is_plan(path) : has_heights_of_plan(path)))
+            foreign.push_back(path);
+    }
+    return foreign;
+}
+
 std::optional<TilePlan> read_plan(const fs::path& folder) {
     const fs::path path = folder / kPlanFile;
     std::ifstream file(path, std::ios::binary);
@@ -189,9 +224,9 @@ std::optional<TilePlan> read_plan(const fs::path& folder) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::string name = "plan: " + printable(path.string());
     const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-    if (!json.is_object() || !json.contains("relevo_plan"))
+    if (!json.is_object() || !json.contains(kVersionKey))
         bad_input(name + ": is no plan of relevo; use another folder");
-    if (json.at("relevo_plan") != kVersion)
+    if (json.at(kVersionKey) != kVersion)
         bad_input(name + ": is of another version of relevo; use another folder");
     try {
         return plan_of(json, name);
@@ -211,11 +246,11 @@ void write_plan(const fs::path& folder, const TilePlan& plan) {
 std::optional<Array2d<float>> read_heights(const fs::path& file) {
     const std::string path = file.string();
     std::error_code missing;
-    if (!fs::exists(path, missing)) return std::nullopt;
+    if (!fs::exists(path, missing) || !has_heights_of_plan(file)) return std::nullopt;
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    const char* const drivers[] = {"GTiff", nullptr};
-    const dem::Dataset dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
+    const dem::Dataset dataset(
+        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, kGeoTiff.data(), nullptr, nullptr));
     const auto refuse = [&] {
         bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
                               printable(path), messages.failure(path)));
@@ -234,7 +269,7 @@ void write_heights(const fs::path& path, const dem::Grid& grid, const Array2d<fl
     OutputFile file = own_file(path);
     RasterWriter writer(file, grid, RasterType::Float, {{"height", "m"}});
     writer.put(0, 0, 0, height_m);
-    writer.finish({{"DEFINITION", definition}});
+    writer.finish({{"DEFINITION", definition}, {kHeightsKey, "1"}});
 }
 
 std::optional<dem::PostsFacts> read_posts_facts(const fs::path& folder, const TilePlan& plan) {

@@ -27,10 +27,10 @@ std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& wind
 
 /// Tiles of an index: the posts of a window that lie in the outline of each, under its name. Those
 /// outside of the window are not there.
-/// @param path  an OGR tile index or STAC Items, as dem::read_tile_index()
+/// @param path, crs  an OGR tile index or STAC Items, as dem::read_tile_index() takes them
 /// @throws Error (BadInput) as dem::read_tile_index(), and where no tile has a post of the window
 std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,
-                                        const std::string& path);
+                                        const std::string& path, const std::string& crs = {});
 
 /// The I-th of N contiguous shares of a list, whose sizes differ by one at most.
 /// @param number  from 1
@@ -56,7 +56,12 @@ struct TilePlan {
 /// Sizes and times of files, as a hash; of other names, the names alone.
 std::string stamp_of(const std::vector<std::string>& files);
 
-inline constexpr const char *kPlanFile = "plan.json", *kPostsFile = "plan.tif";
+inline constexpr const char *kPlanFile = "plan.json", *kPostsFile = "plan.tif",
+                            *kMeansFile = "plan_means.tif";
+/// The files that a plan may have in a folder.
+std::vector<std::filesystem::path> plan_files(const std::filesystem::path& folder);
+/// Those of them that are there, but are not of a plan.
+std::vector<std::filesystem::path> foreign_plan_files(const std::filesystem::path& folder);
 /// Keys of a tile's metadata.
 inline constexpr const char *kCommandKey = "RELEVO_COMMAND", *kDigestKey = "RELEVO_DIGEST";
 
@@ -66,8 +71,8 @@ std::optional<TilePlan> read_plan(const std::filesystem::path& folder);
 /// Replaces the folder's plan. @throws Error as OutputFile
 void write_plan(const std::filesystem::path& folder, const TilePlan& plan);
 
-/// Heights that a folder's tasks share. Nothing where there is no such file.
-/// @throws Error (BadInput) where it cannot be read, here and below
+/// Heights that a folder's tasks share. Nothing where there is no such file, or one that is not of
+/// a plan. @throws Error (BadInput) where it cannot be read, here and below
 std::optional<Array2d<float>> read_heights(const std::filesystem::path& path);
 /// Replaces an existing file.
 void write_heights(const std::filesystem::path& path, const dem::Grid& grid,

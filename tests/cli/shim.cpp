@@ -42,6 +42,15 @@ int openat(int folder, const char* path, int flags, ...) {
     return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
 }
 
+/// "pread": of a file that is read in pieces of 1 MiB the disk gives the first one alone.
+ssize_t pread(int file, void* to, size_t size, off_t at) {
+    if (at > 0 && size == 1U << 20 && refuses("pread")) {
+        errno = EIO;
+        return -1;
+    }
+    return static_cast<ssize_t>(syscall(SYS_pread64, file, to, size, at));
+}
+
 /// "encoders": FFmpeg has none.
 const void* avcodec_find_encoder_by_name(const char* name) {
     if (refuses("encoders")) return nullptr;

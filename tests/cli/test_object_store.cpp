@@ -165,6 +165,28 @@ TEST_F(ObjectStore, AResultThatIsRefusedIsKept) {
     }
 }
 
+// Also where parts of it are on their way.
+TEST_F(ObjectStore, NoObjectIsMadeOfAResultThatTheDiskDoesNotLetRead) {
+    for (const std::string bytes : {"50000000", "5000"}) {
+        ObjectStoreServer store;
+        store.put("/bucket/shadow.tif", "old");
+        std::vector<std::string> broken = environment(store);
+        broken.insert(broken.end(), {std::string("LD_PRELOAD=") + RELEVO_TEST_SHIM,
+                                     "RELEVO_SHIM=pread", "VSIS3_CHUNK_SIZE_BYTES=" + bytes});
+        const Result refused = relevo({"sun", "shadow", bundled_dem(), "--time",
+                                       "2026-12-21T15:00Z", "-o", kResult, "--overwrite"},
+                                      broken);
+        EXPECT_EQ(refused.status, 1);
+        EXPECT_THAT(refused.err, HasSubstr("cannot be written, Input/output error"));
+        EXPECT_EQ(store.objects().at("/bucket/shadow.tif"), "old");
+        const auto sent = [&](const char* method) {
+            return std::ranges::count(store.requests(), method, &Request::method);
+        };
+        EXPECT_EQ(sent("PUT") > 0, bytes == "5000");
+        EXPECT_EQ(sent("DELETE"), bytes == "5000" ? 1 : 0);  // of the parts
+    }
+}
+
 TEST_F(ObjectStore, AStoreThatIsBusyIsAskedAgain) {
     std::atomic<int> refused = 0;
     ObjectStoreServer store([&](const Request&, int number) {
@@ -224,6 +246,21 @@ TEST_F(ObjectStore, NoDemIsOpenedWithoutTheAnswerWhetherItHasAMask) {
     EXPECT_EQ(result.status, 3);
     EXPECT_EQ(result.err, "relevo: error: " + kDem +
                               ".msk: cannot be asked for, HTTP response code: 500; try again\n");
+}
+
+// Each wait for an answer is as long as the other, and there were several.
+TEST_F(ObjectStore, AStoreThatSaysNothingIsWaitedForOnce) {
+    for (const std::string name : {"dem.tif", "index.gpkg"}) {
+        ObjectStoreServer store([](const Request&, int) { return Fault{" ", 1}; });
+        std::vector<std::string> impatient = environment(store);
+        impatient.emplace_back("GDAL_HTTP_LOW_SPEED_TIME=2");
+        const auto began = std::chrono::steady_clock::now();
+        const Result result = relevo({"info", "/vsis3/bucket/" + name}, impatient);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+        EXPECT_EQ(result.status, 3);
+        EXPECT_THAT(result.err, HasSubstr("/vsis3/bucket/" + name + ": cannot be asked for, "));
+        EXPECT_LT(took.count(), 4);
+    }
 }
 
 struct Bad {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include "cli/hills.h"
 #include "cli/program.h"
 #include "cli/raster.h"
 #include "dem/fixture.h"
@@ -21,21 +22,12 @@ std::string out(const std::string& name) {
     return (folder() / name).string();
 }
 
-/// More posts than 1 MiB has room for, in metres. Of the window that is asked for, 128 posts each
-/// way from column and row 100 on, the first of its four parts has 1200 voids and the last one 5.
+/// Of the window that is asked for, 128 posts each way from column and row 100 on, the first of its
+/// four parts has 1200 voids and the last one 5.
 std::string hills_with_voids() {
-    Raster raster;
-    raster.columns = 701;
-    raster.rows = 401;
-    raster.geotransform = {{500000, 30, 0, 5300000, 0, -20}};
-    raster.nodata = -9999;
-    raster.value = [](int column, int row, int) {
-        if (column >= 110 && column < 140 && row >= 112 && row < 152) return -9999.0;
-        if (column == 220 && row >= 190 && row < 195) return -9999.0;
-        return 700 + 300 * std::sin(column / 23.0) * std::cos(row / 31.0) +
-               column * 1.5;  // the parts differ
-    };
-    return write_raster(folder() / "hills.tif", raster);
+    return write_hills(folder() / "hills.tif", [](int column, int row) {
+        return column == 220 && row >= 190 && row < 195;
+    });
 }
 const std::vector<std::string> kWindow{"--clip=503000,5295440,506840,5298000", "--memory", "1"};
 constexpr int kSide = 128, kVoids = 1205;

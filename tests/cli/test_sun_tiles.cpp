@@ -13,6 +13,7 @@
 
 #include "base/output_file.h"
 #include "base/text.h"
+#include "cli/hills.h"
 #include "cli/program.h"
 #include "cli/raster.h"
 #include "dem/fixture.h"
@@ -125,23 +126,9 @@ TEST(SunTiles, HorizonsAreThoseOfTheWhole) {
     expect_tiles_equal_the_whole({"horizons", bundled_dem(), "--directions", "3"}, kQuarter);
 }
 
-/// More posts than 1 MiB has room for, with voids.
-std::string wide_hills() {
-    Raster raster;
-    raster.columns = 701;
-    raster.rows = 401;
-    raster.geotransform = {{500000, 30, 0, 5300000, 0, -20}};
-    raster.nodata = -9999;
-    raster.value = [](int column, int row, int) {
-        if (column >= 110 && column < 140 && row >= 112 && row < 152) return -9999.0;
-        if (column + row < 200) return -9999.0;
-        return 700 + 300 * std::sin(column / 23.0) * std::cos(row / 31.0) + column * 1.5;
-    };
-    return write_raster(scratch_dir("dem") / "hills.tif", raster);
-}
-
 TEST(SunTiles, OfADemBeyondMemoryAreThoseOfTheWhole) {
-    const std::string hills = wide_hills();
+    const std::string hills = write_hills(scratch_dir("dem") / "hills.tif",
+                                          [](int column, int row) { return column + row < 200; });
     expect_tiles_equal_the_whole(joined({"hours", hills, "--memory", "1", "--date", "2026-12-21",
                                          "--step", "20", "--bands", "hours,first"},
                                         kUtc),

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "cli/program.h"
 #include "cli/raster.h"
 #include "dem/fixture.h"
@@ -147,6 +148,38 @@ TEST(TileIndexVerb, WhatIsNoIndexHasItsMessage) {
                        (dir / "a.tif").string() +
                        "; \"location\" counts from the folder of the index");
     EXPECT_FALSE(std::filesystem::exists(dir / "p.png"));
+}
+
+TEST(TileIndexVerb, TilesOfAnIndexThatNeedsACrsAreStampedAndProtected) {
+    const Country country;
+    std::vector<IndexRow> rows;
+    for (const std::string& tile : country.tiles)
+        rows.push_back(row_of(tile));
+    IndexLayer degrees;
+    degrees.crs = "EPSG:4326";  // of metres
+    const std::string index = write_index(country.dir / "wrong.gpkg", "GPKG", rows, degrees);
+    const std::vector<std::string> words{"sun", "sky-view", index, "--crs", "EPSG:32632", "-o"};
+    const auto with = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return relevo(all);
+    };
+    const Result replaced = with({country.tiles[3], "--overwrite"});
+    EXPECT_EQ(replaced.status, 3);
+    EXPECT_THAT(replaced.err, HasSubstr(country.tiles[3] + ": is a file that the DEM is read"));
+    // The tiles that are made are those of the index, with its --crs, too.
+    const std::string folder = (country.dir / "out").string();
+    const auto stamp = [&] {
+        return nlohmann::json::parse(read_text(folder + "/plan.json", "test"))["dem"]["stamp"];
+    };
+    const Result first = with({folder, "--tiles", index, "--directions", "4"});
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_TRUE(std::filesystem::exists(folder + "/t8.tif"));
+    const auto before = stamp();
+    std::filesystem::last_write_time(country.tiles[8], {});
+    const Result second = with({folder, "--tiles", index, "--directions", "4", "--overwrite"});
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_NE(stamp(), before);
 }
 
 TEST(TileIndexVerb, AResultDoesNotReplaceATile) {

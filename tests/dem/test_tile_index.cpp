@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "dem/files_of.h"
 #include "dem/fixture.h"
 #include "dem/index_fixture.h"
 #include "dem/tile_index.h"
@@ -126,6 +127,30 @@ TEST(TileIndex, LocationsAreAsGdalOpensThem) {
                             "/vsis3/bucket/u.tif", "/vsigs/bucket/v.tif", "/data/w.tif",
                             "/vsizip/a.zip/q.tif", "NETCDF:a.nc:topo"));
     EXPECT_THAT(names_of(index), ElementsAre("x", "y", "z", "t", "u", "v", "w", "q", "NETCDF_a"));
+}
+
+// Whoever protects the tiles does not know with which --crs the index is read.
+TEST(TileIndex, ItsFilesAreKnownWithoutTheRightCrs) {
+    IndexLayer degrees;
+    degrees.crs = "EPSG:4326";  // of metres
+    std::vector<IndexRow> rows = kTwo;
+    rows[1].crs = "EPSG:0";
+    const std::string path = write_index(folder() / "i.gpkg", "GPKG", rows, degrees);
+    const std::vector<std::string> tiles{(folder() / "tiles/a.tif").string(),
+                                         (folder() / "tiles/b.tif").string()};
+    EXPECT_THAT(error_of([&] { read_tile_index(path); }), HasSubstr("pass the right one with"));
+    EXPECT_EQ(tile_locations(path), tiles);
+    std::filesystem::create_directories(folder() / "tiles");
+    for (const std::string& tile : tiles)
+        std::ofstream(tile) << "here";
+    const std::vector<std::filesystem::path> files = files_of(std::vector{path});
+    EXPECT_THAT(files, ElementsAre(path, tiles[0], tiles[1]));
+    const std::string stac = (folder() / "i.json").string();
+    std::ofstream(stac) << R"({"type": "FeatureCollection", "features": [{"type": "Feature", )"
+                           R"("stac_version": "1.1.0", "properties": {"proj:code": "EPSG:0", )"
+                           R"("proj:bbox": [0, 0, 1, 1]}, "assets": {"a": {"href": )"
+                           R"("tiles/a.tif", "roles": ["data"]}}}]})";
+    EXPECT_THAT(tile_locations(stac), ElementsAre(tiles[0]));
 }
 
 TEST(TileIndex, NamesAreUnique) {
@@ -301,6 +326,55 @@ TEST(TileIndex, StacItemsWithoutPostsLieWhereTheirOutlineIs) {
         collection(
             item("a", R"("proj:epsg": 32632, "proj:bbox": [500000, 5198800, 501800, 5200000])"))));
     EXPECT_EQ(boxed.tiles[0].extent, (Extent{500000, 5198800, 501800, 5200000}));
+}
+
+TEST(TileIndex, OutlinesAcrossTheAntimeridianAreOnePiece) {
+    const auto extent = [](const std::string& coordinates, const std::string& properties = "") {
+        std::string text = item("a", properties);
+        const std::size_t from = text.find(R"("Polygon")"), to = text.find(R"(, "bbox")");
+        text.replace(from, to - from, R"("MultiPolygon", "coordinates": [)" + coordinates + "]}");
+        return read_tile_index(written("cut.json", collection(text))).tiles[0].extent;
+    };
+    const std::string east = "[[[179, 50], [180, 50], [180, 52], [179, 52], [179, 50]]]";
+    const std::string west = "[[[-180, 50], [-177, 50], [-177, 51], [-180, 51], [-180, 50]]]";
+    EXPECT_EQ(extent(east + ", " + west), (Extent{179, 50, 183, 52}));
+    EXPECT_EQ(extent(west + ", " + east), (Extent{179, 50, 183, 52}));
+    // In another CRS in degrees, and in metres.
+    const Extent nad83 = extent(east + ", " + west, R"("proj:epsg": 4269)");
+    EXPECT_NEAR(nad83.west, 179, 1e-3);
+    EXPECT_NEAR(nad83.east, 183, 1e-3);
+    const Extent zone1 = extent(east + ", " + west, R"("proj:epsg": 32601)");
+    EXPECT_LT(zone1.east - zone1.west, 300e3);
+    // Not across it: two islands, and the whole Earth.
+    const std::string left = "[[[-20, 50], [-10, 50], [-10, 52], [-20, 50]]]";
+    const std::string right = "[[[10, 50], [20, 50], [20, 52], [10, 50]]]";
+    EXPECT_EQ(extent(left + ", " + right), (Extent{-20, 50, 20, 52}));
+    EXPECT_EQ(extent("[[[-180, -90], [0, -90], [0, 90], [-180, -90]]], [[[0, -90], [180, -90], "
+                     "[180, 90], [0, -90]]]"),
+              (Extent{-180, -90, 180, 90}));
+}
+
+TEST(TileIndex, HrefsOfStacAreUris) {
+    const auto location = [](const std::string& href) {
+        const std::string path =
+            written("uris.json",
+                    collection(item("a", kPosts,
+                                    R"("d": {"href": ")" + href + R"(", "roles": ["data"]})")));
+        return read_tile_index(path).tiles[0].location;
+    };
+    const std::string here = folder().string();
+    EXPECT_EQ(location("./my%20tiles/%C3%BC%23%3F.tif"), here + "/my tiles/\xc3\xbc#?.tif");
+    EXPECT_EQ(location("my tiles/50%.tif"), here + "/my tiles/50%.tif");
+    EXPECT_EQ(location("a%3Ab.tif"), here + "/a:b.tif");
+    EXPECT_EQ(location("/data/a%20b.tif"), "/data/a b.tif");
+    EXPECT_EQ(location("file:///data/a%20b.tif"), "/data/a b.tif");
+    // Of the net, addresses stay, and so do keys of buckets.
+    EXPECT_EQ(location("https://a.org/a%20b.tif"), "/vsicurl/https://a.org/a%20b.tif");
+    EXPECT_EQ(location("s3://bucket/a%20b.tif"), "/vsis3/bucket/a%20b.tif");
+    // An index of rows has names.
+    const TileIndex rows = read_tile_index(
+        write_index(folder() / "i.gpkg", "GPKG", {{"a%20b.tif", {0, 0, 1000, 1000}}}));
+    EXPECT_EQ(rows.tiles[0].location, here + "/a%20b.tif");
 }
 
 TEST(TileIndex, OfStacAssetsTheHeightsAreTaken) {
