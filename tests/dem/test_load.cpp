@@ -311,10 +311,8 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
     // The mean of a plane over a cell is the plane in its middle.
     EXPECT_FLOAT_EQ(f.height_m.at(10, 7), 20.5F + 1000 * 14.5F);
     EXPECT_EQ(f.grid.affine()(0, 0), glm::dvec2(500030, 5199970));
-    EXPECT_THAT(
-        f.about.assumptions,
-        Contains(
-            "reduced from 100 x 60 to 50 x 30 posts in memory, means of 2 x 2"));
+    EXPECT_THAT(f.about.assumptions,
+                Contains("reduced from 100 x 60 to 50 x 30 posts in memory, means of 2 x 2"));
 }
 
 TEST(Load, OtherFormats) {
