@@ -163,4 +163,7 @@ void main() {
     hook_vertex(v);
 #endif
     gl_Position = drawn ? position : vec4(2.0, 2.0, 0.5, 1.0);
+#if defined(SPRITES) || defined(SHADOW_MAP)
+    if (!drawn) gl_PointSize = 1.0;  // near the eye it is huge, and some drivers draw what of it is in the picture
+#endif
 }

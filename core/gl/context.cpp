@@ -392,6 +392,7 @@ bool Context::is_on_device_of(const Context& other) const {
             return 0;
         return device;
     };
+    if (impl_->display != EGL_NO_DISPLAY && impl_->display == other.impl_->display) return true;
     const EGLAttrib device = device_of(impl_->display);
     return device != 0 && device == device_of(other.impl_->display);
 }

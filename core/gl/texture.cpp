@@ -132,18 +132,26 @@ std::string largest(TextureKind kind) {
                                                  limit(GL_MAX_ARRAY_TEXTURE_LAYERS));
 }
 
+/// Whether the device could never hold so much. NVIDIA's driver reserves the memory of a texture
+/// when it is first used, which is too late to refuse it.
+bool exceeds_memory(double mib) {
+    constexpr double kNeverTooMuch_mib = 256;
+    if (mib < kNeverTooMuch_mib || !epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) return false;
+    return mib > limit(GL_GPU_MEMORY_INFO_TOTAL_AVAILABLE_MEMORY_NVX) / 1024.0;  // of KiB
+}
+
 /// GL refuses storage in silence, and the first to notice would be a framebuffer, or nobody.
 void check_storage(TextureKind kind, Format format, Extent extent, int levels,
                    std::string_view label) {
     const GLenum error = glGetError();
-    if (error == GL_NO_ERROR) return;
-    if (error != GL_OUT_OF_MEMORY)
+    const double mib = double{1.0 / (1 << 20)} * layout_of(format).bytes() * extent.width *
+                       extent.height * extent.depth;
+    if (error == GL_NO_ERROR && !exceeds_memory(mib)) return;
+    if (error != GL_NO_ERROR && error != GL_OUT_OF_MEMORY)
         failed(
             fmt::format("texture: {}: expected a texture of up to {} and a whole chain of "
                         "levels but got {} in {} levels ({})",
                         label, largest(kind), size_text(extent), levels, error_name(error)));
-    const double mib = double{1.0 / (1 << 20)} * layout_of(format).bytes() * extent.width *
-                       extent.height * extent.depth;
     failed(
         fmt::format("texture: {}: the device has no {:.0f} MiB for {}; "
                     "take a smaller picture or a device with more",

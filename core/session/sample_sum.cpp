@@ -9,6 +9,9 @@
 namespace relevo::session {
 namespace {
 
+/// Width of the dither in steps of 8 bits, as lib/shown.glsl has it.
+constexpr float kDitherWidth = 0.8F;
+
 /// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH
 /// 2014 course, slide 123: interleaved gradient noise
 float noise(float x, float y) {
@@ -79,7 +82,8 @@ image::Image8 dithered(const image::Image16& image, int left_px, int below_px) {
     for (int y = 0; y < image.height; ++y) {
         const auto row = static_cast<float>(below_px + image.height - 1 - y) + 0.5F;
         for (int x = 0; x < image.width; ++x) {
-            const float offset = noise(static_cast<float>(left_px + x) + 0.5F, row) - 0.5F;
+            const float offset =
+                kDitherWidth * (noise(static_cast<float>(left_px + x) + 0.5F, row) - 0.5F);
             for (int c = 0; c < image.channels; ++c) {
                 const float value = 255 * static_cast<float>(image.at(x, y, c)) / kMost16;
                 const float wanted = value + (c == 3 ? 0 : offset);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::test {
@@ -57,7 +58,8 @@ Result relevo(const std::vector<std::string>& arguments,
     const bool says_device = std::any_of(words.begin(), words.end(), [](const std::string& word) {
         return word.starts_with("--device");
     });
-    if (capture != words.end() && !says_device) words.insert(capture + 1, {"--device", "software"});
+    if (capture != words.end() && !says_device)
+        words.insert(capture + 1, {"--device", gl_device()});
     // Without plugins of the user who runs the tests.
     std::vector<std::string> whole{"XDG_DATA_HOME=/nonexistent", "RELEVO_PLUGIN_PATH="};
     whole.insert(whole.end(), environment.begin(), environment.end());

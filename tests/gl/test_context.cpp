@@ -11,6 +11,7 @@
 #include "gl/context.h"
 #include "gl/hidden_libraries.h"
 #include "gl/texture.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::gl {
@@ -90,8 +91,8 @@ TEST(Context, MissingLibrariesAreAMessage) {
 }
 
 TEST(Context, GoesWithoutTakingAnotherAlong) {
-    std::optional<Context> first(std::in_place, ContextOptions{.device = "software"});
-    std::optional<Context> second(std::in_place, ContextOptions{.device = "software"});
+    std::optional<Context> first(std::in_place, ContextOptions{.device = test::gl_device()});
+    std::optional<Context> second(std::in_place, ContextOptions{.device = test::gl_device()});
     const auto draws = [] {
         Texture texture(TextureKind::D2, Format::R32F, {1, 1, 1}, 1, "one");
         const std::array written{0.25f};
@@ -104,13 +105,13 @@ TEST(Context, GoesWithoutTakingAnotherAlong) {
     first.reset();
     EXPECT_TRUE(draws());
     // The current one goes, and the display stays there for the next.
-    Context third({.device = "software"});
+    Context third({.device = test::gl_device()});
     second.reset();
     EXPECT_TRUE(draws());
 }
 
 TEST(Context, TellsOfErrorsAlsoWithoutADebugContext) {
-    Context context({.device = "software"});
+    Context context({.device = test::gl_device()});
     glEnable(GL_TEXTURE_WRAP_S);
     EXPECT_EQ(test::error_of([&] { context.check_errors(); }), "exit 1: gl: GL_INVALID_ENUM");
     context.check_errors();

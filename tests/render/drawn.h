@@ -17,6 +17,7 @@
 #include "shader/snippet.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::test {
@@ -154,7 +155,7 @@ class Drawn {
     int width_px_, height_px_;
     std::vector<shader::Snippet> snippets_;
     shader::ParamStore values_;
-    gl::Context context_{{.device = "software", .debug = true}};
+    gl::Context context_{{.device = test::gl_device(), .debug = true}};
     std::optional<render::Renderer> renderer_;
     std::optional<render::Terrain> terrain_;
     render::FrameInputs frame_;

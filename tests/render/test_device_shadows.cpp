@@ -15,9 +15,11 @@
 #include "render/device_shadows.h"
 #include "render/ground.h"
 #include "render/ground_light.h"
+#include "render/shadow_texels.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
+#include "support/device.h"
 
 namespace relevo::render {
 namespace {
@@ -27,7 +29,7 @@ using light::SunOverDem;
 using Part = Clearances::DeviceSweep::Part;
 
 gl::Context& context() {
-    static gl::Context context({.device = "software", .debug = true});
+    static gl::Context context({.device = test::gl_device(), .debug = true});
     context.make_current();
     return context;
 }
@@ -98,13 +100,17 @@ class OnDevice {
     gl::Texture clearance_, fraction_;
 };
 
-/// Posts whose figures are more than `most_m` apart, or of which one has none.
+/// Posts whose figures are more than `most_m` apart, or of which one has none. Pictures know no
+/// greater clearances than kMaxClearance_m, and around the Earth there are some of 1e11 m.
 int differing(const Array2d<float>& a, const Array2d<float>& b, double most_m, double& worst_m) {
     int count = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const float x = a.data()[i], y = b.data()[i];
         if (std::isnan(x) && std::isnan(y)) continue;
-        const double off_m = std::abs(double{x} - y);
+        const auto shown_m = [](float clearance_m) {
+            return std::clamp(clearance_m, -kMaxClearance_m, kMaxClearance_m);
+        };
+        const double off_m = std::abs(double{shown_m(x)} - shown_m(y));
         count += !(off_m <= most_m);
         worst_m = std::max(worst_m, off_m);
     }

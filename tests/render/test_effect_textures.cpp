@@ -7,6 +7,7 @@
 #include "gl/program.h"
 #include "gl/vertex_array.h"
 #include "render/effect_textures.h"
+#include "support/device.h"
 
 namespace relevo::render {
 namespace {
@@ -42,7 +43,7 @@ float red_beyond_the_edge(const gl::Texture& texture) {
 TEST(EffectTextures, RepeatOrEndAsTheManifestSays) {
     // Black on the left, white on the right: beyond the right edge a repeated texture is black
     // again, one that ends stays white.
-    const gl::Context context({.device = "software", .debug = true});
+    const gl::Context context({.device = test::gl_device(), .debug = true});
     const auto beyond = [](effect::TextureSpec::Wrap wrap) {
         effect::LoadedTexture texture;
         texture.spec.resource = "probe.sides";

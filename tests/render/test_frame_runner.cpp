@@ -8,6 +8,7 @@
 #include "gl/context.h"
 #include "render/frame_runner.h"
 #include "render/ground.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -56,7 +57,7 @@ class FrameRunnerTest : public testing::Test {
         runner.run(frame, /*night=*/false, nullptr);
     }
 
-    gl::Context context{{.device = "software", .debug = true}};
+    gl::Context context{{.device = test::gl_device(), .debug = true}};
     dem::Heightfield dem = dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
     Ground ground = make_ground(dem);
     Terrain terrain{dem, ground.frame, {.max_array_layers = context.info().max_array_layers}};

@@ -1,4 +1,5 @@
 // Shadows of instances: where they lie, how dark they are, that they stay where they are.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -51,7 +52,7 @@ struct Plain : Drawn {
     explicit Plain(const std::string& keys)
         : Drawn(test::field_of(129, 129, {500000, kSpacing_m, 0, 5200000, 0, -kSpacing_m},
                                "EPSG:32632", [](int, int) { return 100.0; }),
-                {}, kSide_px, kSide_px, 0, {cone(keys)}) {
+                {}, kSide_px, kSide_px, 0, {cone(keys)}, {}, {}, {.poison = true}) {
         const glm::dvec2 post = test::site_post(kCell, kCell, kSite_m / kSpacing_m);
         geo::Geodetic place = dem().grid.place(post.x, post.y);
         place.height_m = 100;
@@ -91,6 +92,9 @@ bool is_in_shadow(const glm::dvec2& at) {
 image::ImageF light_of(Plain& drawn, double column, double row) {
     drawn.stand(column, row, 100 + kEye_m, 0, -90);
     image::ImageF light = drawn.radiance();
+    const auto odd = std::ranges::count_if(light.values, [](float v) { return !std::isfinite(v); });
+    EXPECT_EQ(odd, 0) << "values of the picture are no numbers, of " << light.values.size();
+    EXPECT_GT(light.at(0, 0, 0), 0);
     const float plain = light.at(0, 0, 0);
     for (int y = 0; y < kSide_px; ++y)
         for (int x = 0; x < kSide_px; ++x)

@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "scene/view.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -27,7 +28,7 @@ class Picture {
         const sun::Position position = sun::position(sun::parse_time(utc).utc, place);
         const sun::Refraction air = sun::Refraction::standard(place);
         elevation_deg_ = degrees(position.elevation_rad);
-        gl::Context context({.device = "software", .debug = true});
+        gl::Context context({.device = test::gl_device(), .debug = true});
         shader::ParamStore values;
         values.declare(core_params());
         if (vertex_normals) values.set("terrain.normal", "vertex");

@@ -14,6 +14,7 @@
 #include "scene/view.h"
 #include "shader/snippet.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -106,7 +107,7 @@ class Flight {
     int width_px_, height_px_;
     shader::Snippet bright_, heights_;
     shader::ParamStore values_;
-    gl::Context context_{{.device = "software", .debug = true}};
+    gl::Context context_{{.device = test::gl_device(), .debug = true}};
     std::optional<Renderer> renderer_;
     std::optional<Terrain> terrain_;
     FrameInputs inputs_;

@@ -131,12 +131,12 @@ TEST(Maps, EffectsThatCoverWhatIsDrawnLeaveTheOverlay) {
                            "}\n"};
     const TestEffect half{"half",
                           "void half_on_display(in Surface s, inout vec4 overlay) {\n"
-                          "    overlay = vec4(0.0, 0.5, 0.0, 0.5) + 0.5 * overlay;\n"
+                          "    overlay = vec4(0.0, 0.4, 0.0, 0.4) + 0.6 * overlay;\n"
                           "}\n"};
     EXPECT_EQ(colour_under({}), glm::ivec3(255, 0, 0));
     EXPECT_EQ(colour_under({cover}), glm::ivec3(255, 0, 0));
-    EXPECT_EQ(colour_under({half}), glm::ivec3(128, 128, 0));
-    EXPECT_EQ(colour_under({half, cover}), glm::ivec3(128, 0, 128));
+    EXPECT_EQ(colour_under({half}), glm::ivec3(153, 102, 0));
+    EXPECT_EQ(colour_under({half, cover}), glm::ivec3(153, 0, 102));
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "scene/view.h"
 #include "shader/snippet.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -60,7 +61,7 @@ class NativeHostTest : public testing::Test {
             const dem::Heightfield dem =
                 dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
             const Ground ground = make_ground(dem);
-            const gl::Context context({.device = "software", .debug = true});
+            const gl::Context context({.device = test::gl_device(), .debug = true});
             const shader::Snippet snippet = shader::parse_snippet("puppet", "puppet.glsl", glsl);
             shader::ParamStore values;
             values.declare(core_params());
@@ -332,7 +333,7 @@ std::string draw_with(const std::string& library) {
         const dem::Heightfield dem =
             dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
         const Ground ground = make_ground(dem);
-        gl::Context context({.device = "software", .debug = true});
+        gl::Context context({.device = test::gl_device(), .debug = true});
         EffectInputs effects;
         effects.stitch.snippets = {&snippet};
         effects.stitch.values = &values;

@@ -9,6 +9,7 @@
 #include "render/programs.h"
 #include "render/renderer.h"
 #include "shader/snippet.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -62,7 +63,7 @@ TEST(Night, BeginsAndEndsWithTheSunThreeDegreesBelowTheHorizonOfTheEye) {
     EffectInputs effects;
     effects.stitch.snippets = {&sky};
     effects.stitch.values = &values;
-    gl::Context context({.device = "software", .debug = true});
+    gl::Context context({.device = test::gl_device(), .debug = true});
     Renderer renderer(context, effects, {.width_px = 32, .height_px = 32, .antialias = false});
     Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
     FrameInputs inputs;

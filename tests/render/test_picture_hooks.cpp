@@ -12,6 +12,7 @@
 #include "scene/camera.h"
 #include "shader/snippet.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -72,7 +73,7 @@ class PictureHooks : public testing::TestWithParam<bool> {
 
     dem::Heightfield dem_ = dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
     Ground ground_ = make_ground(dem_);
-    gl::Context context_{{.device = "software", .debug = true}};
+    gl::Context context_{{.device = test::gl_device(), .debug = true}};
     Terrain terrain_{dem_, ground_.frame, {.max_array_layers = context_.info().max_array_layers}};
 };
 

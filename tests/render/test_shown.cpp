@@ -10,6 +10,7 @@
 #include "render/renderer.h"
 #include "shader/snippet.h"
 #include "sun/zone.h"
+#include "support/device.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -21,7 +22,7 @@ struct Bundled {
     dem::Heightfield dem = dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
     Ground ground = make_ground(dem);
     geo::Geodetic place = ground.frame.origin();
-    gl::Context context{{.device = "software", .debug = true}};
+    gl::Context context{{.device = test::gl_device(), .debug = true}};
     Terrain terrain{dem, ground.frame, {.max_array_layers = context.info().max_array_layers}};
     shader::ParamStore values;
     EffectInputs effects;
@@ -65,7 +66,7 @@ TEST(Picture, ColoursFollowTheSrgbCurve) {
 }
 
 TEST(Picture, LargerThanTheDeviceDrawsIsAMessage) {
-    gl::Context context({.device = "software"});
+    gl::Context context({.device = test::gl_device()});
     const int most = context.info().max_picture_size;
     const auto refused = [&](int width_px, int height_px) {
         return test::error_of(
@@ -131,7 +132,7 @@ TEST(Picture, DithersByOneStepOfEightBits) {
     const shader::Snippet even = shader::parse_snippet(
         "even", "even.glsl",
         "vec3 even_on_background_radiance(in vec3 direction, in bool with_disc) {\n"
-        "    return vec3(0.1, 0.2, 0.3) / frame.exposure;\n"
+        "    return vec3(0.1012, 0.2, 0.3) / frame.exposure;\n"
         "}\n");
     Bundled bundled("2026-06-21T15:30Z");
     bundled.effects.stitch.snippets = {&even};
@@ -151,6 +152,23 @@ TEST(Picture, DithersByOneStepOfEightBits) {
             }
         EXPECT_EQ(high - low, 1) << channel;
     }
+}
+
+TEST(Picture, HasColoursOfEightBitsAsTheyAre) {
+    // Also where a device rounds them a little too early or too late, as GPUs do.
+    const shader::Snippet flat =
+        shader::parse_snippet("flat", "flat.glsl",
+                              "void flat_on_overlay(in Pixel p, inout vec4 over) {\n"
+                              "    over = vec4(vec3(99.97, 100.03, 255.0) / 255.0, 1.0);\n"
+                              "}\n");
+    Bundled bundled("2026-06-21T15:30Z");
+    bundled.orbit(1);
+    bundled.effects.stitch.snippets = {&flat};
+    Renderer renderer(bundled.context, bundled.effects,
+                      {.width_px = 64, .height_px = 64, .radiance = false});
+    const image::Image8 picture = bundled.picture(renderer);
+    for (std::size_t i = 0; i < picture.values.size(); ++i)
+        ASSERT_EQ(picture.values[i], i % 3 == 2 ? 255 : 100) << i;
 }
 
 TEST(Picture, OfALargeFirstFrameIsWhole) {

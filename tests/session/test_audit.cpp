@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "session/audit.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -53,7 +54,7 @@ scene::Scene morning(const std::string& effect) {
 
 ShadowAudit audit_of(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software", .audited = true}, files);
+    Session session(scene, {.device = test::gl_device(), .audited = true}, files);
     session.draw();
     const ShadowAudit audit = audit_shadows(session);
     fmt::print("[ audit  ] {}\n", audit.text());
@@ -204,7 +205,8 @@ TEST(Audit, LeavesThePictureAsItIs) {
         std::vector<std::uint8_t> pictures[2];
         for (const bool audited : {false, true}) {
             FilesInUse files;
-            Session session(scene, {.device = "software", .radiance = radiance, .audited = audited},
+            Session session(scene,
+                            {.device = test::gl_device(), .radiance = radiance, .audited = audited},
                             files);
             session.draw();
             pictures[audited] = session.picture().values;

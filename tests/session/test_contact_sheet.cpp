@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "session/batch.h"
 #include "session/contact_sheet.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -66,13 +67,14 @@ TEST(ContactSheet, HasTheJobsPicturesScaledDown) {
     }
     FilesInUse files;
     SceneTimes times;
-    const SheetReport report =
-        draw_contact_sheet(shots, {.device = "software", .output = sheet_path}, times, files);
+    const SheetReport report = draw_contact_sheet(
+        shots, {.device = test::gl_device(), .output = sheet_path}, times, files);
     const image::Image8 sheet = image::read(sheet_path);
     EXPECT_EQ(glm::ivec2(sheet.width, sheet.height), report.size_px);
     const SheetLayout layout = SheetLayout::of(2, {640, 400}, 0);
     for (std::size_t i = 0; i < shots.size(); ++i) {
-        Session session(shots[i].scene, {.device = "software", .format = PictureFormat{}}, files);
+        Session session(shots[i].scene, {.device = test::gl_device(), .format = PictureFormat{}},
+                        files);
         const auto picture = std::get<image::Image8>(session.make_picture().pixels);
         double off = 0;
         for (int y = 0; y < layout.cell_px.y; ++y)

@@ -15,6 +15,7 @@
 #include "session/marks.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -31,7 +32,8 @@ struct Label {
 
 class Shown {
   public:
-    explicit Shown(const scene::Scene& scene) : session(scene, {.device = "software"}, files_) {
+    explicit Shown(const scene::Scene& scene)
+        : session(scene, {.device = test::gl_device()}, files_) {
         session.draw();
     }
 

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -32,14 +33,14 @@ scene::Scene scene_of(const std::filesystem::path& dem, const std::string& view)
 
 image::Image8 picture_of(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software", .format = PictureFormat{}}, files);
+    Session session(scene, {.device = test::gl_device(), .format = PictureFormat{}}, files);
     return std::get<image::Image8>(session.make_picture().pixels);
 }
 
 std::vector<float> kinds_of(const scene::Scene& scene) {
     FilesInUse files;
     Session session(scene,
-                    {.device = "software",
+                    {.device = test::gl_device(),
                      .radiance = true,
                      .format = PictureFormat{.layers = {DataLayer::Ids}}},
                     files);

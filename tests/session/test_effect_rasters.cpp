@@ -10,6 +10,7 @@
 #include "dem/fixture.h"
 #include "dem/source.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -58,7 +59,7 @@ scene::Scene draped(const std::string& file) {
 class EffectRasters : public testing::Test {
   protected:
     Session& open(const scene::Scene& scene) {
-        session_ = std::make_unique<Session>(scene, Options{.device = "software"}, files_);
+        session_ = std::make_unique<Session>(scene, Options{.device = test::gl_device()}, files_);
         session_->draw();
         return *session_;
     }

@@ -8,6 +8,7 @@
 #include "session/record.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -31,7 +32,7 @@ TEST(ExaggeratedRecord, SaysTheEyesHeightAsItWasAskedFor) {
                       .heading_deg = 300,
                       .pitch_deg = -10};
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         SceneInputs inputs("test");
         const auto json = nlohmann::json::parse(sidecar_text(session, inputs, "a.png"));
@@ -52,7 +53,7 @@ struct Lines {
 
 Lines lines_of(scene::Scene scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 plain = session.picture();
     Lines lines;
@@ -96,7 +97,7 @@ TEST(ExaggeratedBlock, ItsWallsEndAtTheFloor) {
         scene.effects.switches.only = std::vector<std::string>{"block"};
         scene.view.orbit = {200, 20, 1};
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         std::vector<float> depths_m;
         session.read_depths(depths_m);

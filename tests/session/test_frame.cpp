@@ -10,6 +10,7 @@
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -58,7 +59,7 @@ Covered covered(const Session& session) {
 
 void expect_filled(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const Covered at = covered(session);
     EXPECT_NEAR(std::max(at.width, at.height), 0.95, 0.012) << scene.dems.front();
@@ -88,7 +89,8 @@ TEST(Frame, FillsTheWidthOrTheHeightOfRealDems) {
 TEST(Frame, ASquareDemCoversAThirdOfThePicture) {
     SKIP_WITHOUT_BLOCK;
     FilesInUse files;
-    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = "software"}, files);
+    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = test::gl_device()},
+                    files);
     session.draw();
     EXPECT_GE(covered(session).share, 1.0 / 3);
 }
@@ -98,7 +100,7 @@ TEST(Frame, TheBlockIsThereFromOutsideAndNotFromWithin) {
     const auto depths_of = [](scene::Scene scene, bool block) {
         if (!block) scene.effects.switches.only->clear();
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         std::vector<float> depths;
         session.read_depths(depths);
@@ -109,7 +111,7 @@ TEST(Frame, TheBlockIsThereFromOutsideAndNotFromWithin) {
     const auto with = depths_of(scene, true);
     // The camera without it stands nearer, as it has less to show: from an eye it stays.
     FilesInUse files;
-    Session outside(scene, {.device = "software"}, files);
+    Session outside(scene, {.device = test::gl_device()}, files);
     const geo::Geodetic eye = outside.ground().frame.to_geodetic(outside.camera().eye_m);
     scene.view = {.eye = scene::Standpoint{eye}, .heading_deg = 15, .pitch_deg = -30};
     int more = 0, other = 0;
@@ -129,7 +131,8 @@ TEST(Frame, TheBlockIsThereFromOutsideAndNotFromWithin) {
 TEST(Frame, TheBlockStandsInItsOwnShade) {
     SKIP_WITHOUT_BLOCK;
     FilesInUse files;
-    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = "software"}, files);
+    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = test::gl_device()},
+                    files);
     session.draw();
     const image::Image8 shaded = session.picture();
     std::vector<float> depths;
@@ -179,7 +182,7 @@ TEST(Frame, TheBackdropIsLighterAboveThanBelow) {
     scene.effects.settings = {
         {"block.shade", "0"}, {"block.above", "0.2,0.5,0.8"}, {"block.below", "0.6,0.4,0.1"}};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 picture = session.picture();
     const int bottom = picture.height - 1;
@@ -205,7 +208,7 @@ std::pair<double, double> wall_light(double azimuth_deg) {
     scene.time.at = "2026-12-21T17:40Z";  // noon: in the south, 30 degrees high
     scene.view.orbit = {azimuth_deg, 12, 1};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 picture = session.picture();
     std::vector<float> depths;
@@ -248,7 +251,7 @@ TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {
         scene.width_px = 640;
         scene.height_px = 512;
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         std::vector<float> depths;
         session.read_depths(depths);
@@ -272,7 +275,7 @@ TEST(Frame, TheSunOfTheDefaultHourRakesTheGround) {
     for (const char* name : {"hawaii_rotated20.tif", "SainteHelens.dem", "dem_RGI50-05.08389.tif",
                              "srtm_bigtujunga30m_utm11.tif", "swellendam/srtm_41_19_4326.tif"}) {
         FilesInUse files;
-        Session session(scene_of(data / "dem" / name, {}), {.device = "software"}, files);
+        Session session(scene_of(data / "dem" / name, {}), {.device = test::gl_device()}, files);
         const sun::Position sun = sun::position(session.time(), session.ground().frame.origin());
         EXPECT_GE(degrees(sun.elevation_rad), 20) << name;
         EXPECT_LE(degrees(sun.elevation_rad), 35) << name;
@@ -290,17 +293,17 @@ TEST(Frame, WhatIsGivenIsLeft) {
     scene.time.at = "2026-03-01T12:00Z";
     scene.view.orbit = {77, 20, 1};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     EXPECT_EQ(session.time_reason(), "");
     EXPECT_EQ(session.view_reason(), "");
     EXPECT_EQ(sun::to_iso(session.time()), "2026-03-01T12:00:00Z");
     // The view of a DEM is the same at all times and in all sizes.
     scene.view.orbit = {};
     FilesInUse others;
-    Session first(scene, {.device = "software"}, others);
+    Session first(scene, {.device = test::gl_device()}, others);
     scene.time.at = "2026-12-01T20:00Z";
     scene.height_px = 700;
-    Session second(scene, {.device = "software"}, others);
+    Session second(scene, {.device = test::gl_device()}, others);
     EXPECT_EQ(first.scene().view.orbit.azimuth_deg, second.scene().view.orbit.azimuth_deg);
     EXPECT_EQ(first.scene().view.orbit.elevation_deg, second.scene().view.orbit.elevation_deg);
 }
@@ -319,7 +322,7 @@ TEST(Frame, NoDefaultPictureIsClipped) {
         scene::Scene scene = scene_of(dem, {});
         scene.effects = {};
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         const image::Image8 picture = session.picture();
         int light = 0, dark = 0;

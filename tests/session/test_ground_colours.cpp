@@ -15,6 +15,7 @@
 #include "session/colour_legends.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -110,7 +111,7 @@ TEST(ColourLegend, OfDirectionsIsThePictures) {
         {"tint"});
     tint_by(scene, "aspect");
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const auto azimuth_deg = [&](const glm::dvec2& post) {
         const glm::dvec2 off(post.x - middle, middle - post.y);
         if (length(off) < 8) return std::nan("");
@@ -160,7 +161,7 @@ TEST(Skylight, TakesFromHollowsWhatTheGroundThatStandsThereDoesNotSend) {
             with.effects.settings = {{"skylight.albedo", albedo}};
         }
         FilesInUse files;
-        Session session(with, {.device = "software", .radiance = true}, files);
+        Session session(with, {.device = test::gl_device(), .radiance = true}, files);
         session.draw();
         return session.radiance();
     };
@@ -192,7 +193,7 @@ TEST(Infill, PaintsFilledHolesAndNothingElse) {
         {"infill"});
     scene.effects.settings = {{"infill.colour", "0,1,0,1"}};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 picture = session.picture();
     const Pixels pixels(session);
@@ -244,7 +245,7 @@ scene::Scene scene_of_classes(const char* by) {
 
 TEST(ColourLegend, OfStepsIsThePictures) {
     FilesInUse files;
-    Session session(scene_of_classes("height"), {.device = "software"}, files);
+    Session session(scene_of_classes("height"), {.device = test::gl_device()}, files);
     const auto height_m = [](const glm::dvec2& post) {
         const double height = 300 + 4 * post.x + post.y;
         // Not where an edge is within a pixel.
@@ -260,7 +261,7 @@ TEST(ColourLegend, OfStepsIsThePictures) {
 
 TEST(ColourLegend, OfEntriesHasAllOfOneTitle) {
     FilesInUse files;
-    Session session(scene_of_classes("ground"), {.device = "software"}, files);
+    Session session(scene_of_classes("ground"), {.device = test::gl_device()}, files);
     const std::vector<chart::Legend> legends = session.colour_legends();
     ASSERT_EQ(legends.size(), 1u);
     EXPECT_EQ(legends[0].title, "Ground");
@@ -287,7 +288,7 @@ TEST(ExaggeratedPicture, IsThatOfGroundAsHigh) {
                       .heading_deg = 80,
                       .pitch_deg = -8};
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         return session.picture();
     };

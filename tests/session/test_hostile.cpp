@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -14,7 +15,7 @@ namespace {
 std::string error_of(const scene::Scene& scene) {
     return test::error_of([&] {
         FilesInUse files;
-        const Session session(scene, {.device = "software"}, files);
+        const Session session(scene, {.device = test::gl_device()}, files);
     });
 }
 

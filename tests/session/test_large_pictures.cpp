@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "session/picture_maker.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -36,10 +37,11 @@ scene::Scene scene_with(const std::string& effect, bool inside) {
 
 image::Image8 picture_of(const scene::Scene& scene, double frame_px) {
     FilesInUse files;
-    Session session(
-        scene,
-        {.device = "software", .format = PictureFormat{.frame_px = frame_px}, .allow_unmet = true},
-        files);
+    Session session(scene,
+                    {.device = test::gl_device(),
+                     .format = PictureFormat{.frame_px = frame_px},
+                     .allow_unmet = true},
+                    files);
     return std::get<image::Image8>(session.make_picture().pixels);
 }
 

@@ -15,6 +15,7 @@
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -200,7 +201,7 @@ Explained explained_of(const std::string& dem) {
     scene.view = scene::parse_view("top");
     scene.stamps.legend = false;
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const image::Image8 picture = picture_of(session);
     std::vector<float> depths_m;
     session.read_depths(depths_m);
@@ -228,7 +229,7 @@ Explained explained_of(const std::string& dem) {
     scene::Scene paper = session.scene();
     paper.effects.presets = {"paper"};
     FilesInUse more_files;
-    Session of_paper(paper, {.device = "software", .dem = session.dem()}, more_files);
+    Session of_paper(paper, {.device = test::gl_device(), .dem = session.dem()}, more_files);
     of_paper.set_time(session.time());
     const Values before = lightness_of(picture_of(of_paper));
     const auto of_ground = [&](const Values& values) {
@@ -272,11 +273,11 @@ TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
     scene.width_px = 320;
     scene.height_px = 200;
     FilesInUse files, more_files;
-    Session lit(scene, {.device = "software"}, files);
+    Session lit(scene, {.device = test::gl_device()}, files);
     const Values with = lightness_of(picture_of(lit));
     scene = lit.scene();
     scene.effects.switches.disable = {"shadows"};
-    Session bare(scene, {.device = "software", .dem = lit.dem()}, more_files);
+    Session bare(scene, {.device = test::gl_device(), .dem = lit.dem()}, more_files);
     bare.set_time(lit.time());
     const Values without = lightness_of(picture_of(bare));
     int darker = 0;

@@ -7,6 +7,7 @@
 #include "scene/map_view.h"
 #include "session/picture_file.h"
 #include "session/stamps.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -31,7 +32,8 @@ struct Drawn {
     image::Picture picture;
 
     explicit Drawn(const scene::Scene& scene, int bits = 8)
-        : session(scene, {.device = "software", .format = PictureFormat{.bits = bits}}, files),
+        : session(scene, {.device = test::gl_device(), .format = PictureFormat{.bits = bits}},
+                  files),
           picture(session.make_picture()) {}
 
     const image::Image8& image() const { return std::get<image::Image8>(picture.pixels); }

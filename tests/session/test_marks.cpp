@@ -14,6 +14,7 @@
 #include "dem/fixture.h"
 #include "session/marks.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -51,7 +52,8 @@ struct Shown {
     FilesInUse files;
     Session session;
 
-    explicit Shown(const scene::Scene& scene) : session(scene, {.device = "software"}, files) {
+    explicit Shown(const scene::Scene& scene)
+        : session(scene, {.device = test::gl_device()}, files) {
         session.draw();
     }
     /// The visible marks of all lists.
@@ -258,7 +260,7 @@ TEST(Marks, AreInPicturesButNotInLinearOnes) {
     scene.effects.settings.push_back({"labels.halo", "#00ff00"});
     scene.view.orbit.elevation_deg = 89;
     FilesInUse files;
-    Session session(scene, {.device = "software", .radiance = true}, files);
+    Session session(scene, {.device = test::gl_device(), .radiance = true}, files);
     session.draw();
     EXPECT_GT(greens(session.picture(), 0, 640), 200);
     const image::ImageF with = session.radiance();
@@ -270,7 +272,7 @@ TEST(Marks, AreInPicturesButNotInLinearOnes) {
     const std::string both = written("both.csv", "name,lat,lon\n" + row("MM", grid.place(75, 150)) +
                                                      row("MM", grid.place(225, 150)));
     scene.effects.settings[0].text = both;
-    Session compared(scene, {.device = "software", .compared = {"labels"}}, files);
+    Session compared(scene, {.device = test::gl_device(), .compared = {"labels"}}, files);
     compared.draw();
     EXPECT_GT(greens(compared.picture(), 0, 319), 100);
     EXPECT_EQ(greens(compared.picture(), 319, 640), 0);
@@ -305,7 +307,7 @@ TEST(Marks, FilesThatLieAreRefusedByName) {
         const auto began = std::chrono::steady_clock::now();
         const std::string error = test::error_of([&] {
             FilesInUse files;
-            Session(scene_of(jacksboro(), file.string()), {.device = "software"}, files);
+            Session(scene_of(jacksboro(), file.string()), {.device = test::gl_device()}, files);
         });
         const double took_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -14,6 +14,7 @@
 #include "session/marks.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -60,7 +61,8 @@ struct Shown {
     FilesInUse files;
     Session session;
 
-    explicit Shown(const scene::Scene& scene) : session(scene, {.device = "software"}, files) {
+    explicit Shown(const scene::Scene& scene)
+        : session(scene, {.device = test::gl_device()}, files) {
         session.draw();
     }
     std::vector<chart::MarkPoint> points() {

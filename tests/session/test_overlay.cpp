@@ -11,6 +11,7 @@
 #include "session/overlay.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -99,7 +100,7 @@ double off_the_mark(const glm::ivec2& at, int size, double above_m) {
     scene.view = {.eye = scene::Standpoint{place}, .heading_deg = 0, .pitch_deg = -90};
     scene.view.fov_y_rad = radians(20);
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const auto raster = std::make_shared<render::OverlayRaster>();
     raster->rgba = Array2d<std::uint32_t>(grid.columns(), grid.rows());
     for (std::uint32_t& texel : raster->rgba)

@@ -18,6 +18,7 @@
 #include "session/panorama_maker.h"
 #include "session/panorama_parts.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -46,7 +47,8 @@ struct Drawn {
 
 Drawn drawn(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
+    Session session(scene,
+                    {.device = test::gl_device(), .format = PictureFormat{}, .allow_unmet = true},
                     files);
     image::Picture picture = session.make_picture();
     return {std::move(picture), panorama_map(scene, session.ground().frame, session.camera()),

@@ -20,6 +20,7 @@
 #include "session/overlay.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -123,7 +124,7 @@ Found off_the_reference(const std::string& dem, const std::string& photo,
     scene.view = {.eye = scene::Standpoint{eye}, .heading_deg = 0, .pitch_deg = -90};
     scene.view.fov_y_rad = radians(20);
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 picture = session.picture();
     std::vector<float> depths_m;
@@ -220,7 +221,7 @@ image::Image8 from_above(const scene::Overlay& overlay, const char* time) {
     scene.view.orbit = {180, 89.9, 1};
     scene.overlay = overlay;
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     EXPECT_FALSE(session.overlay_legend()) << "colours without a meaning";
     session.draw();
     return session.picture();

@@ -14,6 +14,7 @@
 #include "session/session.h"
 #include "session/words.h"
 #include "sun/time.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -58,7 +59,7 @@ scene::Scene bundled_scene() {
 
 image::Image8 picture_of(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     return session.picture();
 }
@@ -66,7 +67,7 @@ image::Image8 picture_of(const scene::Scene& scene) {
 TEST(Session, CameraTimeParametersAndSizeChangeWithoutANewProgram) {
     FilesInUse files;
     int stitched = 0;
-    Options options{.device = "software"};
+    Options options{.device = test::gl_device()};
     options.stitched = [&](const render::StitchedFrames&) { ++stitched; };
     Session session(bundled_scene(), options, files);
     session.draw();
@@ -118,7 +119,7 @@ TEST(Session, AToggleThereAndBackLinksNothing) {
     scene.effects = {};  // all that is on without a word
     scene.width_px = 640;
     scene.height_px = 480;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     scene::Effects fewer;
     fewer.switches.disable = {"haze", "bump"};
     const auto colours = std::make_shared<render::OverlayRaster>(
@@ -162,7 +163,7 @@ TEST(Session, AToggleThereAndBackLinksNothing) {
 TEST(Session, AnEffectThatComesBackHasTheValuesThatAreAskedFor) {
     FilesInUse files;
     const scene::Scene scene = bundled_scene();
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const auto picture = [&](const scene::Effects& effects) {
         session.set_effects(effects);
         session.draw();
@@ -201,7 +202,7 @@ TEST(Session, AnEffectThatComesBackIsReadAgainWhereItsFileHasChanged) {
     scene.effects.plugin_path = {folder.string()};
     scene.effects.switches.only = {{"paintbox"}};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const auto picture = [&](const scene::Effects& effects) {
         session.set_effects(effects);
         session.draw();
@@ -233,7 +234,7 @@ TEST(Session, LinksProgramsOfNightsInTheBackground) {
         scene.effects = {};
         scene.view.eye.emplace();
         scene.view.eye->place = geo::Geodetic{radians(36.36), radians(-84.23), 900};
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         if (ahead) {
             session.link_rest();
@@ -264,7 +265,7 @@ TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
     scene.effects.switches.only->clear();
     scene.pixel_error = 0;  // every post
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     EXPECT_FALSE(session.draw_available());
     const int first = session.triangles();
     const image::Image8 coarse = session.picture();
@@ -304,13 +305,13 @@ TEST(Session, DrawsADemThatAnotherHasRead) {
     std::shared_ptr<const LoadedDem> read;
     image::Image8 first;
     {
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         first = session.picture();
         read = session.dem();
     }
     std::filesystem::remove(dem);
-    Session session(scene, {.device = "software", .dem = read}, others);
+    Session session(scene, {.device = test::gl_device(), .dem = read}, others);
     EXPECT_EQ(session.dem(), read);
     session.draw();
     EXPECT_EQ(session.picture().values, first.values);
@@ -324,7 +325,7 @@ TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
     for (const dem::Holes holes : {dem::Holes::Fill, dem::Holes::Cut, dem::Holes::Mark}) {
         scene.holes = holes;
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         const LoadedDem& dem = *session.dem();
         const auto i = static_cast<std::size_t>(holes);
@@ -343,7 +344,7 @@ TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
 
 TEST(Session, RefusesWhatNeedsAnotherProgram) {
     FilesInUse files;
-    Session session(bundled_scene(), {.device = "software"}, files);
+    Session session(bundled_scene(), {.device = test::gl_device()}, files);
     EXPECT_EQ(
         test::error_of([&] { session.set("paint.slope", "false"); }),
         "exit 3: session: paint.slope: is a static parameter; another value needs another shader");
@@ -361,7 +362,7 @@ TEST(Session, RefusesWhatNeedsAnotherProgram) {
 TEST(Session, TellsOfTheSunAsItsEyeSeesIt) {
     FilesInUse files;
     scene::Scene scene = bundled_scene();
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     EXPECT_EQ(session.place_text(), "36.30292 N 84.24583 W");
     EXPECT_EQ(session.sun_text(), "azimuth 280.33, elevation 27.03 (27.05 with refraction)");
     scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.05, -84.05, 3000), false};
@@ -377,7 +378,7 @@ TEST(Session, SaysOnceThatAnEyeIsBelowTheGround) {
     FilesInUse files;
     scene::Scene scene = bundled_scene();
     scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.3, -84.2, 10), false};
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     for (int frame = 0; frame < 3; ++frame) {
         session.look(scene.view);
         session.draw();

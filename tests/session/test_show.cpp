@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -54,7 +55,7 @@ image::Image8 picture_of(Session& session) {
 
 image::Image8 alone(const scene::Scene& scene) {
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     return picture_of(session);
 }
 
@@ -63,7 +64,7 @@ void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& c
     const image::Image8 first = alone(begin);
     const sun::Instant begin_utc = sun::parse_time(begin.time.at).utc;
     FilesInUse files;
-    Session session(begin, {.device = "software"}, files);
+    Session session(begin, {.device = test::gl_device()}, files);
     ASSERT_EQ(picture_of(session).values, first.values);
     for (const Change& change : changes) {
         scene::Scene scene = begin;

@@ -10,6 +10,7 @@
 #include "session/graticule.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -41,7 +42,8 @@ struct Shown {
     SeenGround seen;
 
     explicit Shown(const scene::Scene& scene)
-        : session(scene, {.device = "software"}, files), seen((session.draw(), seen_of(session))) {}
+        : session(scene, {.device = test::gl_device()}, files),
+          seen((session.draw(), seen_of(session))) {}
 
     glm::dvec3 point(const geo::Geodetic& at) const {
         geo::Geodetic place = at;
@@ -194,7 +196,7 @@ TEST(Stamps, AreOnPicturesOfScenesThatWantThem) {
     scene::Scene scene = scene_of(160, 35);
     const auto picture = [&] {
         FilesInUse files;
-        Session session(scene, {.device = "software"}, files);
+        Session session(scene, {.device = test::gl_device()}, files);
         session.draw();
         return std::pair(session.picture(), session.stamp_notes());
     };
@@ -218,7 +220,7 @@ TEST(Stamps, AreOnPicturesOfScenesThatWantThem) {
 TEST(Stamps, FollowASceneThatIsShownNext) {
     scene::Scene scene = scene_of(160, 35);
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     const image::Image8 plain = session.picture();
     scene = session.scene();

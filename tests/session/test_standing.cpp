@@ -13,6 +13,7 @@
 
 #include "base/units.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -52,7 +53,7 @@ struct Count {
 /// Stands at random places of a DEM that have a height in all directions.
 Count stand_in(const scene::Scene& scene, int sites, Taken taken) {
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     const dem::Grid& grid = session.dem()->field.grid;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(0.02, 0.98);
@@ -176,7 +177,7 @@ TEST(Standing, NoEyeIsUnderGroundThatAnEffectDisplaces) {
 
     // Also when the effect's parameter changes below the eye.
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     scene::View view;
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     view.eye->place.height_m = kEye_m;
@@ -194,7 +195,7 @@ TEST(Standing, AnEyeOverTheSeaStandsOnTheWaterThatIsDrawn) {
     scene::Scene scene = scene_of(written_dem(250, true, -5000));
     scene.effects.switches.only = std::vector<std::string>{"sea"};
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     scene::View view;
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     view.eye->place.height_m = kEye_m;
@@ -206,7 +207,7 @@ TEST(Standing, AnEyeOverTheSeaStandsOnTheWaterThatIsDrawn) {
 TEST(Standing, AnEyeMayBeFarAboveTheGround) {
     const scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     scene::View view;
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     for (const double height_m : {500.0, 100e3, 1e7}) {
@@ -221,7 +222,7 @@ TEST(Standing, AnEyeMayBeFarAboveTheGround) {
 TEST(Standing, ZoomComesNearerToWhatIsInTheMiddleOfTheBundledDem) {
     scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     scene::View view;
     view.orbit = {.azimuth_deg = 200, .elevation_deg = 30, .zoom = 1};
     const double whole_m = depth_ahead_m(session, view);
@@ -241,7 +242,7 @@ TEST(Standing, ASessionMayBeginFarAboveTheGround) {
     scene.view.eye = scene::Standpoint{place, /*above_ground=*/true};
     scene.view.pitch_deg = -90;
     FilesInUse files;
-    Session session(scene, {.device = "software"}, files);
+    Session session(scene, {.device = test::gl_device()}, files);
     session.draw();
     std::vector<float> depths_m;
     session.read_depths(depths_m);

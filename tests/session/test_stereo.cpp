@@ -10,6 +10,7 @@
 #include "scene/stereo.h"
 #include "session/session.h"
 #include "session/stereo_image.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -59,7 +60,8 @@ TEST(Stereo, DisparityIsThatOfTheFormula) {
     scene::Scene scene = scene_of(scene::Stereo::Parallel);
     scene.transparent = true;
     scene.samples = 32;
-    Session session(scene, {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
+    Session session(scene,
+                    {.device = test::gl_device(), .format = PictureFormat{}, .allow_unmet = true},
                     files);
     const image::Picture pair = session.make_picture();
     const auto& picture = std::get<image::Image8>(pair.pixels);
@@ -68,7 +70,7 @@ TEST(Stereo, DisparityIsThatOfTheFormula) {
     scene::Scene one = scene;
     one.view.stereo = scene::Stereo::None;
     one.width_px = kWidth_px / 2;
-    Session middle(one, {.device = "software", .allow_unmet = true}, files);
+    Session middle(one, {.device = test::gl_device(), .allow_unmet = true}, files);
     middle.draw();
     std::vector<float> depths_m;
     middle.read_depths(depths_m);
@@ -100,9 +102,9 @@ TEST(Stereo, DisparityIsThatOfTheFormula) {
 TEST(Stereo, CrossEyedIsParallelWithItsHalvesSwapped) {
     FilesInUse files;
     const auto drawn = [&](scene::Stereo stereo) {
-        Session session(scene_of(stereo),
-                        {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
-                        files);
+        Session session(
+            scene_of(stereo),
+            {.device = test::gl_device(), .format = PictureFormat{}, .allow_unmet = true}, files);
         return std::get<image::Image8>(session.make_picture().pixels);
     };
     const image::Image8 parallel = drawn(scene::Stereo::Parallel);
@@ -116,7 +118,8 @@ TEST(Stereo, EyesTooFarApartAreRefused) {
     FilesInUse files;
     scene::Scene scene = scene_of(scene::Stereo::Anaglyph);
     scene.view.eye_distance_m = 1e6;
-    Session session(scene, {.device = "software", .format = PictureFormat{}, .allow_unmet = true},
+    Session session(scene,
+                    {.device = test::gl_device(), .format = PictureFormat{}, .allow_unmet = true},
                     files);
     const std::string error = test::error_of([&] { session.make_picture(); });
     EXPECT_TRUE(error.starts_with("exit 3: --eye-distance: moves the frames by ")) << error;

@@ -13,6 +13,7 @@
 
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/device.h"
 #include "support/support.h"
 
 namespace relevo::session {
@@ -47,7 +48,7 @@ std::filesystem::path coast() {
 class Map {
   public:
     explicit Map(const std::string& preset)
-        : session_(scene(preset), {.device = "software"}, files_) {
+        : session_(scene(preset), {.device = test::gl_device()}, files_) {
         session_.draw();
         picture_ = session_.picture();
         std::vector<float> depths_m;

@@ -9,6 +9,7 @@
 #include "gl/context.h"
 #include "render/frame_block.h"
 #include "shader/param_store.h"
+#include "support/device.h"
 
 namespace relevo::test {
 
@@ -31,7 +32,7 @@ class GpuSnippet {
 
   private:
     std::string plugin_, include_;
-    gl::Context context_{{.device = "software", .debug = true}};
+    gl::Context context_{{.device = gl_device(), .debug = true}};
     shader::ParamStore values_;
     render::FrameBlock frame_{};
 };

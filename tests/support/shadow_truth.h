@@ -21,6 +21,7 @@
 #include "gl/context.h"
 #include "render/ground.h"
 #include "render/renderer.h"
+#include "support/device.h"
 #include "support/support.h"
 
 /// Shadows computed twice: by marching along rays in double precision, and by drawing pictures.
@@ -165,7 +166,7 @@ class Drawn {
     Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
           const std::vector<std::string>& settings = {}, double pixel_error = 2,
           glm::ivec2 size = glm::ivec2(0), const std::string& effect = "vsm")
-        : dem_(dem), ground_(render::make_ground(dem)), context_({.device = "software"}) {
+        : dem_(dem), ground_(render::make_ground(dem)), context_({.device = test::gl_device()}) {
         // A surface that sends the sun's light on as it comes, and none of the sky's.
         std::filesystem::create_directories(scratch / "probe");
         std::ofstream(scratch / "probe/plugin.json")

@@ -10,6 +10,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "support/device.h"
 #include "support/gpu_snippet.h"
 #include "support/shadow_truth.h"
 
@@ -100,7 +101,7 @@ glm::dvec2 blurred(const std::array<glm::dvec2, 3>& m, double blur) {
 TEST(Vsm, BlurOnTheGpuIsTheReferences) {
     constexpr int kSide = 97;
     constexpr double kBlur = 0.3, kFloor_m = -700;
-    const gl::Context context({.device = "software", .debug = true});
+    const gl::Context context({.device = test::gl_device(), .debug = true});
     std::mt19937 random(3);
     std::vector<float> depths(kSide * kSide);
     for (std::size_t i = 0; i < depths.size(); ++i)
