@@ -192,10 +192,8 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
     fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
     const dem::TileReport& found = posts.about().tiles;
     if (const std::int64_t voids = found.missing.count + found.broken.count; voids > 0)
-        fmt::print(
-            "voids               {} of {} tiles of the DEM are missing or broken; relief and time "
-            "are estimated from the others\n",
-            voids, found.tiles);
+        fmt::print("voids               {} of {} tiles of the DEM are missing or broken\n", voids,
+                   found.tiles);
     fmt::print(
         "halo                {:.1f} km: ground so far off can change a figure (relief "
         "{:.0f} m)\n",

@@ -9,17 +9,17 @@ tiles are made in FOLDER under their names: real relief (data/dem/jacksboro.tif)
 and roofs, 1000 x 1000 posts of 32-bit floats, LZW. Runs, each as `relevo plan` writes its tasks, and merged:
 
 - a day in June and one in December, of all 64 tiles and in one go, which must be the same; of 4 x 4 with --halo
-- a year with --halo, of as many tiles as fit into --minutes; of 2 x 2 tiles in one go, too
-- 1, 4, 30 and 365 days of 2 x 2 tiles, for what a longer time costs
+- 1, 4, 30 and 365 days of 2 x 2 tiles, for what a longer time costs; the year in one go, too
+- a year with --halo of all 64 tiles, or of 4 x 4 if that takes longer than --minutes
 - the plan of the whole index, whose other tiles are missing
 
-Prints tables in Markdown. Wall-clock and processor time, peak memory (of the largest process) and bytes read and
-written (/proc/PID/io, also from the system's cache) are measured; lines that say so are extrapolated. Ends with
-status 1 where values differ that must not.
+Prints tables in Markdown. Times, peak memory (of the largest process) and bytes read and written (/proc/PID/io, from
+the system's cache, too) are measured; the last table is extrapolated. Status 1: values differ that must not.
 """
 
 import argparse
 import collections
+import math
 import os
 import pathlib
 import re
@@ -67,10 +67,10 @@ def write_index(path, rows, srs):
     layer.StartTransaction()
     for row in rows:
         west, south, east, north = row.box
+        outline = f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))"
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetField("location", f"dsm/{row.name}.tif")
-        feature.SetGeometry(ogr.CreateGeometryFromWkt(
-            f"POLYGON (({west} {south}, {east} {south}, {east} {north}, {west} {north}, {west} {south}))"))
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(outline))
         layer.CreateFeature(feature)
     layer.CommitTransaction()
 
@@ -125,16 +125,12 @@ def make_tiles(folder, block, srs):
     folder.mkdir(parents=True, exist_ok=True)
     ground = Ground(block[0].box[0], block[0].box[3], len(block) ** 0.5 * POSTS)
     for square in block:
-        path = folder / f"{square.name}.tif"
-        if path.exists():
-            continue
-        out = gdal.GetDriverByName("GTiff").Create(f"{path}.part", POSTS, POSTS, 1, gdal.GDT_Float32,
-                                                   ["COMPRESS=LZW"])
+        out = gdal.GetDriverByName("GTiff").Create(str(folder / f"{square.name}.tif"), POSTS, POSTS, 1,
+                                                   gdal.GDT_Float32, ["COMPRESS=LZW"])
         out.SetGeoTransform((square.box[0], 1, 0, square.box[3], 0, -1))
         out.SetProjection(srs.ExportToWkt())
         out.GetRasterBand(1).WriteArray(ground.heights(square.box))
-        del out
-        path.with_name(f"{path.name}.part").rename(path)
+        del out  # writes it
 
 
 class Taken:
@@ -178,21 +174,20 @@ class Bench:
         return path, Taken().run(self.relevo, "-q", *self.command(when, more), "-o", path, "--overwrite")
 
     def plan(self, folder, when, more=(), index=None):
+        shutil.rmtree(folder, ignore_errors=True)
         words = self.command(when, more)
-        if index:
-            words[2] = index
+        words[2] = index or self.index
         return Taken().run(self.relevo, "-q", "plan", *words, "--tiles", words[2], "-o", folder, "--parallel",
-                           f"{folder}.txt", "--task-minutes", "1", "--overwrite")
+                           f"{folder}.txt", "--overwrite")
 
     def in_tiles(self, name, when, more=()):
         """As a reader would: a plan, its tasks one after the other, and their merge."""
-        folder = self.folder / name
-        shutil.rmtree(folder, ignore_errors=True)
-        plan, tasks = self.plan(folder, when, more), Taken()
+        folder, tasks = self.folder / name, Taken()
+        self.plan(folder, when, more)
         for line in pathlib.Path(f"{folder}.txt").read_text(encoding="utf-8").splitlines():
             tasks.run("/bin/sh", "-c", line)
         Taken().run(self.relevo, "-q", "merge", folder, "-o", folder / "mosaic.vrt", "--overwrite")
-        return folder / "mosaic.vrt", plan, tasks
+        return folder / "mosaic.vrt", tasks
 
     def compare(self, what, tiles, whole, days=1, must_be_equal=False):
         """Minutes of a day by which the tiles are off."""
@@ -211,13 +206,6 @@ def table(title, *columns):
     print(f"\n{title}\n\n| {' | '.join(columns)} |\n|{'---|' * len(columns)}")
 
 
-def taken_line(what, tiles, taken):
-    posts = tiles * POSTS**2
-    print(f"| {what} | {tiles} | {taken.wall_s:.1f} | {taken.processor_s:.1f} "
-          f"| {1e6 * taken.processor_s / posts:.2f} | {taken.read / MIB:.0f} | {taken.written / MIB:.0f} "
-          f"| {taken.peak_mib:.0f} |", flush=True)
-
-
 def number_after(word, text):
     return float(re.search(rf"^{word} +(?:some )?([0-9.e+-]+)", text, re.MULTILINE).group(1))
 
@@ -228,59 +216,66 @@ def clip_of(squares):
 
 
 def middle_of(block, side):
-    count = round(len(block) ** 0.5)
-    first = (count - side) // 2
-    return [block[row * count + column] for row in range(first, first + side) for column in range(first, first + side)]
+    """Of 8 x 8."""
+    lines = range((8 - side) // 2, (8 + side) // 2)
+    return [block[row * 8 + column] for row in lines for column in lines]
 
 
-def measure(bench, block, minutes):
-    """@returns what a year of so many tiles took, and how many they are"""
-    lines, compared = [], []
+def measure_days(bench, block, lines, compared):
     for day, date in DAYS.items():
         when = ("--date", date)
         whole, one = bench.in_one(date, when)
-        exact, _, tasks = bench.in_tiles(f"exact {date}", when)
-        far, _, far_tasks = bench.in_tiles(f"halo {date}", when, bench.halo + clip_of(middle_of(block, 4)))
-        lines += [(f"{day}, in one go", 64, one), (f"{day}, tasks", 64, tasks), (f"{day}, --halo, tasks", 16, far_tasks)]
+        exact, tasks = bench.in_tiles(f"exact {date}", when)
+        far, far_tasks = bench.in_tiles(f"halo {date}", when, bench.halo + clip_of(middle_of(block, 4)))
+        lines += [(f"{day}, in one go", 64, one), (f"{day}, tasks", 64, tasks),
+                  (f"{day}, --halo, tasks", 16, far_tasks)]
         compared += [(day, exact, whole, 1, True), (f"{day}, --halo", far, whole, 1, False)]
-    part = middle_of(block, 2)
+
+
+def measure_lengths(bench, block, lines, compared):
+    """@returns what the last one took: a year"""
+    clip = clip_of(middle_of(block, 2))
     for name, when in (("1 day", ("--date", "2026-06-21")), ("4 days", ("--from", "2026-06-21", "--to", "2026-06-24")),
                        ("30 days", ("--from", "2026-06-01", "--to", "2026-06-30")), ("365 days", YEAR)):
-        part_year, _, tasks = bench.in_tiles(f"part {name}", when, bench.halo + clip_of(part))
-        lines.append((f"{name}, --halo, tasks", len(part), tasks))
-    side = 8 if tasks.wall_s / len(part) * len(block) < 60 * minutes else 4
-    some = middle_of(block, side)
-    far, plan, year = bench.in_tiles("year", YEAR, bench.halo + clip_of(some))
-    whole, one = bench.in_one("year", YEAR, clip_of(part))
-    lines += [("365 days, --halo, plan", len(some), plan), ("365 days, --halo, tasks", len(some), year),
-              ("365 days, in one go", len(part), one)]
-    compared.append(("365 days, --halo", part_year, whole, 365, False))
-    table("Measured:", "hours of", "tiles", "wall s", "processor s", "µs a post", "read MiB", "written MiB",
+        year, tasks = bench.in_tiles(f"part {name}", when, bench.halo + clip)
+        lines.append((f"{name}, --halo, tasks", 4, tasks))
+    whole, one = bench.in_one("year", YEAR, clip)
+    lines.append(("365 days, in one go", 4, one))
+    compared.append(("365 days, --halo", year, whole, 365, False))
+    return tasks
+
+
+def print_measured(bench, lines, compared):
+    table("Measured:", "hours of", "tiles", "wall s", "processor s", "processor s a tile", "read MiB", "written MiB",
           "peak MiB")
-    for line in lines:
-        taken_line(*line)
+    for what, tiles, taken in lines:
+        print(f"| {what} | {tiles} | {taken.wall_s:.1f} | {taken.processor_s:.1f} "
+              f"| {taken.processor_s / tiles:.2f} | {taken.read / MIB:.0f} | {taken.written / MIB:.0f} "
+              f"| {taken.peak_mib:.0f} |")
     table("Tiles against one go, minutes a day:", "hours of", "posts", "differ", "mean", "99 %", "99.9 %", "worst")
     for line in compared:
         bench.compare(*line)
-    print(f"\nThe plan of the year, of {len(some)} tiles:\n\n{plan.said}")
-    return year, len(some), plan
 
 
-def extrapolate(year, tiles, block_plan, whole_plan, squares):
-    """What the whole takes, from what a year of some tiles took."""
-    each_s, processor_s = year.wall_s / tiles, year.processor_s / tiles * squares
-    reading_s = squares * block_plan.wall_s / 64  # of the plan: of all heights, twice
-    plan_s = whole_plan.wall_s + reading_s
+def extrapolate(dsm, part, year, tiles, block_plan, whole_plan, squares):
+    """What the whole takes: from a year of 4 and of more tiles, what each takes beyond a task's start."""
+    tile_s = (year.processor_s - part.processor_s) / (tiles - 4)
+    start_s = max(0, part.processor_s - 4 * tile_s)
+    written = (year.written - part.written) / (tiles - 4) * squares
+    plan_s = whole_plan.wall_s + (squares - 64) * block_plan.wall_s / 64
     tasks = int(number_after("tasks", whole_plan.said))
-    table(f"The whole, {squares} tiles, a year, extrapolated from {tiles} tiles:", "cores", "wall-clock hours",
-          "processor hours", "read GiB", "written GiB", "MiB a task", "tasks", "MiB/s read")
+    task_s = start_s + squares / tasks * tile_s
+    stored = sum(path.stat().st_size for path in dsm.glob("*.tif")) / (64 * POSTS**2 * 4)
+    read = stored * (number_after("reading +up to", whole_plan.said) + 2 * 4 * squares * POSTS**2 / GIB)
+    table(f"The whole, {squares} tiles, a year, extrapolated:", "cores", "wall-clock hours", "processor hours",
+          "read GiB", "written GiB", "MiB a task", "tasks", "MiB/s read")
     for cores in CORES:
-        wall_s = plan_s + squares * each_s / (cores / 2)
-        read = year.read / tiles * squares + squares * block_plan.read / 64
-        print(f"| {cores} | {wall_s / 3600:.1f} | {processor_s / 3600:.0f} | {read / GIB:.0f} "
-              f"| {year.written / tiles * squares / GIB:.0f} | {number_after('memory', whole_plan.said):.0f} "
-              f"| {tasks} | {read / MIB / wall_s:.0f} |")
-    print(f"\nOf these the plan, which one process makes: {plan_s / 60:.0f} minutes.")
+        wall_s = plan_s + math.ceil(tasks / cores) * task_s
+        print(f"| {cores} | {wall_s / 3600:.1f} | {(plan_s + tasks * task_s) / 3600:.0f} | {read:.0f} "
+              f"| {written / GIB:.0f} | {number_after('memory', whole_plan.said):.0f} | {tasks} "
+              f"| {read * 1024 / wall_s:.0f} |")
+    print(f"\nProcessor time: a tile {tile_s:.1f} s, a task's start {start_s:.1f} s, a task {task_s / 60:.0f} minutes; "
+          f"the plan at most {plan_s / 60:.0f} minutes.")
 
 
 def main():
@@ -289,7 +284,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path, help="for tiles and results, some 3 GiB")
     parser.add_argument("--halo", type=float, default=3, help="of relevo, km (3)")
-    parser.add_argument("--minutes", type=float, default=15, help="for the year; else 4 x 4 tiles of it (15)")
+    parser.add_argument("--minutes", type=float, default=15, help="of two processors for the year (15)")
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
     rows, srs = read_index(arguments.index)
@@ -299,12 +294,18 @@ def main():
     write_index(folder / "whole.gpkg", rows, srs)
     bench = Bench(arguments.build.resolve() / "bin/relevo", folder, arguments.halo)
     print(f"{len(rows)} rows of {squares} squares; made are {len(block)}, from {block[0].name} on", flush=True)
-    year, tiles, block_plan = measure(bench, block, arguments.minutes)
-    shutil.rmtree(folder / "whole", ignore_errors=True)
-    whole_plan = bench.plan(folder / "whole", YEAR, bench.halo, folder / "whole.gpkg")
-    print(f"The plan of the whole, of which {squares - len(block)} squares are missing, took {whole_plan.wall_s:.1f} s "
-          f"and {whole_plan.peak_mib:.0f} MiB:\n\n{whole_plan.said}")
-    extrapolate(year, tiles, block_plan, whole_plan, squares)
+    lines, compared = [], []
+    measure_days(bench, block, lines, compared)
+    part = measure_lengths(bench, block, lines, compared)
+    some = middle_of(block, 8 if part.processor_s / 4 * 64 / 2 < 60 * arguments.minutes else 4)
+    _, year = bench.in_tiles("year", YEAR, bench.halo + clip_of(some))
+    block_plan = bench.plan(folder / "plan", YEAR, bench.halo)
+    whole_plan = bench.plan(folder / "whole", YEAR, [*bench.halo, "--cpus", "1"], folder / "whole.gpkg")
+    lines += [("365 days, --halo, tasks", len(some), year), ("365 days, --halo, plan", 64, block_plan),
+              ("365 days, --halo, plan of all", squares, whole_plan)]
+    print_measured(bench, lines, compared)
+    print(f"\nThe plan of 64 tiles:\n\n{block_plan.said}\nThat of all, most of them missing:\n\n{whole_plan.said}")
+    extrapolate(folder / "dsm", part, year, len(some), block_plan, whole_plan, squares)
     if bench.failed:
         sys.exit("tiles without --halo are others than those of one go")
 

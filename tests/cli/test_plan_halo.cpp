@@ -27,7 +27,7 @@ double hill_m(int column, int row) {
 
 std::string wide_hills(const fs::path& where) {
     Raster raster;
-    raster.columns = raster.rows = 3000;
+    raster.columns = raster.rows = 1600;
     raster.options = {"COMPRESS=LZW"};
     raster.geotransform = {{500000, 5, 0, 5300000, 0, -5}};
     raster.value = [](int column, int row, int) { return hill_m(column, row); };
@@ -43,8 +43,8 @@ double number_after(const std::string& words, const std::string& text) {
 }
 
 Words hours_of(const std::string& dem, const fs::path& folder, const Words& more) {
-    Words words{"sun",  "hours", dem,       "--from", "2026-06-01", "--to",         "2026-06-30",
-                "--tz", "UTC",   "--tiles", "1000",   "-o",         folder.string()};
+    Words words{"sun",  "hours", dem,       "--from", "2026-06-01", "--to",         "2026-06-05",
+                "--tz", "UTC",   "--tiles", "600",    "-o",         folder.string()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
@@ -57,8 +57,8 @@ Words planned(Words words) {
 TEST(PlanOfAHalo, MemoryIsNoLessThanATaskTakes) {
     const fs::path where = scratch_dir("memory");
     const std::string dem = wide_hills(where);
-    for (const Words& memory : {Words{"--memory", "64"}, Words{"--memory", "200"}}) {
-        Words more{"--halo", "3", "--clip", "505000,5290000,510000,5295000"};
+    for (const Words& memory : {Words{"--memory", "16"}, Words{"--memory", "200"}}) {
+        Words more{"--halo", "1", "--clip", "503000,5294000,506000,5297000"};
         more.insert(more.end(), memory.begin(), memory.end());
         const fs::path folder = where / memory[1];
         const Result plan = relevo(planned(hours_of(dem, folder, more)));
@@ -69,7 +69,7 @@ TEST(PlanOfAHalo, MemoryIsNoLessThanATaskTakes) {
         fmt::print("[ memory   ] {} MiB: a task takes {} MiB, its plan says {}\n", memory[1],
                    task.peak_mib, mib);
         EXPECT_LE(task.peak_mib, mib);
-        EXPECT_GE(task.peak_mib, 0.4 * mib);
+        EXPECT_GE(task.peak_mib, 0.25 * mib);
     }
 }
 
@@ -78,7 +78,7 @@ TEST(PlanOfAHalo, ATileThatDoesNotFitIntoMemoryWithItsHaloIsRefused) {
     const std::string dem = wide_hills(where);
     const Result run = relevo(hours_of(dem, where / "out", {"--halo", "5", "--memory", "16"}));
     EXPECT_EQ(run.status, 2);
-    EXPECT_THAT(run.err, HasSubstr("relevo: error: --halo: 5: a tile with its halo has 3000 x 3000 "
+    EXPECT_THAT(run.err, HasSubstr("relevo: error: --halo: 5: a tile with its halo has 1600 x 1600 "
                                    "posts, half of what --memory has room for is "));
     const double enough = number_after("or --memory", run.err);
     EXPECT_EQ(relevo(planned(hours_of(dem, where / "out",
@@ -120,8 +120,7 @@ TEST(Plan, OfACountryOfWhichAFewTilesAreThereIsOfThese) {
         if (i % 8 > 2 || i / 8 > 2) fs::remove(rows[static_cast<std::size_t>(i)].location);
     const auto [text, of_some] = hours("some");
     EXPECT_THAT(text,
-                HasSubstr("voids               55 of 64 tiles of the DEM are missing or broken; "
-                          "relief and time are estimated from the others\n"));
+                HasSubstr("voids               55 of 64 tiles of the DEM are missing or broken\n"));
     EXPECT_GT(of_some, of_all / 2.5);
     EXPECT_LT(of_some, of_all * 2.5);
 }
