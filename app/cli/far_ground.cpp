@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
+#include "light/sweep/sweep.h"
 #include "output/tile_plan.h"
 
 namespace relevo::cli {
@@ -17,7 +18,6 @@ namespace {
 /// Cells of means between a tile and its far ground. With 60 horizons are within 0.1 degrees, but
 /// for what sweeps are off anyway (tests/light/test_nested.cpp, tests/cli/test_sun_tiles.cpp).
 constexpr double kCellsAHalo = 100;
-constexpr const char* kMeansFile = "plan_means.tif";
 
 dem::Source open_quietly(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
     const log::HeldNotices notices;
@@ -59,7 +59,7 @@ FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptio
     const int columns = posts.grid().columns(), rows = posts.grid().rows();
     const dem::Window all{0, 0, columns, rows};
     std::optional<Array2d<float>> kept;
-    if (is_planned) kept = output::read_heights(folder / kMeansFile);
+    if (is_planned) kept = output::read_heights(folder / output::kMeansFile);
     const int width = std::max(2, columns / means_), height = std::max(2, rows / means_);
     if (!kept || kept->width() != width || kept->height() != height)
         kept = source_.read(all, width, height);
@@ -69,23 +69,58 @@ FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptio
 
 void FarGround::write(const std::filesystem::path& folder) const {
     output::write_heights(
-        folder / kMeansFile, field_->grid, field_->height_m,
+        folder / output::kMeansFile, field_->grid, field_->height_m,
         fmt::format("means of {0} x {0} posts of the DEM; for the tasks of this folder", means_));
 }
 
-dem::Window FarGround::halo_of(const dem::Window& tile) const {
-    const glm::dvec2 spacing_m = posts_.grid().post_spacing_m();
-    const int columns = static_cast<int>(std::ceil(halo_m_ / spacing_m.x)),
-              rows = static_cast<int>(std::ceil(halo_m_ / spacing_m.y));
+dem::Window FarGround::halo_of(const dem::Grid& grid, double halo_m, const dem::Window& tile) {
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    const int columns = static_cast<int>(std::ceil(halo_m / spacing_m.x)),
+              rows = static_cast<int>(std::ceil(halo_m / spacing_m.y));
     return common(
         {tile.column - columns, tile.row - rows, tile.columns + 2 * columns, tile.rows + 2 * rows},
-        {0, 0, posts_.grid().columns(), posts_.grid().rows()});
+        {0, 0, grid.columns(), grid.rows()});
 }
 
-FarGround::Site FarGround::site_of(const dem::Window& tile) const {
-    const dem::Window site = halo_of(tile);
+void FarGround::require_room(const dem::Grid& grid, double halo_m, const dem::Window& tile,
+                             const MemoryBudget& memory) {
+    const dem::Window site = halo_of(grid, halo_m, tile);
+    const std::int64_t posts = std::int64_t{site.columns} * site.rows;
+    if (posts <= memory.posts / 2) return;
+    bad_usage(
+        fmt::format("--halo: {:.4g}: a tile with its halo has {} x {} posts, half of what --memory "
+                    "has room for is {}; use a smaller --halo, smaller --tiles, or --memory {}",
+                    halo_m / 1000, site.columns, site.rows, memory.posts / 2,
+                    MemoryBudget::mib_for_posts(2 * posts)));
+}
+
+Array2d<float> FarGround::read_site(const dem::Window& site) const {
+    const dem::Window both = last_ ? common(last_site_, site) : dem::Window{};
+    if (both.is_empty()) return source_.read(site, site.columns, site.rows);
+    Array2d<float> height_m(site.columns, site.rows);
+    const auto put = [&](const dem::Window& part, const Array2d<float>& from, int column, int row) {
+        for (int y = 0; y < part.rows; ++y)
+            std::copy_n(&from.at(part.column - column, part.row - row + y), part.columns,
+                        &height_m.at(part.column - site.column, part.row - site.row + y));
+    };
+    put(both, last_->height_m, last_site_.column, last_site_.row);
+    const auto read = [&](int column, int row, int end_column, int end_row) {
+        const dem::Window part{column, row, end_column - column, end_row - row};
+        if (!part.is_empty()) put(part, source_.read(part, part.columns, part.rows), column, row);
+    };
+    read(site.column, site.row, site.end_column(), both.row);
+    read(site.column, both.end_row(), site.end_column(), site.end_row());
+    read(site.column, both.row, both.column, both.end_row());
+    read(both.end_column(), both.row, site.end_column(), both.end_row());
+    return height_m;
+}
+
+FarGround::Site FarGround::site_of(const dem::Window& tile) {
+    const dem::Window site = halo_of(posts_.grid(), halo_m_, tile);
     Site made;
-    made.field = field_of(source_.read(site, site.columns, site.rows), posts_, site);
+    made.field = field_of(read_site(site), posts_, site);
+    last_ = made.field;
+    last_site_ = site;
     made.posts.emplace(*made.field);
     const bool is_all =
         site.columns == posts_.grid().columns() && site.rows == posts_.grid().rows();
@@ -99,9 +134,10 @@ std::string FarGround::description() const {
                        halo_m_ / 1000, means_, means_);
 }
 
-double FarGround::kept_posts(const dem::Window& tile) const {
-    const dem::Window site = halo_of(tile);
-    return double(site.columns) * site.rows + static_cast<double>(field_->height_m.size());
+double FarGround::kept_bytes(const dem::Window& tile) const {
+    const dem::Window site = halo_of(posts_.grid(), halo_m_, tile);
+    return double(site.columns) * site.rows * (sizeof(float) + light::Sweep::kBytesAPost) +
+           double(sizeof(float)) * static_cast<double>(field_->height_m.size());
 }
 
 }  // namespace relevo::cli

@@ -18,6 +18,15 @@ class FarGround {
     /// @throws Error (Usage) where memory has no room for the means of the whole DEM
     static int means_for(const dem::Posts& posts, double halo_m, const MemoryBudget& memory);
 
+    /// Refuses a tile that does not fit into memory with its halo: that has half of it, the means
+    /// have a quarter, and what is kept of all other posts has a quarter.
+    /// @throws Error (Usage) that says what to do
+    static void require_room(const dem::Grid& grid, double halo_m, const dem::Window& tile,
+                             const MemoryBudget& memory);
+    /// A tile with its halo, as far as the DEM reaches.
+    static dem::Window halo_of(const dem::Grid& grid, double halo_m, const dem::Window& tile);
+    static constexpr std::int64_t kShareOfOthers = 4;  ///< the fourth part
+
     /// Takes the means that a plan has kept, or finds them.
     /// @param paths, options  of the DEM
     /// @param posts           all of it; outlives this
@@ -31,20 +40,21 @@ class FarGround {
 
     /// A tile with its halo.
     struct Site {
-        std::unique_ptr<const dem::Heightfield> field;
+        std::shared_ptr<const dem::Heightfield> field;
         std::optional<dem::Posts> posts;
         const dem::Posts* around = nullptr;  ///< null: the site is all of the DEM
         dem::Window tile;                    ///< of these posts
     };
-    Site site_of(const dem::Window& tile) const;
+    /// Reads what the last site does not have.
+    Site site_of(const dem::Window& tile);
 
     /// "ground beyond 8 km of a tile is means of 12 x 12 posts".
     std::string description() const;
-    /// Of means, and of a site around a tile [posts].
-    double kept_posts(const dem::Window& tile) const;
+    /// Memory of means, and of a site around a tile with what sweeps keep of it [bytes].
+    double kept_bytes(const dem::Window& tile) const;
 
   private:
-    dem::Window halo_of(const dem::Window& tile) const;
+    Array2d<float> read_site(const dem::Window& site) const;
 
     const dem::Posts& posts_;
     dem::Source source_;
@@ -52,6 +62,8 @@ class FarGround {
     int means_;
     std::unique_ptr<const dem::Heightfield> field_;  // of means
     std::optional<dem::Posts> around_;
+    std::shared_ptr<const dem::Heightfield> last_;  // of site_of()
+    dem::Window last_site_;
 };
 
 }  // namespace relevo::cli

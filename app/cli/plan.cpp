@@ -14,6 +14,7 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/far_ground.h"
 #include "cli/shared.h"
 #include "cli/sun.h"
 
@@ -62,15 +63,37 @@ TaskList tasks_of(const PlanArguments& arguments, const PlannedWork& work) {
     return list;
 }
 
-/// Posts that a share of the tiles may read: those of a window around them, and the halo.
-double posts_read(const dem::Posts& posts, const dem::Window& tile, double halo_m) {
+/// Posts that tiles may read: those of a window around each, and the halo.
+double posts_read_on_demand(const dem::Posts& posts, const std::vector<output::PlannedTile>& tiles,
+                            double halo_m) {
     const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
     const auto line = [&](int first, int count, int all, double step_m) {
         const double halo = std::min(halo_m / step_m, double(all));
         return std::min(double(all), first + count + halo) - std::max(0.0, first - halo);
     };
-    return line(tile.column, tile.columns, posts.grid().columns(), spacing_m.x) *
-           line(tile.row, tile.rows, posts.grid().rows(), spacing_m.y);
+    double sum = 0;
+    for (const output::PlannedTile& tile : tiles) {
+        const dem::Window& window = tile.window;
+        sum += line(window.column, window.columns, posts.grid().columns(), spacing_m.x) *
+               line(window.row, window.rows, posts.grid().rows(), spacing_m.y);
+    }
+    return sum;
+}
+
+/// Posts that tiles read with their halos, one after the other, less what the one before has.
+double posts_read_of_sites(const dem::Posts& posts, const std::vector<output::PlannedTile>& tiles,
+                           double halo_m) {
+    const auto count = [](const dem::Window& window) {
+        return window.is_empty() ? 0.0 : double(window.columns) * window.rows;
+    };
+    double sum = 0;
+    dem::Window last;
+    for (const output::PlannedTile& tile : tiles) {
+        const dem::Window site = FarGround::halo_of(posts.grid(), halo_m, tile.window);
+        sum += count(site) - count(common(site, last));
+        last = site;
+    }
+    return sum;
 }
 
 }  // namespace
@@ -152,31 +175,11 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work) {
                    shell_line("relevo", list.merge));
 }
 
-void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
-                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo) {
-    const RasterEstimate& estimate = plan.estimate;
-    fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
-    fmt::print(
-        "halo                {:.1f} km: ground so far off can change a figure (relief "
-        "{:.0f} m)\n",
-        plan.halo_m / 1000, double{posts.highest_m()} - posts.lowest_m());
-    if (!todo.empty()) {
-        const double bytes = bytes_of_type(posts.about().data_type);
-        double read = 0;
-        for (const output::PlannedTile& tile : todo)
-            read += posts_read(posts, tile.window, plan.halo_m) * bytes;
-        fmt::print("memory              some {:.0f} MiB a task, {:.0f} of them heights\n",
-                   estimate.memory_mib, estimate.heights_mib);
-        fmt::print(
-            "computing           some {:.3g} processor hours, as {:.3g} % of it took {:.2g} s on "
-            "{} "
-            "threads\n",
-            estimate.computing_s * estimate.threads / 3600, 100 * estimate.sampled_share,
-            estimate.sampled_s, estimate.threads);
-        fmt::print("reading             up to {}, with the halo of each tile\n", bytes_text(read));
-        fmt::print("writing             {} before compression\n",
-                   bytes_text(estimate.result_bytes));
-    }
+namespace {
+
+/// Of tiles that are narrow for their halo.
+void warn_of_wide_halo(const RasterPlan& plan, const dem::Posts& posts,
+                       const std::vector<output::PlannedTile>& todo) {
     // No wider than the DEM is beyond a tile.
     const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
     int side = 1;
@@ -193,6 +196,39 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
             fmt::format("the halo is {:.1f} times as wide as a tile, and all of it may be "
                         "read for each; larger --tiles read less",
                         sides));
+}
+
+}  // namespace
+
+void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
+                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo) {
+    const RasterEstimate& estimate = plan.estimate;
+    fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
+    const dem::TileReport& found = posts.about().tiles;
+    if (const std::int64_t voids = found.missing.count + found.broken.count; voids > 0)
+        fmt::print("voids               {} of {} tiles of the DEM are missing or broken\n", voids,
+                   found.tiles);
+    fmt::print(
+        "halo                {:.1f} km: ground so far off can change a figure (relief "
+        "{:.0f} m)\n",
+        plan.halo_m / 1000, double{posts.highest_m()} - posts.lowest_m());
+    if (!todo.empty()) {
+        const double bytes = bytes_of_type(posts.about().data_type);
+        const double read = bytes * (plan.is_far ? posts_read_of_sites(posts, todo, plan.halo_m)
+                                                 : posts_read_on_demand(posts, todo, plan.halo_m));
+        fmt::print("memory              some {:.0f} MiB a task, {:.0f} of them heights\n",
+                   estimate.memory_mib, estimate.heights_mib);
+        fmt::print(
+            "computing           some {:.3g} processor hours, as {:.3g} % of it took {:.2g} s on "
+            "{} "
+            "threads\n",
+            estimate.computing_s * estimate.threads / 3600, 100 * estimate.sampled_share,
+            estimate.sampled_s, estimate.threads);
+        fmt::print("reading             up to {}, with the halo of each tile\n", bytes_text(read));
+        fmt::print("writing             {} before compression\n",
+                   bytes_text(estimate.result_bytes));
+    }
+    warn_of_wide_halo(plan, posts, todo);
     const fs::path folder = plan.folder;
     tell_tasks(arguments, {.unit = "tile",
                            .left = todo.size(),

@@ -56,8 +56,9 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work);
 struct RasterPlan {
     RasterEstimate estimate;
     std::size_t tiles = 0, there = 0, bands = 1;
-    std::string kind;   ///< of the tiles: TileArguments::description()
-    double halo_m = 0;  ///< how far off ground can change a figure
+    std::string kind;     ///< of the tiles: TileArguments::description()
+    double halo_m = 0;    ///< how far off ground can change a figure
+    bool is_far = false;  ///< ground beyond the halo is means
     std::string folder;
     std::vector<std::string> words;
     bool overwrite = false;

@@ -14,6 +14,8 @@ namespace {
 // Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how many
 // tiles of all bands it has at once then.
 constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
+// Measured: while a tile is read with its halo, what is put together.
+constexpr double kSite_mib = 64;
 constexpr double kTile = 512;  // posts a side
 constexpr double kMiB = 1 << 20;
 
@@ -21,15 +23,15 @@ constexpr double kMiB = 1 << 20;
 
 RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
                            int bytes_a_post, int bytes_a_value, std::size_t bands,
-                           const MemoryBudget& memory) {
+                           const MemoryBudget& memory, double far_bytes) {
     const dem::Grid& grid = posts.grid();
-    // What sweeps keep; those beyond memory have what is kept of the heights, and the file's
-    // blocks.
-    const double heights =
-        posts.in_memory()
-            ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
-            : static_cast<double>(sizeof(float)) * static_cast<double>(memory.posts) +
-                  static_cast<double>(memory.block_bytes);
+    // What is kept of the heights, what sweeps keep of those in memory, and the file's blocks.
+    const double all = double(grid.columns()) * grid.rows(), a_height = sizeof(float);
+    const double turned = far_bytes > 0 ? 0 : light::Sweep::kBytesAPost;
+    const double heights = (posts.in_memory() ? (a_height + turned) * all
+                                              : a_height * static_cast<double>(memory.posts)) +
+                           std::min(static_cast<double>(memory.block_bytes), a_height * all) +
+                           far_bytes + (far_bytes > 0 ? kSite_mib * kMiB : 0);
     // A result is written from what is kept of it.
     const double tiles = std::ceil(raster.columns / kTile) * std::ceil(raster.rows / kTile);
     const double band = bytes_a_value, tile = kTile * kTile * band * static_cast<double>(bands);

@@ -32,9 +32,10 @@ struct RasterMemory {
 /// @param raster        a result file
 /// @param bytes_a_post  RasterWanted::bytes_a_post
 /// @param bytes_a_value, bands  of the result
-/// @param memory        dem::LoadOptions::memory
+/// @param memory        dem::LoadOptions::memory of `posts`
+/// @param far_bytes     FarGround::kept_bytes(); 0: all ground is posts
 RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
                            int bytes_a_post, int bytes_a_value, std::size_t bands,
-                           const MemoryBudget& memory);
+                           const MemoryBudget& memory, double far_bytes);
 
 }  // namespace relevo::cli

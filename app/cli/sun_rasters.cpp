@@ -38,6 +38,16 @@ double posts_of(const dem::Window& window) {
     return double(window.columns) * window.rows;
 }
 
+/// Whether some posts of a window have heights, by those that are at hand.
+bool has_ground(const dem::Posts& posts, const dem::Window& window) {
+    constexpr int kSide = 8;
+    for (int i = 0; i < kSide * kSide; ++i)
+        if (!std::isnan(posts.thinned_m(window.column + window.columns * (i % kSide) / kSide,
+                                        window.row + window.rows * (i / kSide) / kSide)))
+            return true;
+    return false;
+}
+
 /// A window around both.
 dem::Window around(const dem::Window& a, const dem::Window& b) {
     if (a.is_empty()) return b;
@@ -170,22 +180,26 @@ RasterGround RasterArguments::load() const {
     dem::LoadOptions options = dem.options();
     std::optional<dem::PostsFacts> facts;
     bool is_planned = false;
+    std::string stamp;
     if (tiles.given()) {
         if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
         const auto known = plan_of(output.path, output.overwrite);
-        is_planned = known && known->stamp == stamp_of_dem(dem.paths);
+        stamp = stamp_of_dem(dem.paths);
+        is_planned = known && known->stamp == stamp;
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
+    dem::LoadOptions of_others = options;
+    if (tiles.halo_km) of_others.memory.posts /= FarGround::kShareOfOthers;
     log::HeldNotices notices;
-    dem::Posts posts = dem::Posts::load(dem.paths, options, facts ? &*facts : nullptr);
+    dem::Posts posts = dem::Posts::load(dem.paths, of_others, facts ? &*facts : nullptr);
     notices.release();
     const dem::Grid& grid = posts.grid();
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     const std::int64_t part_posts =
         posts.in_memory() ? 0 : options.memory.posts / session::kPostsAPart;
-    return {std::move(posts), window, part_posts, options, is_planned};
+    return {std::move(posts), window, part_posts, options, is_planned, std::move(stamp)};
 }
 
 output::RasterMetadata RasterArguments::about(const RasterGround& ground, const dem::Window& raster,
@@ -232,7 +246,12 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
 void RasterRun::choose_tiles() {
     const dem::Posts& posts = ground_.posts;
     const Verb& verb = *arguments_.verb;
+    std::vector<output::PlannedTile> tiles =
+        arguments_.tiles.of(posts.grid(), ground_.window, crs_of_tiles(arguments_));
     if (arguments_.tiles.halo_km) {
+        for (const output::PlannedTile& tile : tiles)
+            FarGround::require_room(posts.grid(), *arguments_.tiles.halo_km * 1000, tile.window,
+                                    ground_.options.memory);
         far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
                      arguments_.output.path, ground_.is_planned);
         wanted_.metadata.emplace_back("FAR_GROUND", far_->description());
@@ -251,16 +270,19 @@ void RasterRun::choose_tiles() {
                                      .statistics = posts.about().statistics,
                                      .content = posts.content(),
                                      .dem_tiles = posts.about().tiles,
-                                     .stamp = stamp_of_dem(arguments_.dem.paths),
-                                     .tiles = arguments_.tiles.of(posts.grid(), ground_.window,
-                                                                  crs_of_tiles(arguments_))},
+                                     .stamp = ground_.stamp,
+                                     .tiles = std::move(tiles)},
                     arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
     todo_ = folder_->todo();
     if (!arguments_.dry_run) folder_->write_plan(posts, far_ ? &*far_ : nullptr);
-    // The middle of a DEM says more of how long it takes than its corner.
-    if (is_dry())
+    // The middle of a DEM says more of how long it takes than its corner, and ground than voids.
+    if (is_dry()) {
         std::rotate(todo_.begin(), todo_.begin() + static_cast<std::ptrdiff_t>(todo_.size() / 2),
                     todo_.end());
+        std::stable_partition(todo_.begin(), todo_.end(), [&](const output::PlannedTile& tile) {
+            return has_ground(posts, tile.window);
+        });
+    }
 }
 
 std::function<void(double)> RasterRun::done() {
@@ -268,7 +290,7 @@ std::function<void(double)> RasterRun::done() {
         share_ += of_call * part_share_ / static_cast<double>(wanted_.calls);
         passed_s_ = seconds_since(began_);
         if (bar_) bar_->show(share_);
-        if (!writer_ && passed_s_ - ready_s_ > kEnough_s && share_ < 1) throw Enough();
+        if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1) throw Enough();
     };
 }
 
@@ -281,7 +303,7 @@ bool RasterRun::make_all(const MakerOf& maker_of) {
             if (far_)
                 make_far(tile, maker_of);
             else
-                make(tile, tile.window, make_part);
+                make(tile, tile.window, make_part, ground_.posts);
     } catch (const Enough&) {
     }
     bar_.reset();
@@ -294,14 +316,23 @@ bool RasterRun::make_all(const MakerOf& maker_of) {
     return !is_dry();
 }
 
-void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_of) {
-    const FarGround::Site site = far_->site_of(tile.window);
-    make(tile, site.tile, maker_of(*site.posts, site.around, site.tile));
+/// A tile with its halo is in memory, and made at once.
+std::vector<dem::Window> RasterRun::parts_of(const dem::Window& raster) const {
+    return far_ ? std::vector{raster} : ground_.parts_of(raster);
 }
 
-/// @param raster  the tile's window of the posts that it is made from
+void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_of) {
+    const Progress::Clock::time_point began = Progress::Clock::now();
+    const FarGround::Site site = far_->site_of(tile.window);
+    const PartMaker make_part = maker_of(*site.posts, site.around, site.tile);
+    sites_s_ += seconds_since(began);
+    ++sites_;
+    make(tile, site.tile, make_part, *site.posts);
+}
+
+/// @param raster  the tile's window of `posts`, from which it is made
 void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
-                     const PartMaker& make_part) {
+                     const PartMaker& make_part, const dem::Posts& posts) {
     raster_ = raster;
     std::optional<OutputFile> own;
     if (folder_ && !is_dry()) {
@@ -317,14 +348,14 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
     output::RasterMetadata metadata = wanted_.metadata;
     if (writer_) look_beyond(tile.window, metadata);
     PartFigures sum;
-    for (const dem::Window& part : far_ ? std::vector{raster} : ground_.parts_of(raster)) {
+    for (const dem::Window& part : parts_of(raster)) {
         part_share_ = posts_of(part) / posts_;
         PartFigures figures = make_part(part);
         sum.holes += figures.holes;
         sum.definition = std::move(figures.definition);
     }
     if (!writer_) return;
-    inner_voids_ += inner_voids_of(tile.window);
+    inner_voids_ += inner_voids_of(tile.window, posts, raster);
     if (folder_) {
         metadata.emplace_back(output::kCommandKey, folder_->plan().command);
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
@@ -344,15 +375,19 @@ bool RasterRun::has_been_made(const output::PlannedTile& tile) const {
     return true;
 }
 
-std::int64_t RasterRun::inner_voids_of(const dem::Window& raster) const {
-    const dem::Posts& posts = ground_.posts;
+/// @param raster    of the DEM
+/// @param of_posts  the same of `posts`
+std::int64_t RasterRun::inner_voids_of(const dem::Window& raster, const dem::Posts& posts,
+                                       const dem::Window& of_posts) const {
+    const int right = raster.column - of_posts.column, down = raster.row - of_posts.row;
     std::vector<float> buffer;
     std::int64_t count = 0;
-    for (const dem::Window& part : ground_.parts_of(raster)) {
+    for (const dem::Window& part : parts_of(of_posts)) {
         const dem::Posts::View view = posts.view(part, buffer);
         for (int row = part.row; row < part.end_row(); ++row)
             for (int column = part.column; column < part.end_column(); ++column)
-                count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+                count += std::isnan(*view.at(column, row)) &&
+                         !ground_.posts.is_outside(column + right, row + down);
     }
     return count;
 }
@@ -387,22 +422,25 @@ RasterEstimate RasterRun::estimate() const {
     dem::Window largest;
     for (const output::PlannedTile& tile : todo_) {
         if (posts_of(tile.window) > posts_of(largest)) largest = tile.window;
-        for (const dem::Window& part : ground_.parts_of(tile.window)) {
+        for (const dem::Window& part : parts_of(tile.window)) {
             most = std::max(most, posts_of(part));
             ++found.parts;
         }
     }
     const int bytes_a_value = wanted_.type == output::RasterType::Float ? 4 : 1;
+    MemoryBudget memory_of_posts = ground_.options.memory;
+    if (far_) memory_of_posts.posts /= FarGround::kShareOfOthers;
     const RasterMemory memory =
         raster_memory(ground_.posts, most, largest, wanted_.bytes_a_post, bytes_a_value,
-                      wanted_.bands.size(), ground_.options.memory);
-    constexpr double kMiB = 1 << 20, kBytesAPost = 8;  // as posts in memory
-    const double far_mib = far_ ? far_->kept_posts(largest) * kBytesAPost / kMiB : 0;
+                      wanted_.bands.size(), memory_of_posts, far_ ? far_->kept_bytes(largest) : 0);
     found.posts = posts_;
-    found.memory_mib = memory.all_mib + far_mib;
-    found.heights_mib = memory.heights_mib + far_mib;
+    found.memory_mib = memory.all_mib;
+    found.heights_mib = memory.heights_mib;
     found.ready_s = ready_s_;
-    found.computing_s = ready_s_ + (passed_s_ - ready_s_) / std::max(share_, 1e-9);
+    const double sites_s = sites_s_ / static_cast<double>(std::max<std::size_t>(1, sites_)) *
+                           static_cast<double>(todo_.size());
+    found.computing_s =
+        ready_s_ + sites_s + (passed_s_ - ready_s_ - sites_s_) / std::max(share_, 1e-9);
     found.sampled_share = share_;
     found.sampled_s = passed_s_;
     found.threads = thread_count();
@@ -418,6 +456,7 @@ void RasterRun::tell_plan(const RasterEstimate& estimate) const {
                     .bands = wanted_.bands.size(),
                     .kind = arguments_.tiles.description(),
                     .halo_m = wanted_.halo_m,
+                    .is_far = far_.has_value(),
                     .folder = arguments_.output.path,
                     .words = arguments_.plan.words(*arguments_.verb),
                     .overwrite = arguments_.output.overwrite};

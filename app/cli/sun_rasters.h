@@ -25,6 +25,7 @@ struct RasterGround {
     std::int64_t part_posts = 0;  ///< that are computed at once; 0: all of a raster
     dem::LoadOptions options{};   ///< with which it was read
     bool is_planned = false;      ///< the folder's plan is of this DEM as it is
+    std::string stamp{};          ///< of tiles: output::stamp_of() all files of the DEM
 
     dem::Window whole() const { return {0, 0, posts.grid().columns(), posts.grid().rows()}; }
     dem::Grid grid_of(const dem::Window& raster) const;
@@ -116,7 +117,8 @@ class RasterRun {
   private:
     void choose_tiles();
     void make(const output::PlannedTile& tile, const dem::Window& raster,
-              const PartMaker& make_part);
+              const PartMaker& make_part, const dem::Posts& posts);
+    std::vector<dem::Window> parts_of(const dem::Window& raster) const;
     void make_far(const output::PlannedTile& tile, const MakerOf& maker_of);
     void look_beyond(const dem::Window& raster, output::RasterMetadata& metadata);
     bool is_dry() const { return arguments_.dry_run || arguments_.plan.on; }
@@ -124,7 +126,8 @@ class RasterRun {
     RasterEstimate estimate() const;
     void tell_plan(const RasterEstimate& estimate) const;
     bool has_been_made(const output::PlannedTile& tile) const;
-    std::int64_t inner_voids_of(const dem::Window& part) const;
+    std::int64_t inner_voids_of(const dem::Window& raster, const dem::Posts& posts,
+                                const dem::Window& of_posts) const;
 
     const RasterArguments& arguments_;
     const RasterGround& ground_;
@@ -145,6 +148,8 @@ class RasterRun {
     std::optional<ProgressBar> bar_;
     double share_ = 0, part_share_ = 0;
     double passed_s_ = 0, ready_s_ = 0;  ///< until now, and until the work proper began
+    double sites_s_ = 0;                 ///< of these, to make tiles with their halos ready
+    std::size_t sites_ = 0;
     Progress::Clock::time_point began_ = Progress::Clock::now();
 };
 

@@ -5,12 +5,14 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "dem/clip.h"
@@ -165,6 +167,8 @@ std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window
                                         const std::string& path, const std::string& crs) {
     const dem::TileIndex index = dem::read_tile_index(path, crs);
     std::vector<PlannedTile> tiles;
+    std::set<std::array<int, 4>> windows;  // of these
+    std::size_t repeated = 0;
     for (const dem::IndexedTile& tile : index.tiles) {
         const dem::Extent& box = tile.extent;
         dem::Clip clip{box.west, box.south, box.east, box.north, std::nullopt, tile.name};
@@ -177,10 +181,18 @@ std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window
                 fmt::format("--tiles: {}: a tile has the name \"{}\", which is taken; rename "
                             "it",
                             printable(path), tile.name));
+        if (!windows.insert({posts->column, posts->row, posts->columns, posts->rows}).second) {
+            ++repeated;
+            continue;
+        }
         tiles.push_back({tile.name + ".tif", *posts});
     }
     if (tiles.empty())
         bad_input(fmt::format("--tiles: {}: no tile has a post of the DEM", printable(path)));
+    if (repeated > 0)
+        log::info(fmt::format(
+            "--tiles: {}: {} tiles have the outline of an earlier one, and are not made again",
+            printable(path), repeated));
     return tiles;
 }
 

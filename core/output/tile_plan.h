@@ -26,7 +26,8 @@ struct PlannedTile {
 std::vector<PlannedTile> tiles_of(const dem::Grid& grid, const dem::Window& window, int side);
 
 /// Tiles of an index: the posts of a window that lie in the outline of each, under its name. Those
-/// outside of the window are not there.
+/// outside of the window are not there. Of tiles with the same posts, as of districts that share
+/// them, only the first is made; how many are not is said.
 /// @param path, crs  an OGR tile index or STAC Items, as dem::read_tile_index() takes them
 /// @throws Error (BadInput) as dem::read_tile_index(), and where no tile has a post of the window
 std::vector<PlannedTile> tiles_of_index(const dem::Grid& grid, const dem::Window& window,

@@ -2,6 +2,9 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "dem/fixture.h"
 #include "output/tile_plan.h"
@@ -42,6 +45,28 @@ TEST(TilePlan, TilesCoverAWindowOnceOnTheGridOfTheDem) {
               }),
               "exit 3: --tiles: 64: makes 4294967296 tiles of a DEM of 4194304 x 4194304 posts; "
               "expected at most 10000000");
+}
+
+/// A row of an index, of 100 x 100 posts of grid() from a column and row on.
+std::string index_row(const std::string& location, int column, int row) {
+    const double west = 499995 + 10.0 * column, north = 5200005 - 10.0 * row;
+    return fmt::format(
+        R"({{"type": "Feature", "properties": {{"location": "{0}"}}, "geometry": {{"type": )"
+        R"("Polygon", "coordinates": [[[{1}, {2}], [{3}, {2}], [{3}, {4}], [{1}, {4}], [{1}, {2}]]]}}}})",
+        location, west, north, west + 1000, north - 1000);
+}
+
+// Districts that share a tile each have it in their own archive.
+TEST(TilePlan, TilesOfAnIndexWithTheSamePostsAreMadeOnce) {
+    const fs::path path = test::scratch_dir("index") / "index.geojson";
+    std::ofstream(path)
+        << R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": )"
+        << R"("urn:ogc:def:crs:EPSG::32632"}}, "features": [)" << index_row("one/a.tif", 0, 0)
+        << ',' << index_row("two/a.tif", 0, 0) << ',' << index_row("two/b.tif", 100, 0) << ','
+        << index_row("three/c.tif", 50, 0) << ',' << index_row("three/b.tif", 100, 0) << "]}";
+    const std::vector<PlannedTile> expected{
+        {"a.tif", {0, 0, 100, 100}}, {"b.tif", {100, 0, 100, 100}}, {"c.tif", {50, 0, 100, 100}}};
+    EXPECT_EQ(tiles_of_index(grid(1000, 700), {0, 0, 1000, 700}, path.string()), expected);
 }
 
 TEST(TilePlan, SharesAreContiguousAndDifferByOneAtMost) {
