@@ -20,7 +20,7 @@ struct Source::Impl {
     Description about;
     std::int64_t work_bytes = 0;   // MemoryBudget::work_bytes
     std::int64_t block_bytes = 0;  // MemoryBudget::block_bytes
-    bool leaves_earth = false;    // some posts have no place
+    bool leaves_earth = false;     // some posts have no place
 
     /// Leaves the posts of a window. Rasters keep theirs, of which some are then outside.
     void crop(const Window& window);
