@@ -165,6 +165,12 @@ void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
                                 const gl::Framebuffer& target, PassContext& frame) {
     const double triangles = frame.tiles.triangles();
     const auto body = [&] { pass.body(frame); };
+    // Of the pixels of a shadow map few are drawn. It is drawn once: where its body clears parts of
+    // it and draws them twice in a row, NVIDIA's driver 580 may reject all pixels of the next draw
+    // whose depth test is another.
+    if (pass.colours.empty())
+        return programs_.draw(program, double{1} * frame.width_px * frame.height_px + triangles,
+                              body);
     // On a large frame, runs the vertices first with one pixel, to detect endless ones as soon as
     // on a small frame.
     if (programs_.needs_watch(program) && pixels(target) > kMaxWatched_px) {

@@ -103,7 +103,7 @@ void InstanceShadows::write(const glm::dvec3& eye_m, FrameBlock& block) const {
 
 void InstanceShadows::clear_due() const {
     constexpr float kFar = 0;
-    // A first draw is watched, in a scissor of its own.
+    // Leaves the scissor as it was.
     const bool was_on = glIsEnabled(GL_SCISSOR_TEST);
     std::array<GLint, 4> before{};
     glGetIntegerv(GL_SCISSOR_BOX, before.data());

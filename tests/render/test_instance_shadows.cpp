@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
@@ -160,6 +161,41 @@ TEST(InstanceShadows, StayOnTheGroundWhenTheEyeMoves) {
         fmt::print("[ shadow ] eye moved by {:.0f} m: shadow by {:.3f} {:.3f} m\n", moved_m,
                    here.x - first.x, here.y - first.y);
         EXPECT_LT(length(here - first), pixel_m);
+    }
+}
+
+/// Triangles and points that a frame draws.
+GLuint primitives_of(Plain& drawn) {
+    GLuint query = 0, count = 0;
+    glGenQueries(1, &query);
+    glBeginQuery(GL_PRIMITIVES_GENERATED, query);
+    drawn.radiance();
+    glEndQuery(GL_PRIMITIVES_GENERATED);
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &count);
+    glDeleteQueries(1, &query);
+    return count;
+}
+
+TEST(InstanceShadows, AreDrawnOnceInAFirstFrame) {
+    Plain drawn(kKeys);
+    drawn.stand(0.508, 0.508, 100 + kEye_m, 0, -90);
+    const GLuint first = primitives_of(drawn), kept = primitives_of(drawn);
+    drawn.frame().unix_s += 86400;  // instances may change from day to day
+    const GLuint again = primitives_of(drawn);
+    fmt::print("[ shadow ] {} primitives at first, {} with maps that are kept\n", first, kept);
+    EXPECT_GT(first, kept);
+    EXPECT_EQ(first, again);
+}
+
+TEST(InstanceShadows, AreThoseOfTheFirstRendererInTheNextOnes) {
+    // Of a driver that loses a draw the picture is black, or is that of an earlier renderer.
+    std::vector<float> expected;
+    for (int renderer = 0; renderer < 4; ++renderer) {
+        Plain drawn(kKeys);
+        drawn.stand(0.508, 0.508, 100 + kEye_m, 0, -90);
+        const image::ImageF light = drawn.radiance();
+        if (renderer == 0) expected = light.values;
+        EXPECT_EQ(light.values, expected) << renderer;
     }
 }
 
