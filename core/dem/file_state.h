@@ -8,8 +8,8 @@ namespace relevo::dem {
 
 /// Names, sizes and times of the last change of all files that rasters are read from, in lines:
 /// it differs once one of them has changed. nullopt if that cannot be seen, such as for files of
-/// the net, heights in memory, virtual rasters among more than 16 rasters or in an index, and an index that is
-/// not alone.
+/// the net, heights in memory, virtual rasters among more than 16 rasters or in an index, and an
+/// index that is not alone.
 /// @param paths  as Source::open() takes them
 std::optional<std::string> state_of_files(std::span<const std::string> paths);
 

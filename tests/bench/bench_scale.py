@@ -65,7 +65,7 @@ def run(command, environment):
 
 class Bench:
     def __init__(self, arguments, folder):
-        self.program = str(arguments.build / "bin/relevo")
+        self.program = str(arguments.build.resolve() / "bin/relevo")
         self.folder = folder
         self.environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache"), "XDG_CONFIG_HOME": str(folder),
                             "XDG_STATE_HOME": str(folder), "MESA_SHADER_CACHE_DIR": str(folder / "shaders")}

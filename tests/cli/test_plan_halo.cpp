@@ -57,7 +57,7 @@ Words planned(Words words) {
 TEST(PlanOfAHalo, MemoryIsNoLessThanATaskTakes) {
     const fs::path where = scratch_dir("memory");
     const std::string dem = wide_hills(where);
-    for (const Words& memory : {Words{"--memory", "16"}, Words{"--memory", "200"}}) {
+    for (const Words& memory : {Words{"--memory", "48"}, Words{"--memory", "200"}}) {
         Words more{"--halo", "2", "--clip", "503000,5294000,506000,5297000"};
         more.insert(more.end(), memory.begin(), memory.end());
         const fs::path folder = where / memory[1];

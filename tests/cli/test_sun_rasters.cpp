@@ -271,7 +271,7 @@ TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
     const Result dry = relevo(
         {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
     EXPECT_TRUE(dry.out.starts_with(
-        "posts               281101, in 2 parts\nmemory              some 388 MiB, 257 of "
+        "posts               281101, in 2 parts\nmemory              some 132 MiB, 1 of "
         "them heights\n"))
         << dry.out;
 }

@@ -466,7 +466,7 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
     });
     const double read_s = seconds([&] {
         test::WindowedProgram info(display_, test::build_dir() / "bin/relevo",
-                                   {"-q", "capture", slow.string(), "--only", "--memory", "64",
+                                   {"-q", "capture", slow.string(), "--only", "--memory", "128",
                                     "--size", "32x32", "-o", (folder_ / "slow.png").string()});
         EXPECT_EQ(info.status(120), 0) << info.output();
     });
