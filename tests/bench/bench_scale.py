@@ -2,18 +2,19 @@
 """First picture, full detail, next frame and peak memory by the size and the layout of a DEM.
 
 Usage: bench_scale.py [BUILD] [--sides 1000,4000,10000,20000,40000] [--layouts strips1,strips64,tiles256,overviews]
-                      [--memory 64,256] [--keep FOLDER] [--no-window]      (needs Xvfb for the window)
+                      [--memory 64,256] [--keep FOLDER] [--no-window] [--plot FILE.svg]      (needs Xvfb for the window)
 
 DEMs are mirrored copies of the bundled one (make_dem), LZW; `overviews` are those of tiles256; `index` is a tile index
 of 1000 x 1000 posts each. A line has, of the first start (no cache) and the second (what the first has kept):
 - window: seconds until the window of 1280 x 800 shows ground, and until nothing changes and nothing is computed
 - capture: seconds of `capture` of the whole DEM, 1280 x 1024, default effects; its next frame; its peak memory
   (ru_maxrss) less the floor: the same command on a DEM of 2 x 2 posts
-With --keep, DEMs stay in FOLDER and are used again.
+With --keep, DEMs stay in FOLDER and are used again. With --plot, the seconds by posts a side are drawn, too.
 """
 
 import argparse
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -107,6 +108,7 @@ class Bench:
             figures += [f"{seconds:.1f}", f"{peak - floor:.0f}"]
         figures.append(f"{self.capture(dem, *options, '--repeat', '5')[2]['frames']['median_ms']:.0f}")
         print(f"| {name} | " + " | ".join(figures) + " |", flush=True)
+        return figures
 
 
 def wait_until_idle(screen, viewer, began):
@@ -124,6 +126,38 @@ def wait_until_idle(screen, viewer, began):
                 return changed - began
 
 
+def plot(path, rows):
+    """Seconds to the window's first picture and of a capture, by posts a side, on logarithmic axes, as SVG.
+
+    rows: {layout: [(posts a side, figures of measure())]}
+    """
+    width, height, left, bottom, top = 720, 420, 50, 50, 20
+    curves = [("picture", 0, "2 0"), ("picture again", 2, "2 3"), ("capture", 4, "8 0")]
+    colours = dict(zip(rows, ("#1b6ca8", "#b5532a", "#3f7d3a", "#7a4b9a")))
+    x = lambda side: left + (width - left - 150) * math.log(side / 1000) / math.log(40)
+    y = lambda seconds: top + (height - bottom - top) * math.log(20 / seconds) / math.log(20 / 0.2)
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="12">',
+             f'<rect width="{width}" height="{height}" fill="#fff"/>']
+    for seconds in (0.2, 0.5, 1, 2, 5, 10, 20):
+        parts.append(f'<path d="M{left} {y(seconds):.1f}H{width - 150}" stroke="#ddd"/>'
+                     f'<text x="{left - 6}" y="{y(seconds) + 4:.1f}" text-anchor="end">{seconds:g} s</text>')
+    for side in (1000, 4000, 10000, 20000, 40000):
+        parts.append(f'<text x="{x(side):.1f}" y="{height - bottom + 18}" text-anchor="middle">{side:,}</text>')
+    parts.append(f'<text x="{(left + width - 150) / 2}" y="{height - 8}" text-anchor="middle">posts a side</text>')
+    for i, (layout, measured) in enumerate(rows.items()):
+        parts.append(f'<text x="{width - 140}" y="{top + 18 * i + 12}" fill="{colours[layout]}">{layout}</text>')
+        for _, index, dashes in curves:
+            points = " ".join(f"{x(side):.1f},{y(max(0.2, float(figures[index]))):.1f}" for side, figures in measured)
+            stroke = 2.5 if index == 4 else 1.5
+            parts.append(f'<polyline points="{points}" fill="none" stroke="{colours[layout]}" stroke-width="{stroke}" '
+                         f'stroke-dasharray="{dashes}"/>')
+    for i, (name, index, dashes) in enumerate(curves):
+        at = top + 18 * (len(rows) + 1 + i) + 12
+        parts.append(f'<path d="M{width - 140} {at - 4}h24" stroke="#444" stroke-width="{2.5 if index == 4 else 1.5}" '
+                     f'stroke-dasharray="{dashes}"/><text x="{width - 110}" y="{at}">{name}</text>')
+    path.write_text("\n".join([*parts, "</svg>", ""]))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", nargs="?", default=ROOT / "build/release", type=pathlib.Path)
@@ -132,6 +166,7 @@ def main():
     parser.add_argument("--memory", default="", help="MiB; without it the default")
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--no-window", action="store_true")
+    parser.add_argument("--plot", type=pathlib.Path, help="SVG; needs the window")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
@@ -146,14 +181,18 @@ def main():
         columns = ["posts a side, layout", *(window if bench.screen else []), *capture, "next frame, ms"]
         print(f"{len(os.sched_getaffinity(0))} processors; MiB above a floor of {floor:.0f}\n")
         print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns))
+        drawn = {layout: [] for layout in arguments.layouts.split(",")}
         for side in map(int, arguments.sides.split(",")):
             for layout in arguments.layouts.split(","):
                 dem = make_dem(arguments.build, dems / f"{side}_{layout}.tif", side, layout)
                 for memory in arguments.memory.split(","):
                     options = ["--memory", memory] if memory else []
-                    bench.measure(" ".join([str(side), layout, *options]), dem, floor, options)
+                    figures = bench.measure(" ".join([str(side), layout, *options]), dem, floor, options)
+                    drawn[layout].append((side, figures))
         if bench.screen:
             bench.screen.close()
+        if arguments.plot:
+            plot(arguments.plot, drawn)
 
 
 if __name__ == "__main__":
