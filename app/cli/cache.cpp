@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/shared.h"
@@ -39,8 +40,8 @@ void print_json(const CacheFolder& folder, const std::vector<dem::CachedDem>& de
         list.push_back({{"dem", printable(dem.file.string())},
                         {"mib", mib_of(dem.entry.bytes)},
                         {"used", time_text(dem.entry.used)},
-                        {"file", dem.entry.path.string()}});
-    const nlohmann::ordered_json all = {{"folder", folder.folder().string()},
+                        {"file", printable(dem.entry.path.string())}});
+    const nlohmann::ordered_json all = {{"folder", printable(folder.folder().string())},
                                         {"mib", mib_of(bytes_of(dems))},
                                         {"most_mib", mib_of(folder.most_bytes())},
                                         {"dems", list}};
@@ -72,7 +73,10 @@ void add_cache(Verb app) {
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
         const CacheFolder folder = dem::user_level_cache();
-        if (arguments->clear) folder.clear();
+        if (arguments->clear)
+            if (const std::string failure = folder.clear(); !failure.empty())
+                failed(fmt::format("{}: cannot be cleared, {}", printable(folder.folder().string()),
+                                   failure));
         const std::vector<dem::CachedDem> dems = dem::cached_dems(folder);
         if (arguments->json)
             print_json(folder, dems);

@@ -137,7 +137,8 @@ std::string FarGround::description() const {
 double FarGround::kept_bytes(const dem::Window& tile) const {
     const dem::Window site = halo_of(posts_.grid(), halo_m_, tile);
     return double(site.columns) * site.rows * (sizeof(float) + light::Sweep::kBytesAPost) +
-           double(sizeof(float)) * static_cast<double>(field_->height_m.size());
+           double(sizeof(float) + light::Sweep::kBytesAPost) *
+               static_cast<double>(field_->height_m.size());
 }
 
 }  // namespace relevo::cli

@@ -141,7 +141,8 @@ std::vector<std::string> PlanArguments::words(const Verb& verb) const {
     words.erase(words.begin());  // plan
     for (const GivenOption& option : verb.given()) {
         static const std::vector<std::string> kOfPlan{"--slurm",        "--parallel",   "--cpus",
-                                                      "--task-minutes", "--most-tasks", "--resume"};
+                                                      "--task-minutes", "--most-tasks", "--resume",
+                                                      "--overwrite"};
         if (std::ranges::find(kOfPlan, option.name) != kOfPlan.end()) continue;
         if (option.is_flag) words.push_back(option.name);
         for (const std::string& value : option.values) {

@@ -18,7 +18,9 @@
 #include "base/log.h"
 #include "base/object_store.h"
 #include "base/parallel_for.h"
+#include "base/sha256.h"
 #include "base/text.h"
+#include "dem/file_state.h"
 #include "dem/files_of.h"
 #include "session/sun_raster.h"
 
@@ -124,9 +126,12 @@ void check_results(const RasterArguments& arguments, const std::filesystem::path
                    const FilesInUse& files) {
     const bool overwrite = arguments.output.overwrite;
     std::vector<std::filesystem::path> results = arguments.plan.scripts();
-    const std::filesystem::path of_plan = (folder / output::kPlanFile).lexically_normal();
+    const auto folder_of = [](const std::filesystem::path& file) {
+        return std::filesystem::absolute(file).lexically_normal().parent_path();
+    };
+    const std::filesystem::path of_plan = folder / output::kPlanFile;
     for (const std::filesystem::path& script : results)
-        if (script.lexically_normal().parent_path() == of_plan.parent_path())
+        if (folder_of(script) == folder_of(of_plan))
             make_folder_of(of_plan, "-o");  // as the plan would
     arguments.plan.check(files, arguments.tiles.shard, overwrite);
     results.push_back(folder);
@@ -162,12 +167,13 @@ std::string crs_of_tiles(const RasterArguments& arguments) {
     return contains(arguments.dem.paths, arguments.tiles.tiles) ? arguments.dem.options().crs : "";
 }
 
-/// Of all files that the DEM is read from, also those that a name stands for.
-std::string stamp_of_dem(const std::vector<std::string>& paths) {
+/// Of all files that the DEM is read from, also those that a name stands for, and of how they are
+/// read.
+std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
     std::vector<std::string> files = paths;
     for (const std::filesystem::path& file : dem::files_of(paths))
         files.push_back(file.string());
-    return output::stamp_of(files);
+    return sha256_of_text(output::stamp_of(files) + dem::text_of(options));
 }
 
 }  // namespace
@@ -185,7 +191,7 @@ RasterGround RasterArguments::load() const {
         if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
         const auto known = plan_of(output.path, output.overwrite);
-        stamp = stamp_of_dem(dem.paths);
+        stamp = stamp_of_dem(dem.paths, options);
         is_planned = known && known->stamp == stamp;
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
@@ -429,10 +435,15 @@ RasterEstimate RasterRun::estimate() const {
     }
     const int bytes_a_value = wanted_.type == output::RasterType::Float ? 4 : 1;
     MemoryBudget memory_of_posts = ground_.options.memory;
-    if (far_) memory_of_posts.posts /= FarGround::kShareOfOthers;
+    double far_bytes = 0;
+    if (far_) {
+        memory_of_posts.posts /= FarGround::kShareOfOthers;
+        for (const output::PlannedTile& tile : todo_)
+            far_bytes = std::max(far_bytes, far_->kept_bytes(tile.window));
+    }
     const RasterMemory memory =
         raster_memory(ground_.posts, most, largest, wanted_.bytes_a_post, bytes_a_value,
-                      wanted_.bands.size(), memory_of_posts, far_ ? far_->kept_bytes(largest) : 0);
+                      wanted_.bands.size(), memory_of_posts, far_bytes);
     found.posts = posts_;
     found.memory_mib = memory.all_mib;
     found.heights_mib = memory.heights_mib;

@@ -154,7 +154,7 @@ TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileArgumen
         wanted = {wanted.begin() + static_cast<std::ptrdiff_t>(first),
                   wanted.begin() + static_cast<std::ptrdiff_t>(end)};
     }
-    take(wanted, arguments.resume || is_plan);
+    take(wanted, arguments.resume || is_plan, is_plan);
 }
 
 void TileFolder::check_plan(const std::optional<output::TilePlan>& found) const {
@@ -165,8 +165,9 @@ void TileFolder::check_plan(const std::optional<output::TilePlan>& found) const 
                                         : "another command, " + found->command));
 }
 
-/// @param keep  tiles that are whole
-void TileFolder::take(const std::vector<output::PlannedTile>& wanted, bool keep) {
+/// @param keep     tiles that are whole
+/// @param is_plan  its tasks replace nothing: what is to be replaced is removed with the plan
+void TileFolder::take(const std::vector<output::PlannedTile>& wanted, bool keep, bool is_plan) {
     using State = output::TileOnDisk::State;
     const std::vector<output::TileOnDisk> found = output::tiles_on_disk(folder_, plan_, wanted);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -181,7 +182,10 @@ void TileFolder::take(const std::vector<output::PlannedTile>& wanted, bool keep)
             replaced_.push_back(wanted[i].name);
             continue;
         }
-        if (overwrite_) continue;
+        if (overwrite_) {
+            if (is_plan) outdated_.push_back(wanted[i].name);
+            continue;
+        }
         bad_input(keep ? fmt::format("-o: {}: {}; pass --overwrite to replace it",
                                      name_in(folder_, wanted[i].name), why)
                        : fmt::format("-o: {}: exists; pass --overwrite to replace it, or --resume "
@@ -196,7 +200,12 @@ void TileFolder::write_plan(const dem::Posts& posts, const FarGround* far) const
     if (error)
         bad_input(fmt::format("-o: {}: the folder cannot be made, {}", printable(folder_.string()),
                               error.message()));
-    if (has_plan_) return;
+    for (const std::string& name : outdated_)
+        fs::remove(folder_ / name, error);
+    const bool has_heights = (posts.in_memory() || fs::exists(folder_ / output::kPostsFile)) &&
+                             (!far || fs::exists(folder_ / output::kMeansFile)) &&
+                             output::foreign_plan_files(folder_).empty();
+    if (has_plan_ && has_heights) return;
     if (!posts.in_memory()) output::write_posts_facts(folder_, posts);
     if (far) far->write(folder_);
     output::write_plan(folder_, plan_);

@@ -84,13 +84,14 @@ class TileFolder {
 
   private:
     void check_plan(const std::optional<output::TilePlan>& found) const;
-    void take(const std::vector<output::PlannedTile>& wanted, bool keep);
+    void take(const std::vector<output::PlannedTile>& wanted, bool keep, bool is_plan);
 
     std::filesystem::path folder_;
     output::TilePlan plan_;
     bool overwrite_, has_plan_ = false;
     std::vector<output::PlannedTile> todo_;
     std::vector<std::string> replaced_;  ///< names of tiles that are damaged
+    std::vector<std::string> outdated_;  ///< names of tiles that a plan replaces
     std::size_t there_ = 0;
 };
 

@@ -201,10 +201,14 @@ std::vector<CacheFolder::Entry> CacheFolder::entries() const {
     return all;
 }
 
-void CacheFolder::clear() const {
-    std::error_code ignored;
-    for (const Entry& entry : entries())
-        std::filesystem::remove(entry.path, ignored);
+std::string CacheFolder::clear() const {
+    std::string failure;
+    for (const Entry& entry : entries()) {
+        std::error_code error;
+        std::filesystem::remove(entry.path, error);
+        if (error) failure = error.message();
+    }
+    return failure;
 }
 
 std::optional<CacheReader> CacheFolder::peek(const std::string& name) const {

@@ -82,8 +82,8 @@ class CacheFolder {
 
     /// Files, the one used last first. None if the folder is absent.
     std::vector<Entry> entries() const;
-    /// Removes all files.
-    void clear() const;
+    /// Removes all files. @returns why some are left; empty if none is
+    std::string clear() const;
 
     /// Opens a file, which then is the one used last; nullopt if it is absent.
     std::optional<CacheReader> open(const std::string& name) const;

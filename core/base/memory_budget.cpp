@@ -18,7 +18,8 @@ constexpr std::int64_t kMostMeans = std::int64_t{1} << 25;
 /// A DEM of more posts is drawn from means and finer heights sooner than from all of them.
 constexpr std::int64_t kMostDrawn = std::int64_t{1} << 26;
 
-/// Views of 1280 x 1024 pixels need 40 to 150 MiB, whatever the DEM; no view needs more than 576.
+/// Views of 1280 x 1024 pixels need 40 to 150 MiB, whatever the DEM; pools of tiles take 576 at
+/// most.
 std::int64_t view_bytes_of(std::int64_t bytes) {
     constexpr std::int64_t kOfAView = 160 * MemoryBudget::kMiB, kMost = 576 * MemoryBudget::kMiB;
     return std::clamp(bytes / 4, std::min(bytes * 11 / 16, kOfAView), kMost);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include "base/error.h"
 #include "base/text.h"
 #include "dem/files_of.h"
 #include "dem/folder.h"
@@ -66,16 +67,27 @@ std::optional<std::string> state_of_many(const std::vector<std::string>& rasters
 std::optional<std::string> state_of_index(const std::string& path) {
     std::string text;
     if (!add_line(path, text)) return std::nullopt;
-    for (const IndexedTile& tile : read_tile_index(path).tiles) {
-        if (is_unseen(tile.location)) return std::nullopt;
-        if (!add_with_companions(tile.location, text)) text += tile.location + "\tmissing\n";
+    for (const std::string& location : tile_locations(path)) {
+        if (is_unseen(location)) return std::nullopt;
+        if (!add_with_companions(location, text)) text += location + "\tmissing\n";
     }
     return text;
 }
 
 }  // namespace
 
-std::optional<std::string> state_of_files(std::span<const std::string> paths) {
+std::string text_of(const LoadOptions& options) {
+    const auto bounds = options.bounds.value_or(Bounds{});
+    return fmt::format(
+        "crs {}\nband {}\nunit {}\nnodata {:.17g} {} {}\nencoding {}\ncrop {}\nbounds {} {:.17g} "
+        "{:.17g} {:.17g} {:.17g}\n",
+        options.crs, options.band, options.unit, options.nodata.value_or(0),
+        options.nodata.has_value(), options.no_nodata, static_cast<int>(options.encoding),
+        options.crop, options.bounds.has_value(), bounds.west_deg, bounds.south_deg,
+        bounds.east_deg, bounds.north_deg);
+}
+
+std::optional<std::string> state_of_files(std::span<const std::string> paths) try {
     if (paths.size() == 1 && is_named_index(paths.front())) return state_of_index(paths.front());
     std::vector<std::string> rasters;
     for (const std::string& path : paths) {
@@ -87,9 +99,14 @@ std::optional<std::string> state_of_files(std::span<const std::string> paths) {
     const std::optional<std::vector<std::filesystem::path>> files = local_files_of(rasters);
     if (!files || files->empty()) return std::nullopt;
     std::string text;
+    // Several rasters may be in one file.
+    for (const std::string& raster : rasters)
+        text += "raster " + raster + "\n";
     for (const std::filesystem::path& file : *files)
         if (!add_line(file, text)) return std::nullopt;
     return text;
+} catch (const Error&) {
+    return std::nullopt;  // what reads the DEM says why
 }
 
 }  // namespace relevo::dem

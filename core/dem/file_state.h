@@ -4,7 +4,12 @@
 #include <span>
 #include <string>
 
+#include "dem/source.h"
+
 namespace relevo::dem {
+
+/// The options that change heights or where they are, in lines.
+std::string text_of(const LoadOptions& options);
 
 /// Names, sizes and times of the last change of all files that rasters are read from, in lines:
 /// it differs once one of them has changed. nullopt if that cannot be seen, such as for files of

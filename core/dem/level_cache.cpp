@@ -20,17 +20,6 @@ constexpr int kFormat = 1;  ///< of the files; another one is not read
 constexpr std::int64_t kMostBytes = std::int64_t{4} << 30;
 constexpr std::size_t kLongestKey = std::size_t{1} << 26;
 
-std::string text_of(const LoadOptions& options) {
-    const auto bounds = options.bounds.value_or(Bounds{});
-    return fmt::format(
-        "crs {}\nband {}\nunit {}\nnodata {:.17g} {} {}\nencoding {}\ncrop {}\nbounds {} {:.17g} "
-        "{:.17g} {:.17g} {:.17g}\n",
-        options.crs, options.band, options.unit, options.nodata.value_or(0),
-        options.nodata.has_value(), options.no_nodata, static_cast<int>(options.encoding),
-        options.crop, options.bounds.has_value(), bounds.west_deg, bounds.south_deg,
-        bounds.east_deg, bounds.north_deg);
-}
-
 /// Numbers in front of the arrays, which say how long those are.
 struct Sizes {
     std::int32_t width = 0, height = 0, reduction = 0, sampled = 0, tiled_levels = 0, lakes = 0,
@@ -182,9 +171,10 @@ LevelCache::LevelCache(std::span<const std::string> paths, const LoadOptions& op
 
 std::optional<std::string> LevelCache::key() const {
     const std::optional<std::string> state = state_of_files(paths_);
-    if (!state) return std::nullopt;
-    return fmt::format("levels {} of relevo {}, GDAL {}\nholes {}\n{}{}", kFormat, RELEVO_VERSION,
-                       gdal_version(), static_cast<int>(holes_), text_of(options_), *state);
+    if (!state || state->size() > kLongestKey / 2) return std::nullopt;
+    return fmt::format("levels {} of relevo {}, GDAL {}\nholes {}\nsample {}\n{}{}", kFormat,
+                       RELEVO_VERSION, gdal_version(), static_cast<int>(holes_),
+                       options_.memory.work_bytes, text_of(options_), *state);
 }
 
 std::string LevelCache::name_of(const std::string& key, int reduction) {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -21,26 +20,28 @@ namespace {
 
 /// Tiles that are there but cannot be opened, before the index is given up.
 constexpr std::size_t kMostBroken = 100;
-constexpr std::chrono::seconds kPatience{15};  ///< until one of the tiles is open
+constexpr std::chrono::seconds kPatience{15};  ///< until one of a store's tiles is open
 
 bool same_file(const std::string& a, const std::string& b) {
     std::error_code unknown;
     return std::filesystem::equivalent(a, b, unknown) && !unknown;
 }
 
-/// The tiles that are asked for until one is there: all, but of a store, where each is a request,
-/// some first ones and some of all over the index.
+/// The tiles that are asked for until one is there: all of this machine; of a store, where each is
+/// a request, then some first ones and some of all over the index.
 std::vector<std::size_t> candidates(const TileIndex& index) {
     constexpr std::size_t kFirst = 50, kAllOver = 50;
-    const std::size_t count = index.tiles.size();
-    const bool is_short = count <= kFirst + kAllOver;
-    const auto on_net = [](const IndexedTile& tile) { return is_remote(tile.location); };
-    std::vector<std::size_t> chosen(count);
-    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-    if (is_short || !std::ranges::any_of(index.tiles, on_net)) return chosen;
-    chosen.resize(kFirst);
+    std::vector<std::size_t> chosen, remote;
+    for (std::size_t i = 0; i < index.tiles.size(); ++i)
+        (is_remote(index.tiles[i].location) ? remote : chosen).push_back(i);
+    const std::size_t count = remote.size();
+    if (count <= kFirst + kAllOver) {
+        chosen.insert(chosen.end(), remote.begin(), remote.end());
+        return chosen;
+    }
+    chosen.insert(chosen.end(), remote.begin(), remote.begin() + kFirst);
     for (std::size_t i = 1; i <= kAllOver; ++i)
-        chosen.push_back(kFirst + (count - kFirst) * i / kAllOver - 1);
+        chosen.push_back(remote[kFirst + (count - kFirst) * i / kAllOver - 1]);
     return chosen;
 }
 
@@ -69,12 +70,15 @@ std::string store_of(const std::string& location) {
 std::size_t first_open(const TileIndex& index, const LoadOptions& options,
                        std::optional<Piece>& piece, Dataset& opened) {
     using Clock = std::chrono::steady_clock;
-    const Clock::time_point began = Clock::now();
+    Clock::time_point began = Clock::now();
     std::size_t broken = 0, missing = 0;
     std::string first_reason;
     for (const std::size_t i : candidates(index)) {
-        if (Clock::now() - began > kPatience) break;
         const IndexedTile& tile = index.tiles[i];
+        if (!is_remote(tile.location))
+            began = Clock::now();
+        else if (Clock::now() - began > kPatience)
+            break;
         if (!is_there(tile.location)) {
             ++missing;
             continue;

@@ -46,15 +46,17 @@ int normal_slots_in(const MemoryBudget& memory, std::int64_t layers) {
         memory.view_bytes * (kHeightPart - 1) / kHeightPart / (layers * kNormalPageBytes)));
 }
 
-/// A view would be coarser than with more memory.
-/// @param view_bytes  that it needs
-/// @throws Error (BadInput)
-[[noreturn]] void refuse_coarser(const MemoryBudget& memory, std::int64_t view_bytes) {
+/// A view would be coarser than with more memory. Views that the default has no room for are
+/// coarser instead.
+/// @param view_bytes  that it needs at least
+/// @throws Error (BadInput) if the memory is less than the default
+void refuse_coarser(const MemoryBudget& memory, std::int64_t view_bytes) {
     std::int64_t mib = memory.mib();
-    while (MemoryBudget::of_mib(mib).view_bytes < view_bytes)
+    if (mib >= MemoryBudget::kDefault_mib) return;
+    while (mib < MemoryBudget::kDefault_mib && MemoryBudget::of_mib(mib).view_bytes < view_bytes)
         ++mib;
     bad_input(
-        fmt::format("--memory {}: this view needs --memory {} for its tiles, or a "
+        fmt::format("--memory {}: this view needs --memory {} or more for its tiles, or a "
                     "smaller --size",
                     memory.mib(), mib));
 }

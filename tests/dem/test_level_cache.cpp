@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <cpl_vsi.h>
 #include <gtest/gtest.h>
 
 #include "dem/file_state.h"
@@ -159,6 +160,23 @@ TEST(LevelCache, WhatChangesHeightsIsAnotherEntry) {
     fs::rename(folder() / "spare", entries[1].entry.path);
     EXPECT_FALSE(finds(one, path));
     EXPECT_FALSE(finds(options_of(), path));
+}
+
+/// Two DEMs in one archive.
+TEST(LevelCache, ADemOfAnArchiveIsNotAnother) {
+    const std::string path = hills(), archive = "/vsizip/" + (folder() / "two.zip").string();
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    VSILFILE* const zip = VSIFOpenL(archive.c_str(), "wb");  // open until all members are in
+    for (const char* name : {"/x.tif", "/y.tif"}) {
+        VSILFILE* const member = VSIFOpenL((archive + name).c_str(), "wb");
+        ASSERT_EQ(VSIFWriteL(bytes.data(), 1, bytes.size(), member), bytes.size());
+        VSIFCloseL(member);
+    }
+    VSIFCloseL(zip);
+    const std::vector<std::string> first{archive + "/x.tif"}, second{archive + "/y.tif"};
+    ASSERT_TRUE(state_of_files(first));
+    EXPECT_NE(state_of_files(first), state_of_files(second));
 }
 
 TEST(LevelCache, AChangedDemIsReadAgain) {
