@@ -152,9 +152,9 @@ TEST_F(Pipes, ASmallStackIsEnough) {
 }
 
 TEST_F(Pipes, ADriverThatLacksMemoryEndsWithAMessage) {
-    const Result run = limited("-v 600000", capture({}));
-    EXPECT_EQ(run.status, 1) << run.err;
-    // Where the memory ends first, is by chance.
+    const Result run = limited("-v 550000", capture({}));
+    // Where the memory ends first, is by chance: as soon as the driver is loaded, or later.
+    EXPECT_THAT(run.status, testing::AnyOf(1, 4)) << run.err;
     EXPECT_THAT(run.err, HasSubstr("relevo: error: "));
     EXPECT_FALSE(fs::exists(out("out.png")));
 }
