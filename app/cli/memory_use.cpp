@@ -1,7 +1,6 @@
 #include "cli/memory_use.h"
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <vector>
@@ -12,29 +11,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/temporary_folder.h"
+
 namespace relevo::cli {
 namespace {
-
-/// A folder in that for temporary files, which goes with this.
-class TemporaryFolder {
-  public:
-    TemporaryFolder()
-        : path_((std::filesystem::temp_directory_path() / "relevo-XXXXXX").string()),
-          is_there_(mkdtemp(path_.data()) != nullptr) {}
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        if (is_there_) std::filesystem::remove_all(path_, ignored);
-    }
-
-    bool is_there() const { return is_there_; }
-    std::string file(const char* name) const { return path_ + "/" + name; }
-
-  private:
-    std::string path_;
-    bool is_there_;
-};
 
 /// Runs this program without output. @returns whether it succeeded
 bool run_self(std::vector<std::string> arguments) {
@@ -68,13 +48,14 @@ double peak_memory_mib() {
 }
 
 std::optional<double> memory_floor_mib(const std::string& device) {
-    const TemporaryFolder folder;
-    const std::string dem = folder.file("dem.asc"), timings = folder.file("timings.json");
+    const TemporaryFolder folder("relevo");
+    if (folder.path().empty()) return std::nullopt;
+    const auto file_in = [&](const char* name) { return (folder.path() / name).string(); };
+    const std::string dem = file_in("dem.asc"), timings = file_in("timings.json");
     std::ofstream(dem)
         << "ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 5200000\ncellsize 30\n0 1\n2 3\n";
-    if (!folder.is_there() ||
-        !run_self({"relevo", "-q", "capture", dem, "--crs", "EPSG:32632", "--device", device,
-                   "--allow-blank", "--timings", timings, "-o", folder.file("picture.png")}))
+    if (!run_self({"relevo", "-q", "capture", dem, "--crs", "EPSG:32632", "--device", device,
+                   "--allow-blank", "--timings", timings, "-o", file_in("picture.png")}))
         return std::nullopt;
     std::ifstream file(timings);
     return nlohmann::json::parse(file).at("memory_mib").at("peak").get<double>();

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/format.h"
@@ -30,13 +31,10 @@ using nlohmann::ordered_json;
 constexpr std::size_t kMostRecent = 12;
 constexpr std::array<const char*, 3> kCoordinates = {"utm", "mgrs", "degrees"};
 
-/// A folder of the XDG base directory specification, which ignores relative paths.
-fs::path folder_of(const char* variable, const char* otherwise) {
-    const char* const folder = std::getenv(variable);
-    if (folder && fs::path(folder).is_absolute()) return fs::path(folder) / "relevo";
-    const char* const home = std::getenv("HOME");
-    if (home && fs::path(home).is_absolute()) return fs::path(home) / otherwise / "relevo";
-    return {};
+/// Empty if the user has no home.
+fs::path folder_of(const char* variable, const char* below_home) {
+    const fs::path folder = user_folder(variable, below_home);
+    return folder.empty() ? folder : folder / "relevo";
 }
 
 /// Content of a file; null without one, or if it is not JSON.

@@ -5,8 +5,6 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 
 #include <fcntl.h>
@@ -16,8 +14,9 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/parallel_for.h"
-#include "base/partial_names.h"
+#include "base/sha256.h"
 
 namespace relevo {
 namespace {
@@ -30,38 +29,28 @@ std::size_t pieces_of(std::size_t bytes) {
     return (bytes + kPiece - 1) / kPiece;
 }
 
-std::span<const std::byte> piece_of(std::span<const std::byte> bytes, std::size_t index) {
+template <typename Byte>
+std::span<Byte> piece_of(std::span<Byte> bytes, std::size_t index) {
     return bytes.subspan(index * kPiece, std::min(kPiece, bytes.size() - index * kPiece));
 }
 
-/// FNV-1a of words of 64 bits in four lanes: finds damage, not deceit.
-std::uint64_t checksum(std::span<const std::byte> bytes) {
-    constexpr std::uint64_t kPrime = 0x100000001b3, kBasis = 0xcbf29ce484222325;
-    std::array<std::uint64_t, 4> lanes{kBasis, kBasis + 1, kBasis + 2, kBasis + 3};
-    std::size_t at = 0;
-    for (; at + sizeof lanes <= bytes.size(); at += sizeof lanes) {
-        std::array<std::uint64_t, 4> words{};
-        std::memcpy(words.data(), &bytes[at], sizeof words);
-        for (std::size_t i = 0; i < lanes.size(); ++i) {
-            lanes[i] = (lanes[i] ^ words[i]) * kPrime;
-            lanes[i] ^= lanes[i] >> 32;
-        }
-    }
-    std::uint64_t sum = bytes.size();
-    for (; at < bytes.size(); ++at)
-        sum = (sum ^ std::to_integer<std::uint64_t>(bytes[at])) * kPrime;
-    for (const std::uint64_t lane : lanes)
-        sum = (sum ^ lane) * kPrime;
+using Sum = std::array<char, 64>;  // SHA-256, as hexadecimal digits
+
+Sum sum_of(std::span<const std::byte> piece) {
+    Sum sum{};
+    const std::string text =
+        sha256_of_text({reinterpret_cast<const char*>(piece.data()), piece.size()});
+    std::ranges::copy(text, sum.begin());
     return sum;
 }
 
-std::vector<std::uint64_t> checksums(std::span<const std::byte> bytes) {
-    std::vector<std::uint64_t> sums(pieces_of(bytes.size()));
-    parallel_for(0, static_cast<int>(sums.size()), 1, [&](int first, int last) {
+/// Calls body(index) for each piece of so many bytes, on several threads.
+template <typename Body>
+void for_pieces(std::size_t bytes, const Body& body) {
+    parallel_for(0, static_cast<int>(pieces_of(bytes)), 1, [&](int first, int last) {
         for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
-            sums[i] = checksum(piece_of(bytes, i));
+            body(i);
     });
-    return sums;
 }
 
 bool read_at(int descriptor, std::int64_t at, std::span<std::byte> bytes) {
@@ -86,19 +75,16 @@ bool CacheReader::read(std::span<std::byte> bytes) {
     if (!read_at(descriptor_, at_, std::as_writable_bytes(std::span(&length, 1))) ||
         length != bytes.size())
         return false;
-    std::vector<std::uint64_t> sums(pieces_of(bytes.size()));
+    std::vector<Sum> sums(pieces_of(bytes.size()));
     const std::int64_t table = at_ + static_cast<std::int64_t>(sizeof length);
     if (!read_at(descriptor_, table, std::as_writable_bytes(std::span(sums)))) return false;
-    const std::int64_t begin = table + static_cast<std::int64_t>(sums.size() * sizeof sums[0]);
+    const std::int64_t begin = table + static_cast<std::int64_t>(sums.size() * sizeof(Sum));
     std::atomic<bool> is_whole = true;
-    parallel_for(0, static_cast<int>(sums.size()), 1, [&](int first, int last) {
-        for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
-            const std::span piece =
-                bytes.subspan(i * kPiece, std::min(kPiece, bytes.size() - i * kPiece));
-            if (!read_at(descriptor_, begin + static_cast<std::int64_t>(i * kPiece), piece) ||
-                checksum(piece) != sums[i])
-                is_whole = false;
-        }
+    for_pieces(bytes.size(), [&](std::size_t i) {
+        const std::span piece = piece_of(bytes, i);
+        if (!read_at(descriptor_, begin + static_cast<std::int64_t>(i * kPiece), piece) ||
+            sum_of(piece) != sums[i])
+            is_whole = false;
     });
     at_ = begin + static_cast<std::int64_t>(bytes.size());
     return is_whole;
@@ -113,77 +99,13 @@ std::optional<std::string> CacheReader::read_text(std::size_t most) {
     return text;
 }
 
-void CacheWriter::put(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-        if (count >= 0)
-            bytes = bytes.subspan(static_cast<std::size_t>(count));
-        else if (errno != EINTR)
-            failed(std::strerror(errno));
-    }
-}
-
 void CacheWriter::write(std::span<const std::byte> bytes) {
     const std::uint64_t length = bytes.size();
-    put(std::as_bytes(std::span(&length, 1)));
-    const std::vector<std::uint64_t> sums = checksums(bytes);
-    put(std::as_bytes(std::span(sums)));
-    put(bytes);
-}
-
-namespace {
-
-/// A file on its way into a folder: without a name where the file system offers that, so that it
-/// vanishes however the process ends.
-class FileToBe {
-  public:
-    explicit FileToBe(const std::filesystem::path& folder)
-        : folder_(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)), name_(folder_) {
-        if (folder_ < 0) return;
-        file_ = openat(folder_, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-        has_name_ = file_ < 0;
-        if (has_name_)
-            file_ = openat(folder_, name_.name(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0600);
-    }
-    FileToBe(const FileToBe&) = delete;
-    FileToBe& operator=(const FileToBe&) = delete;
-    ~FileToBe() {
-        if (file_ >= 0) close(file_);
-        if (folder_ >= 0) {
-            unlinkat(folder_, name_.name(), 0);
-            close(folder_);
-        }
-        name_.forget();
-    }
-
-    int descriptor() const { return file_; }
-    bool give(const std::string& name) {
-        const std::string from = fmt::format("/proc/self/fd/{}", file_);
-        if (!has_name_ &&
-            linkat(AT_FDCWD, from.c_str(), folder_, name_.name(), AT_SYMLINK_FOLLOW) != 0)
-            return false;
-        return renameat(folder_, name_.name(), folder_, name.c_str()) == 0;
-    }
-
-  private:
-    int folder_;
-    PartialName name_;
-    int file_ = -1;
-    bool has_name_ = false;
-};
-
-}  // namespace
-
-std::filesystem::path CacheFolder::user_folder(std::string_view name) {
-    const auto of = [](const char* variable) {
-        const char* const value = std::getenv(variable);
-        return std::filesystem::path(value ? value : "");
-    };
-    // The specification has relative ones ignored.
-    if (const auto cache = of("XDG_CACHE_HOME"); cache.is_absolute())
-        return cache / "relevo" / name;
-    if (const auto home = of("HOME"); home.is_absolute()) return home / ".cache" / "relevo" / name;
-    return {};
+    std::vector<Sum> sums(pieces_of(bytes.size()));
+    for_pieces(bytes.size(), [&](std::size_t i) { sums[i] = sum_of(piece_of(bytes, i)); });
+    file_.write(std::as_bytes(std::span(&length, 1)));
+    file_.write(std::as_bytes(std::span(sums)));
+    file_.write(bytes);
 }
 
 std::vector<CacheFolder::Entry> CacheFolder::entries() const {
@@ -248,15 +170,14 @@ std::string CacheFolder::write(const std::string& name, std::int64_t bytes,
         static_cast<std::int64_t>(disk.f_bavail) * static_cast<std::int64_t>(disk.f_frsize) <
             bytes + kLeastFree)
         return "the disk would have less than 1 GiB left";
-    FileToBe file(folder_);
-    if (file.descriptor() < 0) return std::strerror(errno);
     try {
-        CacheWriter writer(file.descriptor());
-        if (!fill(writer)) return "the DEM has changed meanwhile";
+        OutputFile file(folder_ / name, /*overwrite=*/true, "cache");
+        CacheWriter writer(file);
+        if (!fill(writer)) return "what it is made of has changed meanwhile";
+        file.finish();
     } catch (const Error& failure) {
         return failure.what();
     }
-    if (!file.give(name)) return std::strerror(errno);
     remove_oldest(name);
     return {};
 }

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/output_file.h"
+
 /// Files that can be made again from others, in a folder that several processes use at once.
 namespace relevo {
 
@@ -43,7 +45,7 @@ class CacheReader {
 /// A file of a CacheFolder that is being written.
 class CacheWriter {
   public:
-    explicit CacheWriter(int descriptor) : descriptor_(descriptor) {}
+    explicit CacheWriter(OutputFile& file) : file_(file) {}
 
     /// Adds a range. @throws Error (Failed) if the disk refuses
     void write(std::span<const std::byte> bytes);
@@ -55,9 +57,7 @@ class CacheWriter {
     }
 
   private:
-    void put(std::span<const std::byte> bytes);
-
-    int descriptor_;
+    OutputFile& file_;
 };
 
 /// A folder of files, each whole or absent. Those that were used longest ago are removed if all
@@ -73,9 +73,6 @@ class CacheFolder {
     /// @param most_bytes  of all files together
     CacheFolder(std::filesystem::path folder, std::int64_t most_bytes)
         : folder_(std::move(folder)), most_bytes_(most_bytes) {}
-
-    /// `$XDG_CACHE_HOME/relevo/NAME`, or `~/.cache/relevo/NAME`; empty if neither is known.
-    static std::filesystem::path user_folder(std::string_view name);
 
     const std::filesystem::path& folder() const { return folder_; }
     std::int64_t most_bytes() const { return most_bytes_; }

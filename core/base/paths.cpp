@@ -66,4 +66,15 @@ std::filesystem::path module_dir() {
     return prefix() / "lib" / "relevo";
 }
 
+std::filesystem::path user_folder(const char* variable, const char* below_home) {
+    const auto absolute = [](const char* name) {
+        const char* const value = std::getenv(name);
+        const std::filesystem::path path = value ? value : "";
+        return path.is_absolute() ? path : std::filesystem::path();
+    };
+    if (const auto given = absolute(variable); !given.empty()) return given;
+    const std::filesystem::path home = absolute("HOME");
+    return home.empty() ? home : home / below_home;
+}
+
 }  // namespace relevo

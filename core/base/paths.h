@@ -14,6 +14,11 @@ std::filesystem::path share_dir();
 /// Where the program's loadable modules are: `../lib/relevo` as seen from there.
 std::filesystem::path module_dir();
 
+/// A folder of the user by the XDG base directory specification, which ignores relative paths: the
+/// value of `variable` ("XDG_CACHE_HOME"), else `below_home` (".cache") in $HOME; empty without
+/// either.
+std::filesystem::path user_folder(const char* variable, const char* below_home);
+
 /// The file `name` of a folder; nothing where that is outside it, by `..`, by an absolute name or
 /// by a symbolic link. Whether the file is there does not matter.
 std::optional<std::filesystem::path> file_inside(const std::filesystem::path& folder,

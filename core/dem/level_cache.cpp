@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "base/paths.h"
 #include "base/sha256.h"
 #include "dem/file_state.h"
 #include "dem/versions.h"
@@ -145,7 +146,8 @@ std::optional<Levels> read_levels(CacheReader& file, int width, int height, int 
 }  // namespace
 
 CacheFolder user_level_cache() {
-    return {CacheFolder::user_folder("levels"), kMostBytes};
+    const std::filesystem::path caches = user_folder("XDG_CACHE_HOME", ".cache");
+    return {caches.empty() ? caches : caches / "relevo/levels", kMostBytes};
 }
 
 std::vector<CachedDem> cached_dems(const CacheFolder& folder) {

@@ -52,7 +52,7 @@ class Posts {
                       const PostsFacts* facts = nullptr);
     /// Of posts that are not unrolled().
     PostsFacts facts() const;
-    /// A hash of all heights and their places (ContentSum). Of posts that are not unrolled().
+    /// A hash of all heights and their places (content_of()). Of posts that are not unrolled().
     std::uint64_t content() const;
 
     /// The posts of a grid that goes round the Earth, starting at another column and repeated as

@@ -81,7 +81,7 @@ class Rasters {
     /// would be wrong. One that is more is an error.
     void allow_voids(std::int64_t tiles) const;
 
-    /// What is known of the tiles of indexes, as far as they have been read.
+    /// As Source::tiles().
     TileReport report() const;
 
   private:

@@ -99,7 +99,8 @@ class Source {
     };
     Blank blank(const Window& window) const;
 
-    /// What is known of the tiles of indexes, as far as they have been read.
+    /// Which tiles of indexes are missing, broken or unlike the others. Only tiles of which heights
+    /// have been read are in it.
     TileReport tiles() const;
     /// How many of them have broken while they were read.
     std::int64_t broken_while_read() const;

@@ -14,6 +14,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/remote.h"
+#include "dem/tile_reach.h"
 
 namespace relevo::dem {
 namespace {
@@ -105,8 +106,13 @@ bool is_apart(const Extent& a, const Extent& b) {
 
 /// Refuses an index whose numbers are not in the CRS that it says, or of other files.
 void refuse_elsewhere(const TileIndex& index, const IndexedTile& tile, const Piece& piece) {
-    const Extent real =
+    Extent real =
         extent_of(TilePosts{piece.grid.columns(), piece.grid.rows(), piece.grid.affine()});
+    // Longitudes may be of another turn.
+    const double shift = whole_turns(
+        piece.grid.crs(), (tile.extent.west + tile.extent.east - real.west - real.east) / 2);
+    real.west += shift;
+    real.east += shift;
     if (!is_apart(tile.extent, real)) return;
     const auto text = [](const Extent& e) {
         return fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}", e.west, e.south, e.east, e.north);

@@ -20,10 +20,8 @@ constexpr double kSamePlace = 0.02;
 /// What to add to a raster's longitudes so that they are on the turn of a grid's: tiles on both
 /// sides of the antimeridian, or one that counts past 180 degrees. 0 for projected ones.
 double turn_shift(double middle, const Grid& grid) {
-    if (!grid.crs().is_geographic()) return 0;
-    const double turn = 2 * kPi / grid.crs().unit_si();
     const double of_grid = grid.affine()((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0).x;
-    return turn * std::round((of_grid - middle) / turn);
+    return whole_turns(grid.crs(), of_grid - middle);
 }
 
 /// Points around a rectangle.
@@ -112,6 +110,12 @@ Window reach_of(const IndexedTile& tile, const TileIndex& index, const Grid& gri
 }
 
 }  // namespace
+
+double whole_turns(const geo::Crs& crs, double offset) {
+    if (!crs.is_geographic()) return 0;
+    const double turn = 2 * kPi / crs.unit_si();
+    return turn * std::round(offset / turn);
+}
 
 std::optional<Window> place_on_grid(const Grid& own, const Grid& grid) {
     if (own.crs().text() != grid.crs().text()) return std::nullopt;

@@ -14,6 +14,10 @@ namespace relevo::dem {
 /// More columns or rows than a raster of the whole Earth at 1 m has is a mistake.
 inline constexpr double kMaxPosts = 5e7;
 
+/// The whole turns of longitude that are nearest to an offset, in units of the CRS; 0 for projected
+/// ones.
+double whole_turns(const geo::Crs& crs, double offset);
+
 /// The place of a raster whose posts are on a grid, within a fiftieth of a post; nothing where they
 /// are not.
 std::optional<Window> place_on_grid(const Grid& own, const Grid& grid);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/paths.h"
+#include "base/temporary_folder.h"
 #include "effect/module_trial.h"
 #include "geo/gdal_library.h"
 
@@ -33,28 +34,19 @@ const void* log_service(const relevo_host*, const char* name, uint32_t version) 
 class PrivateCopy {
   public:
     explicit PrivateCopy(const std::filesystem::path& library) {
-        std::error_code error;
-        std::string folder =
-            (std::filesystem::temp_directory_path(error) / "relevo-module-XXXXXX").string();
-        if (error || !mkdtemp(folder.data()))  // for this user alone
+        if (folder_.path().empty())
             fail(library, "it is loaded already, and no folder for a copy can be created");
-        folder_ = folder;
+        std::error_code error;
         std::filesystem::copy_file(library, file(library), error);
         if (error) fail(library, fmt::format("it cannot be copied, {}", error.message()));
     }
-    ~PrivateCopy() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    PrivateCopy(const PrivateCopy&) = delete;
-    PrivateCopy& operator=(const PrivateCopy&) = delete;
 
     std::filesystem::path file(const std::filesystem::path& library) const {
-        return folder_ / library.filename();
+        return folder_.path() / library.filename();
     }
 
   private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_{"relevo-module"};
 };
 
 /// Loads a library as it is on disk now. dlopen() would return one of the same name that is still

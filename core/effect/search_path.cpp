@@ -22,11 +22,9 @@ std::string variable(const char* name) {
     return value ? value : "";
 }
 
-/// The user's data folder by the XDG base directory specification, which ignores relative paths.
-std::optional<fs::path> data_home() {
-    if (const fs::path given = variable("XDG_DATA_HOME"); given.is_absolute()) return given;
-    if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".local/share";
-    return std::nullopt;
+/// Empty if the user has no home.
+fs::path data_home() {
+    return user_folder("XDG_DATA_HOME", ".local/share");
 }
 
 bool is_folder(const fs::path& path) {
@@ -38,8 +36,8 @@ bool is_folder(const fs::path& path) {
 
 std::vector<fs::path> user_plugin_folders() {
     std::vector<fs::path> folders;
-    if (const auto home = data_home(); home && is_folder(*home / "relevo/plugins"))
-        folders.push_back(*home / "relevo/plugins");
+    if (const fs::path home = data_home(); !home.empty() && is_folder(home / "relevo/plugins"))
+        folders.push_back(home / "relevo/plugins");
     for (const std::string& name : split(variable(kVariable), ':')) {
         if (name.empty()) continue;
         const fs::path folder = name;

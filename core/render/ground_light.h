@@ -38,10 +38,9 @@ enum class ShadowsOn {
 /// - "light_sky": sky-view factor relative to that of an unobstructed slope, times coverage (r),
 ///   and coverage (g), with mipmaps.
 ///
-/// Posts are reduced to means of 2 x 2, 4 x 4, ... posts for DEMs of more than kMaxPosts posts or
-/// than memory has room for, and
-/// where no pixel of the frame is finer than the means. The sky-view factor has at most
-/// kMaxSkyPosts posts.
+/// Posts are reduced to means of 2 x 2, 4 x 4, ... posts for DEMs of more posts than kMaxPosts or
+/// than memory has room for, and where no pixel of the frame is finer than the means. The sky-view
+/// factor has at most kMaxSkyPosts posts.
 class GroundLight {
   public:
     /// @param field  must outlive this

@@ -13,6 +13,7 @@ With --keep, DEMs stay in FOLDER and are used again. With --plot, the seconds by
 """
 
 import argparse
+import atexit
 import json
 import math
 import os
@@ -88,7 +89,7 @@ class Bench:
         environment = {**self.environment, "DISPLAY": self.screen.name, "WAYLAND_DISPLAY": ""}
         viewer = subprocess.Popen([self.program, "-q", "view", dem, *more], env=environment, cwd=self.folder)
         try:
-            first = wait_for_picture(self.screen, began, most_s=120)
+            first = wait_for_picture(self.screen, began, 120, viewer)
             return first, wait_until_idle(self.screen, viewer, began)
         finally:
             viewer.terminate()
@@ -173,6 +174,8 @@ def main():
         dems = (arguments.keep or folder).resolve()
         dems.mkdir(parents=True, exist_ok=True)
         bench = Bench(arguments, folder)
+        if bench.screen:
+            atexit.register(bench.screen.close)
         small = make_dem(arguments.build, dems / "2_tiles256.tif", 2, "tiles256")
         bench.capture(small, "--allow-blank")
         floor = min(bench.capture(small, "--allow-blank")[1] for _ in range(3))
@@ -189,8 +192,6 @@ def main():
                     options = ["--memory", memory] if memory else []
                     figures = bench.measure(" ".join([str(side), layout, *options]), dem, floor, options)
                     drawn[layout].append((side, figures))
-        if bench.screen:
-            bench.screen.close()
         if arguments.plot:
             plot(arguments.plot, drawn)
 

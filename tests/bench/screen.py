@@ -55,9 +55,11 @@ class Screen:
         self.server.wait()
 
 
-def wait_for_picture(screen, began, most_s=30):
-    """Seconds from `began` to a picture of the ground."""
+def wait_for_picture(screen, began, most_s=30, viewer=None):
+    """Seconds from `began` to a picture of the ground, which `viewer` must live to see."""
     while time.perf_counter() - began < most_s:
+        if viewer and viewer.poll() is not None:
+            raise RuntimeError(f"{viewer.args} ended with {viewer.returncode}")
         sample = screen.sample()
         if len(set(sample)) > 40:
             return time.perf_counter() - began

@@ -202,4 +202,14 @@ std::string ObjectStoreServer::got(const Request& request) {
                     fmt::format("Content-Range: bytes {}-{}/{}\r\n", first, last, content.size()));
 }
 
+std::vector<BadAnswer> bad_answers() {
+    const std::string head = "HTTP/1.1 206 Partial\r\nContent-Length: 100000\r\n\r\n";
+    return {{"Forbidden", ObjectStoreServer::status(403)},
+            {"Missing", ObjectStoreServer::status(404)},
+            {"NoSuchRange", ObjectStoreServer::status(416)},
+            {"Busy", ObjectStoreServer::status(503)},
+            {"CutOff", {head + "only so much"}},
+            {"Slow", {head + std::string(99000, 'x'), 300}}};
+}
+
 }  // namespace relevo::test

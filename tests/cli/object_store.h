@@ -64,4 +64,11 @@ class ObjectStoreServer {
     std::thread thread_;
 };
 
+/// What stores may answer in place of an object.
+struct BadAnswer {
+    const char* name;
+    ObjectStoreServer::Fault fault;
+};
+std::vector<BadAnswer> bad_answers();
+
 }  // namespace relevo::test

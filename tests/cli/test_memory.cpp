@@ -108,7 +108,7 @@ TEST_F(LargeDem, ACachedDemGivesTheSamePicture) {
     EXPECT_NE(told.find(": damaged, so the DEM is read again"), std::string::npos) << told;
     EXPECT_EQ(relevo({"cache", "--clear"}).status, 0);
     EXPECT_EQ(entries(), 0U);
-    // A place that is no folder.
+    // A file lies where the folder should be.
     fs::remove_all(folder() / "cache");
     std::ofstream(folder() / "cache") << "a file";
     const auto [without, why] = draw();

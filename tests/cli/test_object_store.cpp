@@ -263,12 +263,7 @@ TEST_F(ObjectStore, AStoreThatSaysNothingIsWaitedForOnce) {
     }
 }
 
-struct Bad {
-    const char* name;
-    Fault fault;
-};
-
-class BadStore : public ObjectStore, public testing::WithParamInterface<Bad> {};
+class BadStore : public ObjectStore, public testing::WithParamInterface<BadAnswer> {};
 
 TEST_P(BadStore, IsNamedAndNothingIsWritten) {
     // The head of the file comes: what is lost is lost halfway.
@@ -293,18 +288,8 @@ TEST_P(BadStore, IsNamedAndNothingIsWritten) {
     EXPECT_FALSE(std::filesystem::exists(dir_ / "a.tif"));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    ObjectStore, BadStore,
-    testing::Values(
-        Bad{"Forbidden", ObjectStoreServer::status(403)},
-        Bad{"Missing", ObjectStoreServer::status(404)},
-        Bad{"NoSuchRange", ObjectStoreServer::status(416)},
-        Bad{"Busy", ObjectStoreServer::status(503)},
-        Bad{"CutOff", {"HTTP/1.1 206 Partial\r\nContent-Length: 100000\r\n\r\nonly so much"}},
-        Bad{"Slow",
-            {"HTTP/1.1 206 Partial\r\nContent-Length: 100000\r\n\r\n" + std::string(99000, 'x'),
-             300}}),
-    [](const auto& bad) { return bad.param.name; });
+INSTANTIATE_TEST_SUITE_P(ObjectStore, BadStore, testing::ValuesIn(bad_answers()),
+                         [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
 }  // namespace relevo::test

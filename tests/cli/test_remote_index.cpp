@@ -117,12 +117,7 @@ TEST_F(RemoteIndex, ATileInAnArchiveThatTheStoreDoesNotGiveIsNotMissing) {
     }
 }
 
-struct Bad {
-    const char* name;
-    Fault fault;
-};
-
-class BadRemoteTile : public RemoteIndex, public testing::WithParamInterface<Bad> {};
+class BadRemoteTile : public RemoteIndex, public testing::WithParamInterface<BadAnswer> {};
 
 // It may have heights, so it is no void.
 TEST_P(BadRemoteTile, IsNamedAndNothingIsWritten) {
@@ -143,18 +138,8 @@ TEST_P(BadRemoteTile, IsNamedAndNothingIsWritten) {
     EXPECT_FALSE(std::filesystem::exists(result_));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    RemoteIndex, BadRemoteTile,
-    testing::Values(
-        Bad{"Forbidden", ObjectStoreServer::status(403)},
-        Bad{"Missing", ObjectStoreServer::status(404)},
-        Bad{"NoSuchRange", ObjectStoreServer::status(416)},
-        Bad{"Busy", ObjectStoreServer::status(503)},
-        Bad{"CutOff", {"HTTP/1.1 206 Partial\r\nContent-Length: 100000\r\n\r\nonly so much"}},
-        Bad{"Slow",
-            {"HTTP/1.1 206 Partial\r\nContent-Length: 100000\r\n\r\n" + std::string(99000, 'x'),
-             300}}),
-    [](const auto& bad) { return bad.param.name; });
+INSTANTIATE_TEST_SUITE_P(RemoteIndex, BadRemoteTile, testing::ValuesIn(bad_answers()),
+                         [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
 }  // namespace relevo::test

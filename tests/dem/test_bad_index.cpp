@@ -81,5 +81,22 @@ TEST(BadIndex, ThousandsOfReferenceSystemsAreRefused) {
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
 }
 
+TEST(BadIndex, LongitudesOfAnotherTurnAreTheSamePlace) {
+    Raster raster;
+    raster.crs = "EPSG:4326";
+    raster.columns = raster.rows = 10;
+    raster.geotransform = {{-84.41375, 0.01, 0, 36.44625, 0, -0.01}};
+    raster.value = [](int column, int row, int) { return column + 100.0 * row; };
+    IndexRow row = row_of(write_raster(folder() / "west.tif", raster));
+    row.extent[0] += 360;
+    row.extent[2] += 360;
+    const std::string index =
+        write_index(folder() / "turn.gpkg", "GPKG", {row}, {.crs = "EPSG:4326"});
+    const Source source = Source::open(index);
+    EXPECT_EQ(source.grid().columns(), 10);
+    EXPECT_EQ(source.read({0, 0, 10, 10}, 10, 10).at(3, 2), 203);
+    EXPECT_EQ(source.tiles().missing.count, 0);
+}
+
 }  // namespace
 }  // namespace relevo::dem

@@ -57,7 +57,7 @@ class Hours:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn. Where a member is None or empty, Relevo chooses a value for it."""
+    """What is drawn. Relevo chooses the members that are None or empty."""
 
     when: Optional[When] = None
     size: Tuple[int, int] = (1280, 1024)  # [px]
