@@ -1,10 +1,10 @@
-#include "spectrum.h"
+#include "sky/spectrum.h"
 
 #include <cmath>
 
 #include <glm/mat3x3.hpp>
 
-namespace relevo::skymaker {
+namespace relevo::sky {
 namespace {
 
 /// A bell with different widths to its left and right.
@@ -61,4 +61,4 @@ glm::dvec3 colour_of(const Spectrum& share) {
     return linear_srgb(share) / kWhite;
 }
 
-}  // namespace relevo::skymaker
+}  // namespace relevo::sky

@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace relevo::skymaker {
+namespace relevo::sky {
 
 /// Wavelengths that light is followed at: 400 to 700 nm, every 20.
 inline constexpr int kWavelengths = 16;
@@ -27,4 +27,4 @@ const Spectrum& ozone_cross_section();
 /// Matching Functions, Journal of Computer Graphics Techniques 2(2), 2013; IEC 61966-2-1.
 glm::dvec3 colour_of(const Spectrum& share);
 
-}  // namespace relevo::skymaker
+}  // namespace relevo::sky
