@@ -3,6 +3,8 @@
 //! writes    colour, linear, 0 to 1
 //! source    T. Sobotka, AgX (2022): matrix, range of stops and the curve's slope and powers
 
+//@ include lib/neutral.glsl
+
 uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
 uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
 uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
@@ -38,11 +40,21 @@ float agx_tone(in float light) {
         : 0.5 + agx_side(min(stops, agx_stops_above) / range, agx_stops_above / range, agx_shoulder);
 }
 
-void agx_on_tonemap(inout vec3 colour) {
+/// @param colour  linear, exposed
+vec3 agx_tones(in vec3 colour) {
     vec3 mixed = agx_mixed * (exp2(agx_exposure) * max(colour, 0.0));
     vec3 tone = vec3(agx_tone(mixed.r), agx_tone(mixed.g), agx_tone(mixed.b));
     tone = pow(tone, vec3(agx_contrast));
     tone = mix(vec3(dot(tone, vec3(0.2126, 0.7152, 0.0722))), tone, agx_saturation);
     tone = inverse(agx_mixed) * tone;
-    colour = pow(clamp(tone, 0.0, 1.0), vec3(agx_display));
+    return pow(clamp(tone, 0.0, 1.0), vec3(agx_display));
+}
+
+void agx_on_tonemap(inout vec3 colour) {
+    // Models and maps have colours that are compared with legends and photographs.
+#if HAS_outside || HAS_tint || HAS_drape
+    colour = neutral_tones(colour);
+#else
+    colour = agx_tones(colour);
+#endif
 }
