@@ -70,9 +70,11 @@ inline double rayleigh_phase(double cosine) {
 }
 /// Source: L. G. Henyey and J. L. Greenstein, Diffuse Radiation in the Galaxy, Astrophysical
 /// Journal 93, 1941.
-inline double aerosol_phase(double cosine) {
-    constexpr double g = kAerosolAsymmetry;
+inline double henyey_greenstein(double cosine, double g) {
     return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+inline double aerosol_phase(double cosine) {
+    return henyey_greenstein(cosine, kAerosolAsymmetry);
 }
 
 }  // namespace relevo::sky

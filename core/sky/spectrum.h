@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace relevo::sky {
@@ -26,5 +27,14 @@ const Spectrum& ozone_cross_section();
 /// Source: C. Wyman, P.-P. Sloan, P. Shirley, Simple Analytic Approximations to the CIE XYZ Color
 /// Matching Functions, Journal of Computer Graphics Techniques 2(2), 2013; IEC 61966-2-1.
 glm::dvec3 colour_of(const Spectrum& share);
+
+/// CIE 1931 tristimulus values of light whose spectrum is the sun's times `share`. The sun's own
+/// has Y = 1; its X and Z are those of a light of 5900 K, where colour_of has white.
+glm::dvec3 xyz_of(const Spectrum& share);
+/// The same from what colour_of returns.
+glm::dvec3 xyz_of_colour(const glm::dvec3& linear_srgb);
+
+/// CIE 1976 u' and v'. Source: CIE 015:2018, section 8.2.
+glm::dvec2 chromaticity(const glm::dvec3& xyz);
 
 }  // namespace relevo::sky

@@ -65,6 +65,24 @@ TEST(Spectrum, TheSunItselfIsWhite) {
         EXPECT_NEAR(white[c], 1, 1e-12);
 }
 
+TEST(Spectrum, ColoursHaveTheTristimulusValuesOfTheirLight) {
+    Spectrum one{}, blue{};
+    one.fill(1);
+    EXPECT_NEAR(xyz_of(one).y, 1, 1e-12);
+    // The sun outside the atmosphere, a light of about 5900 K.
+    EXPECT_NEAR(chromaticity(xyz_of(one)).x, 0.204, 0.003);
+    EXPECT_NEAR(chromaticity(xyz_of(one)).y, 0.472, 0.003);
+    for (int i = 0; i < kWavelengths; ++i)
+        blue[static_cast<std::size_t>(i)] = 0.01 * std::pow(wavelength_um(i), -4);
+    const glm::dvec3 direct = xyz_of(blue), by_colour = xyz_of_colour(colour_of(blue));
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(by_colour[c], direct[c], 1e-12);
+    EXPECT_LT(chromaticity(direct).y, 0.44);
+    // D65 by its definition.
+    EXPECT_NEAR(chromaticity({0.95047, 1, 1.08883}).x, 0.1978, 1e-4);
+    EXPECT_NEAR(chromaticity({0.95047, 1, 1.08883}).y, 0.4683, 1e-4);
+}
+
 TEST(Spectrum, WavelengthsGoFrom400To700Nanometres) {
     EXPECT_DOUBLE_EQ(wavelength_um(0), 0.4);
     EXPECT_DOUBLE_EQ(wavelength_um(kWavelengths - 1), 0.7);
