@@ -241,6 +241,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const glm::dvec2 sides_m =
         footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());
     block.footprint_area = glm::vec4(footprint.south_west_m, 1.0 / glm::max(sides_m, 1.0));
+    block.sea_floor_share = static_cast<float>(ground.sea_floor_share);
     if (camera.map) write_map(inputs, width_px, height_px, block);
     return block;
 }

@@ -110,7 +110,8 @@ struct Ground {
     Footprint footprint;
     /// Depth of the block below the DEM's lowest post [m]; 0 for a globe, which has no block.
     double block_m = 0;
-    double floor_m = 0;  ///< least z in the local frame of the rim at height 0
+    double floor_m = 0;          ///< least z in the local frame of the rim at height 0
+    double sea_floor_share = 0;  ///< dem::Water::sea_floor_share()
 
     /// Height of the block's lower side as drawn [m].
     double base_m(double exaggeration) const { return lowest_m * exaggeration - block_m; }
