@@ -100,9 +100,10 @@ float sea_roughness() {
 const int sea_trains = 31;
 const float sea_longest_m = 256.0, sea_step = 0.7937005;  // 2^(-1/3)
 const float sea_train_slope = 9.358e-4;  // mean square, of Pierson and Moskowitz': 0.0081 / 2 ln(2) / 3
-const float sea_wander = 0.2;  // of a crest by the waves that are longer [wavelengths]
+const float sea_wander = 0.09;  // of a crest by the waves that are longer [wavelengths]
 const float sea_gravity = 9.81;
 const float sea_fetch_m = 5000.0;  // of lakes; the sea is fully risen
+const float sea_unresolved = 0.3;  // of a wave in a pixel, and none of it is seen
 const float sea_period_s = 512.0;  // after which all waves are as they were
 
 // Of each train its direction from the wind's, to the right of it, and its phase: by chance, the longer the nearer to
@@ -135,7 +136,7 @@ float sea_peak_m(in float open) {
 
 /// Share of a train that a pixel resolves. @param cycles  of the wave in a pixel
 float sea_resolved(in float cycles) {
-    return 1.0 - smoothstep(0.1, 0.33, cycles);
+    return 1.0 - smoothstep(0.08, sea_unresolved, cycles);
 }
 
 /// The waves that pixels resolve; the slopes of all others stay rough.
@@ -145,7 +146,9 @@ float sea_resolved(in float cycles) {
 sea_Waves sea_waves(in vec2 anchored_m, in vec2 dx_m, in vec2 dy_m, in float open, in float share) {
     sea_Waves w = sea_Waves(vec2(0.0), sea_roughness());
     float peak_m = sea_peak_m(open), length_m = sea_longest_m;
-    float finest_m = max(min(length(dx_m), length(dy_m)) / 0.33, share > 0.0 ? 0.0 : 1e9);
+    // Low over the water pixels are long: of the finest waves only those along them would be left, as a comb.
+    float mean_m = sqrt(length(dx_m) * length(dy_m));
+    float finest_m = share > 0.0 ? mean_m / sea_unresolved : 1e9;
     vec2 downwind = -vec2(sin(radians(sea_wind_deg)), cos(radians(sea_wind_deg)));
     float now_s = mod(frame.seconds, sea_period_s);
     float wander = 0.0;
@@ -155,14 +158,14 @@ sea_Waves sea_waves(in vec2 anchored_m, in vec2 dx_m, in vec2 dy_m, in float ope
         vec2 way = mat2(train.x, -train.y, train.y, train.x) * downwind;
         vec2 k = way / length_m;
         float over_peak = length_m / peak_m;
-        float seen = share * sea_resolved(max(abs(dot(k, dx_m)), abs(dot(k, dy_m))));
+        float seen = share * sea_resolved(max(max(abs(dot(k, dx_m)), abs(dot(k, dy_m))), mean_m / length_m));
         float square = seen * seen * sea_train_slope * exp(-1.25 * over_peak * over_peak);
         // Whole periods, so that the sea repeats and a long time costs no accuracy.
         float hertz = round(sqrt(sea_gravity / (6.2831853 * length_m)) * sea_period_s) / sea_period_s;
         float cycles = ground_repeats(anchored_m, mat2(k.x, 0.0, k.y, 0.0)).x - hertz * now_s + train.z;
         // Longer waves move the crests of shorter ones: trains of straight crests would weave a cloth.
         float crest = cos(6.2831853 * fract(cycles + sea_wander * wander));
-        wander = 0.8 * wander + crest;
+        wander = 0.95 * wander + crest;
         w.slope += way * (sqrt(2.0 * square) * crest);
         w.roughness -= square;
         length_m *= sea_step;
