@@ -203,8 +203,9 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
                           inputs.displacement.range_m(ground.lowest_m, ground.highest_m).first};
     block.ground_extent = glm::vec4(ground.south_west_m,
                                     1.0 / glm::max(ground.north_east_m - ground.south_west_m, 1.0));
-    block.exposure =
-        static_cast<float>(sun::natural_exposure(elevation) * std::exp2(inputs.exposure_ev));
+    const double exposure =
+        inputs.ev100 ? sun::exposure_of_ev100(*inputs.ev100) : sun::natural_exposure(elevation);
+    block.exposure = static_cast<float>(exposure * std::exp2(inputs.exposure_ev));
     block.footprint_limit = static_cast<float>(footprint_limit);
 
     const glm::dvec3 eye_up = ground.frame.up(eye.lat_rad, eye.lon_rad);

@@ -68,9 +68,10 @@ struct FrameInputs {
     std::optional<PicturePart> part{};  ///< nullopt: the frame is the picture
     SunLight sun;
     sun::CelestialFrame stars;  ///< at the DEM's centre
-    double exposure_ev = 0;     ///< stops above the natural exposure of this sun
-    double exaggeration = 1;    ///< vertical exaggeration, a factor
-    Displacement displacement;  ///< by effects; set by the renderer
+    double exposure_ev = 0;     ///< stops above the natural exposure of this sun, or above `ev100`
+    std::optional<double> ev100;  ///< of a camera; without: the natural exposure of this sun
+    double exaggeration = 1;      ///< vertical exaggeration, a factor
+    Displacement displacement;    ///< by effects; set by the renderer
     Loading loading = Loading::Wait;
     /// Freezes cached passes of native effects, such as shadow maps.
     bool freeze_native = false;

@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundss
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
 constexpr std::array<std::string_view, 4> kStereos = {"none", "parallel", "cross-eyed", "anaglyph"};
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 Value number(double value) {
@@ -164,6 +165,11 @@ constexpr Option kOptions[] = {
      "Brighter than the default by this many stops, EV", Kind::Number, -20, 20, {},
      [](const Scene& s) { return number(s.exposure_ev); },
      [](Scene& s, const Value& v) { s.exposure_ev = v.number; }},
+    {"picture", "ev100", "--ev100", "Options",
+     "Exposure value of a camera at ISO 100, instead of one by the sun's elevation: 15 suits a sunny "
+     "noon, -3 a full moon", Kind::Number, -20, 24, {},
+     [](const Scene& s) { return number(s.ev100.value_or(kNone)); },
+     [](Scene& s, const Value& v) { s.ev100 = v.number; }},
     {"picture", "seconds", "--seconds", "Options",
      "Time of effects that move, such as snowfall, in seconds", Kind::Number, 0, kMaxSeconds, {},
      [](const Scene& s) { return number(s.seconds); },
