@@ -24,6 +24,8 @@ enum class EventKind {
     NauticalDusk,
     AstronomicalDusk,
     LowerTransit,  ///< the meridian on the side of midnight
+    Moonrise,      ///< by the RiseRule of the moon
+    Moonset,
 };
 
 /// "sunrise", "civil_dawn", "lower_transit", ...
