@@ -66,7 +66,7 @@ class TurnedEarth {
     double to_itrs_[3][3];
 };
 
-/// Where a vector from an observer to a body points [au, CIRS].
+/// Where a vector from an observer to a body points [au, CIRS] in that observer's sky.
 SkyPosition sky_position(const glm::dvec3& cirs_au, Body body, const Observer& observer,
                          const TurnedEarth& earth, const SolarEphemeris& axes);
 

@@ -24,7 +24,7 @@ enum class EventKind {
     NauticalDusk,
     AstronomicalDusk,
     LowerTransit,  ///< the meridian on the side of midnight
-    Moonrise,      ///< by the RiseRule of the moon
+    Moonrise,      ///< by the moon's RiseRule
     Moonset,
 };
 

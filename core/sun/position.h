@@ -41,7 +41,7 @@ struct Geocentric {
     double equation_of_time_s = 0;
 };
 
-/// The sun or the moon as seen from a place, without an atmosphere.
+/// The sun or the moon seen from a place, without an atmosphere.
 struct SkyPosition {
     double azimuth_rad = 0;    ///< of the disc's centre, clockwise from true north [0, 2 pi)
     double elevation_rad = 0;  ///< of the centre above the ellipsoid's tangent plane; no refraction

@@ -12,7 +12,7 @@
 
 namespace relevo::sun {
 
-/// The fast way to many positions: the geocentric apparent place of the sun at one node a day, of
+/// The fast way to many positions. The geocentric apparent place of the sun at one node a day, of
 /// the moon at four, in axes that do not turn with the Earth, so that they change smoothly and
 /// interpolate well; the rest (rotation, parallax, diurnal aberration, pole) is computed exactly
 /// for each call. Read by many threads at once.

@@ -11,8 +11,8 @@ namespace relevo::sun {
 /// Which point of the disc rises and sets.
 enum class Limb { Upper, Center, Lower };
 
-/// When the sun or the moon counts as risen: one stated definition, carried to every result as
-/// text.
+/// When the sun or the moon counts as risen: one stated definition, which every result
+/// carries as text.
 class RiseRule {
   public:
     /// The centre at a true elevation (without air), by default 50 arc-minutes below the horizon:
