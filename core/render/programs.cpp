@@ -11,6 +11,7 @@
 #include "base/paths.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "render/air_textures.h"
 #include "render/graph/plan.h"
 #include "render/pass_texts.h"
 #include "render/renderer.h"
@@ -344,7 +345,9 @@ std::vector<shader::Param> core_params() {
     normal.is_static = true;
     normal.label = "Normals";
     normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
-    return {normal};
+    std::vector<shader::Param> params = air_params();
+    params.insert(params.begin(), normal);
+    return params;
 }
 
 }  // namespace relevo::render

@@ -15,6 +15,7 @@
 #include "base/paths.h"
 #include "base/units.h"
 #include "gl/texture.h"
+#include "render/air_textures.h"
 #include "render/background_linker.h"
 #include "render/eye_post.h"
 #include "render/footprint_texture.h"
@@ -115,6 +116,7 @@ struct Renderer::Impl : FrameServices {
     double exposure = 1;  // of the last frame
     TileSelection tiles;  // of the last frame
     GroundProbe probe;
+    AirTextures air;
     gl::Texture footprint;  // of the last ground that was seen from outside
     std::vector<NativeHost> natives;
     bool native_is_made = false;     // prepared in an earlier frame
@@ -246,6 +248,7 @@ struct Renderer::Impl : FrameServices {
 
     const gl::Texture* find_texture(const shader::TextureUnit& unit, const Terrain& terrain) const {
         if (unit.resource == "floor_ground") return &footprint;
+        if (const gl::Texture* const found = air.texture(unit.resource)) return found;
         if (const gl::Texture* const found = terrain.texture(unit.resource)) return found;
         if (const gl::Texture* const found = effect_textures.find(unit.resource)) return found;
         if (const gl::Texture* const found = line_textures.find(unit.resource)) return found;
@@ -277,6 +280,7 @@ struct Renderer::Impl : FrameServices {
         if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
         write_places(terrain.rasters());
+        if (reads(kAirSkyTexture) || reads(kAirBetweenTexture)) air.update(air_of(values), block);
         if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),

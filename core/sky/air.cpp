@@ -21,4 +21,14 @@ Extinction extinction(const Air& air) {
     return result;
 }
 
+double white_extinction(const Air& air) {
+    constexpr double kWay_m = 1000;
+    const Extinction at_sea = extinction(air);
+    Spectrum passed{};
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        passed[k] = std::exp(-kWay_m * (at_sea.rayleigh[k] + at_sea.aerosol[k]));
+    const glm::dvec3 colour = colour_of(passed);
+    return -std::log(0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b) / kWay_m;
+}
+
 }  // namespace relevo::sky

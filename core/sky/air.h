@@ -25,6 +25,8 @@ struct Air {
     double ozone_du = 300;
     /// Reflectance of the ground, Lambertian, the same at all wavelengths.
     double ground_albedo = 0.12;
+
+    bool operator==(const Air&) const = default;
 };
 
 /// Extinction at the height where each component is densest [1/m]. Multiply it by the density.
@@ -39,6 +41,9 @@ struct Extinction {
 /// optical depth: A. Angstrom, Techniques of Determining the Turbidity of the Atmosphere, Tellus
 /// 13(2), 1961, in an exponential atmosphere.
 Extinction extinction(const Air& air);
+
+/// Extinction of white light at sea level [1/m], by the luminance that passes 1 km.
+double white_extinction(const Air& air);
 
 /// Vertical optical depth of the aerosol from sea level to space.
 /// @param um  wavelength [um]

@@ -5,12 +5,15 @@
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section on sky and haze
 
-uniform float haze_density = 0.022; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0")
+//@ include lib/air.glsl
+
+uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
+uniform float haze_density = 0.0; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0. Air that is clearer than the atmosphere's own is drawn as the atmosphere")
 uniform float haze_visibility = 0.0; //@ range(0, 1000) unit(km) label("Visibility") description("Meteorological range at height 0, instead of the density: 3.912 / density. 0: the density is used")
 uniform float haze_scale_height = 2500.0; //@ range(10, 100000) unit(m) label("Scale height") description("Height over which the haze thins by a factor of e")
 uniform float haze_blue = 0.6; //@ range(0, 1) label("Blue") description("Blue scattering relative to red: 1 as in pure air, 0 as in fog and in the paper")
 
-out vec3 haze_strength;  // red, green, blue: share of the sky's colour
+out vec3 haze_strength;  // red, green, blue: share of the sky's colour; with the atmosphere, the optical depth of the haze
 
 /// Extinction at height 0 [1/m]. Koschmieder's visibility is the distance from which 2 % of a black
 /// thing's contrast is left: ln 50 = 3.912.
@@ -39,13 +42,25 @@ vec3 haze_strength_of(in float depth) {
     return 1.0 - exp(-depth * haze_colour());
 }
 
+/// The part of the extinction that the atmosphere does not have itself.
+float haze_extra_share() {
+    float whole = haze_extinction();
+    return haze_air ? max(whole - frame.air_mapping.w, 0.0) / max(whole, 1e-12) : 1.0;
+}
+
 void haze_on_vertex(in VertexFrame v) {
-    haze_strength = haze_strength_of(haze_depth(frame.eye_m.w, v.drawn_height_m, v.distance_m));
+    float depth = haze_extra_share() * haze_depth(frame.eye_m.w, v.drawn_height_m, v.distance_m);
+    haze_strength = haze_air ? depth * haze_colour() : haze_strength_of(depth);
 }
 
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     // What is seen from outside, as a model on a table, has no air before it.
 #if !HAS_outside
-    radiance = mix(radiance, background_radiance(view, false), haze_strength);
+    if (haze_air) {
+        AirBetween air = air_between_eye_and(view, s.distance_m);
+        radiance = mix(air.radiance, radiance, exp(-air.depth - haze_strength));
+    } else {
+        radiance = mix(radiance, background_radiance(view, false), haze_strength);
+    }
 #endif
 }

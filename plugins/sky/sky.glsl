@@ -6,15 +6,15 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
 //!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
+//@ include lib/air.glsl
 //@ include lib/filtered.glsl
 
-uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
 uniform sampler2DArray sky_times;
 uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
 uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for each elevation of the sun, or the paper's three, blended")
-uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Brightness of the sky without the sun; above 1 because the drawn aureole is weaker than the real one")
+uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the paper's three skies: brightness without the sun; above 1 because the drawn aureole is weaker than the real one")
 uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for a camera at sea level; higher values extend the horizon's colours upwards")
 uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Elevation of the sun above which only the day texture is used; for the paper's three skies")
 uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Elevation of the sun below which only the night texture is used; for the paper's three skies")
@@ -38,8 +38,8 @@ uniform bool sky_slopes = true; //@ static label("Light by direction") descripti
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
 const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)
 const float sky_span = 1.56541;    // folded(1) + folded(sin 18 deg)
-const vec3 sky_size = vec3(48.0, 64.0, 40.0);        // texels of the radiance
-const vec3 sky_light_size = vec3(12.0, 12.0, 40.0);  // and of the light
+const vec3 sky_size = vec3(48.0, 64.0, 1.0);         // texels of the paper's skies
+const vec3 sky_light_size = vec3(12.0, 12.0, 40.0);  // and of the light of slopes
 
 /// The horizontal part of a direction, unit length; shrinks to 0 over the last 0.6 degrees before the
 /// zenith, which has none.
@@ -236,7 +236,8 @@ float sky_luminance() {
     return dot(frame.sky_irradiance.rgb, vec3(0.2126, 0.7152, 0.0722));
 }
 
-vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
+/// The paper's skies: three, blended by the sun's height, with the sun's glow.
+vec3 sky_of_paper(in vec3 direction, in bool with_disc) {
     vec3 up = frame.eye_up.xyz;
     vec3 to_sun = frame.eye_sun.xyz;
     float sun_sine = dot(to_sun, up);
@@ -244,33 +245,36 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     float above = sky_earth ? sky_above_horizon(sine) : sine;
     vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(above, sky_exponent(frame.eye_m.w)));
     if (sky_earth) at.y *= smoothstep(0.0, sky_band(), above);
-    vec3 colour;
-    if (sky_colours == 0) {
-        colour = filtered(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size)).rgb;
-    } else {
-        vec2 texel = sky_texel(vec3(at, 0.0), sky_size).xy;
-        vec3 blend = sky_blend(sun_sine);
-        colour = vec3(0.0);
-        for (int time = 0; time < 3; ++time)  // day, sunset, night
-            colour += blend[time] * filtered(sky_times, vec3(texel, float(time))).rgb;
-    }
-    vec3 radiance = sky_brightness * sky_luminance() * colour;
+    vec2 texel = sky_texel(vec3(at, 0.0), sky_size).xy;
+    vec3 blend = sky_blend(sun_sine);
+    vec3 colour = vec3(0.0);
+    for (int time = 0; time < 3; ++time)  // day, sunset, night
+        colour += blend[time] * filtered(sky_times, vec3(texel, float(time))).rgb;
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
     float cosine = dot(to_sun, direction);
-    float sun = sky_aureole * haze * sky_glow(cosine);
-    // What has set is behind the Earth.
-    if (with_disc && sine > frame.eye_up.w) {
-        vec3 apart = to_sun - direction;
-        sun += sky_disc * sky_sun(dot(apart, apart));
-#if HAS_night
-        radiance += sky_starlight(direction, up);
-#endif
+    vec3 radiance = sky_brightness * sky_luminance() * colour +
+                    sky_aureole * haze * sky_glow(cosine) * frame.eye_sun_light.rgb;
+    if (!sky_earth) return radiance;
+    // The light of the horizon comes from far away; what is seen lower has nearer air before it.
+    vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.2, -above));
+    return with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
+}
+
+vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
+    vec3 radiance;
+    if (sky_colours == 0) {
+        radiance = air_radiance(direction);
+        if (with_disc && sky_earth) radiance += sky_earth_albedo * air_ground(direction);
+    } else {
+        radiance = sky_of_paper(direction, with_disc);
     }
-    radiance += sun * frame.eye_sun_light.rgb;
-    if (sky_earth) {
-        // The light of the horizon comes from far away; what is seen lower has nearer air before it.
-        vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.2, -above));
-        radiance = with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
+    // What has set is behind the Earth.
+    if (with_disc && dot(direction, frame.eye_up.xyz) > frame.eye_up.w) {
+        vec3 apart = frame.eye_sun.xyz - direction;
+        radiance += sky_disc * sky_sun(dot(apart, apart)) * frame.eye_sun_light.rgb;
+#if HAS_night
+        radiance += sky_starlight(direction, frame.eye_up.xyz);
+#endif
     }
     return radiance;
 }

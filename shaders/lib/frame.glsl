@@ -63,6 +63,10 @@ layout(std140, binding = 0) uniform Frame {
     vec4 instance_shadow_eye;  // xyz: from the eye to where it was when the last map was drawn [m]
     vec4 map_x;               // of an orthographic picture from above: x in clip space, over w, of a column and row of
     vec4 map_y;               // the DEM; x: a column, y: a row, z: of (0, 0); and y. All 0 of other pictures
+    vec4 air_mapping;         // lib/air.glsl; x, y: bands above and below the horizon, z: farthest distance [m], w: extinction
+                              // of white light at height 0 [1/m]
+    vec4 air_colour;          // rgb: extinction, relative to that of green light; w: square of the eye's distance from the
+                              // Earth's centre less that of the top of the air [m2]
     float instance_shadow_px;     // side of a shadow map of instances
     float instance_shadow_weight; // 1 where there are such maps, else 0
     float still_seconds;      // as seconds: a window does not draw on for effects that read only this [s]

@@ -75,8 +75,8 @@ TEST(PluginGuide, ItsGlowIsAPlugin) {
 
 TEST(PluginGuide, ItsAirAndItsMeterArePlugins) {
     const Plugins plugins;
-    plugins.add("air", R"("passes": {"air": {"kind": "3d", "size": [32, 32, 16], "when": "sun"}})",
-                block(guide(), "glsl air.glsl"));
+    plugins.add("mist", R"("passes": {"air": {"kind": "3d", "size": [32, 32, 16], "when": "sun"}})",
+                block(guide(), "glsl mist.glsl"));
     plugins.add("meter",
                 R"("passes": {"histogram": {"kind": "compute", "writes": "uints", "count": 64,
                                             "local_size": [8, 8], "over": "frame"}})",

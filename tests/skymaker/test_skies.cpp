@@ -92,28 +92,16 @@ TEST(Layout, SlicesGoBackAndForth) {
 }
 
 TEST(Textures, LightOnLevelGroundHasLuminanceOneAndSlopesLessOrTheSunsSideMore) {
-    const Textures textures = make_textures(air());
+    const image::TextureData light = light_texture(air());
     const int last = Layout::kNormals - 1;
     for (int slice = 0; slice < Layout::kSuns; ++slice) {
-        const glm::dvec3 level = texel(textures.light, 0, last, slice);
+        const glm::dvec3 level = texel(light, 0, last, slice);
         EXPECT_NEAR(luminance(level), 1, 2e-3) << slice;
-        EXPECT_EQ(texel(textures.light, last, last, slice), level) << "level ground has no azimuth";
-        const double towards = luminance(texel(textures.light, last, 0, slice));
-        const double away = luminance(texel(textures.light, 0, 0, slice));
+        EXPECT_EQ(texel(light, last, last, slice), level) << "level ground has no azimuth";
+        const double towards = luminance(texel(light, last, 0, slice));
+        const double away = luminance(texel(light, 0, 0, slice));
         EXPECT_GT(towards, away * 0.999) << slice;
-        for (int y = 0; y < Layout::kUp; ++y)
-            for (int x = 0; x < Layout::kAround; ++x) {
-                const glm::dvec3 colour = texel(textures.radiance, x, y, slice);
-                for (int c = 0; c < 3; ++c) {
-                    ASSERT_GE(colour[c], 0) << x << " " << y << " " << slice;
-                    ASSERT_LT(colour[c], 100) << x << " " << y << " " << slice;
-                }
-            }
     }
-    // The zenith, the last row, is the same whatever the azimuth.
-    for (int x = 0; x < Layout::kAround; ++x)
-        EXPECT_EQ(texel(textures.radiance, x, Layout::kUp - 1, 20),
-                  texel(textures.radiance, 0, Layout::kUp - 1, 20));
 }
 
 }  // namespace

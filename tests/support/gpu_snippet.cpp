@@ -70,6 +70,9 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
     const std::vector<std::byte> bytes = shader::pack(stitched.params, values_);
     std::optional<gl::Buffer> params;
     if (!bytes.empty()) params.emplace(bytes, "parameters").bind_uniform(1);
+    for (const shader::TextureUnit& unit : stitched.textures)
+        if (const auto bound = textures_.find(unit.name); bound != textures_.end())
+            bound->second->bind(static_cast<unsigned>(unit.unit));
     const gl::VertexArray no_inputs;
     no_inputs.bind();
     framebuffer.bind();

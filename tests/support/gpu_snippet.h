@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <glm/vec4.hpp>
 
 #include "gl/context.h"
+#include "gl/texture.h"
 #include "render/frame_block.h"
 #include "shader/param_store.h"
 #include "support/device.h"
@@ -25,6 +27,10 @@ class GpuSnippet {
 
     shader::ParamStore& values() { return values_; }
     render::FrameBlock& frame() { return frame_; }
+    /// Has the sampler of that name read a texture, which must outlive the runs.
+    void bind(const std::string& sampler, const gl::Texture& texture) {
+        textures_[sampler] = &texture;
+    }
 
     /// @param body  GLSL that assigns `result`, a vec4; `x` and `y` are the pixel's column and row
     /// @returns the results, row by row
@@ -35,6 +41,7 @@ class GpuSnippet {
     gl::Context context_{{.device = gl_device(), .debug = true}};
     shader::ParamStore values_;
     render::FrameBlock frame_{};
+    std::map<std::string, const gl::Texture*> textures_;
 };
 
 }  // namespace relevo::test

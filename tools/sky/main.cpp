@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
+#include "sky/shipped.h"
 #include "stars.h"
 #include "textures.h"
 
@@ -61,9 +62,8 @@ void run(const Options& options) {
     if (options.table) print_table(air);
     const std::filesystem::path folder = options.output / "sky";
     std::filesystem::create_directories(folder);
-    const Textures textures = make_textures(air);
-    write_ktx(folder / "radiance.ktx2", textures.radiance);
-    write_ktx(folder / "light.ktx2", textures.light);
+    sky::write_atmosphere(folder / "air.bin", sky::Atmosphere());
+    write_ktx(folder / "light.ktx2", light_texture(air));
     for (const auto& [name, deg] :
          {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
         write_ktx(folder / fmt::format("{}.ktx2", name),

@@ -137,19 +137,14 @@ glm::dvec3 level_irradiance(const Atmosphere& air, double sun_sine) {
     return slope_irradiance(make_skies(air, sun_sine).whole, 1, 0);
 }
 
-Textures make_textures(const Atmosphere& air) {
+image::TextureData light_texture(const Atmosphere& air) {
     constexpr int n = Layout::kNormals;
-    Textures made{texture(Layout::kAround, Layout::kUp, Layout::kSuns),
-                  texture(n, n, Layout::kSuns)};
-    const std::span<std::byte> radiance = made.radiance.writable_level(0);
-    const std::span<std::byte> light = made.light.writable_level(0);
-    std::size_t index = 0;
+    image::TextureData made = texture(n, n, Layout::kSuns);
+    const std::span<std::byte> light = made.writable_level(0);
     for (int slice = 0; slice < Layout::kSuns; ++slice) {
         const double sun_sine = Layout::sun_sine_of(slice / (Layout::kSuns - 1.0));
         const Skies skies = make_skies(air, sun_sine);
         const double level = luminance(slope_irradiance(skies.whole, 1, 0));
-        for (const glm::dvec3& colour : skies.bare)
-            write_texel(radiance, index++, glm::dvec4(colour / level, 1));
         parallel_for(0, n * n, 1, [&](int first, int last) {
             for (int i = first; i < last; ++i)
                 write_texel(light, static_cast<std::size_t>(slice * n * n + i),

@@ -15,7 +15,7 @@ namespace relevo::skymaker {
 ///
 /// All hold light relative to the luminance of what the sky, with its aureole, sheds on level
 /// ground: the mean luminance over the hemisphere, weighted with the sine of the elevation, is 1.
-/// The aureole itself is left out of the radiance.
+/// The aureole itself is left out of the radiance, which the paper's skies alone have.
 struct Layout {
     static constexpr int kAround = 48;   ///< s = 0.5 + 0.5 cos(azimuth from the sun), 0..1
     static constexpr int kUp = 64;       ///< t, by sine_of; 0 and 1 included
@@ -33,15 +33,10 @@ struct Layout {
     static double sun_sine_of(double slice);
 };
 
-/// The skies for every height of the sun, volumes of half floats.
-struct Textures {
-    /// Radiance.
-    image::TextureData radiance;
-    /// Irradiance of a slope by the sky alone: s from the azimuth of its normal against the sun's,
-    /// t the normal's z, 0..1. The ground sends nothing.
-    image::TextureData light;
-};
-Textures make_textures(const Atmosphere& air);
+/// Irradiance of slopes by the sky alone, for every height of the sun, a volume of half floats: s
+/// from the azimuth of a normal against the sun's, t the normal's z, 0..1. The ground sends
+/// nothing.
+image::TextureData light_texture(const Atmosphere& air);
 
 /// Radiance at one height of the sun: the paper's day, sunset and night.
 image::TextureData single_texture(const Atmosphere& air, double sun_sine);

@@ -6,6 +6,7 @@
 
 #include "light/fields.h"
 #include "render/drawn.h"
+#include "sky/shipped.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -80,7 +81,7 @@ TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
         "}\n"};
     const auto haze = effect::load_effect(test::source_dir() / "plugins/haze", {});
     test::Drawn drawn(plateau, {sky, probe}, 64, 512, 0, {haze},
-                      {{"haze.blue", "0"}, {"haze.density", "0.02"}});
+                      {{"haze.air", "false"}, {"haze.blue", "0"}, {"haze.density", "0.02"}});
     std::vector<double> errors;
     double farthest_m = 0;
     // Under exaggeration the air is that before what is drawn: from 24000 m to 6000 m.
@@ -102,6 +103,72 @@ TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
     EXPECT_GT(farthest_m, 250000);
     test::print_accuracy("haze over drawn ground, to 250 km", errors, "", 2e-3);
     EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 2e-3);
+}
+
+TEST(Haze, OfTheDefaultIsTheAtmospheresAir) {
+    // Black and white ground from 12 km: what black ground shows is scattered, the difference of
+    // the two has passed.
+    const auto plateau = test::field_of(81, 801, {480000, 500, 0, 5400000, 0, -500}, "EPSG:32632",
+                                        [](int, int row) { return 3000.0 + (row % 2); });
+    const auto haze = effect::load_effect(test::source_dir() / "plugins/haze", {});
+    const std::filesystem::path share = RELEVO_SHARE_DIR;
+    const auto sky_effect = effect::load_effect(share / "plugins/sky", share / "data");
+    std::array<image::ImageF, 3> images;
+    for (const int ground : {0, 1, 2}) {  // black, white, and how far
+        const test::TestEffect lit{"lit", fmt::format("void lit_on_lit(in Surface s, inout vec3 "
+                                                      "radiance) {{ radiance = vec3({}); }}\n",
+                                                      ground == 1 ? "1.0" : "0.0")};
+        const test::TestEffect probe{
+            "probe",
+            "void probe_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+            "    radiance = vec3(s.distance_m / 1048576.0, 0.0, 1.0) / frame.exposure;\n"
+            "}\n"};
+        test::Drawn drawn(plateau, ground == 2 ? std::vector{lit, probe} : std::vector{lit}, 16,
+                          256, 0, {haze, sky_effect}, {});
+        drawn.stand(0.5, 1, 12000, 0, -3.6);
+        drawn.frame().camera.fov_y_rad = 0.06;
+        images[static_cast<std::size_t>(ground)] = drawn.radiance();
+        if (ground != 2) continue;
+        const auto air = sky::atmosphere_of(sky::Air{});
+        const glm::dvec3 to_sun = drawn.frame().sun.direction;
+        const geo::Geodetic eye = drawn.ground().frame.to_geodetic(drawn.frame().camera.eye_m);
+        const glm::dvec3 up = drawn.ground().frame.up(eye.lat_rad, eye.lon_rad);
+        const double sun_sine = dot(to_sun, up);
+        std::vector<double> scattered, passed;
+        for (int y = 0; y < 256; y += 5) {
+            if (images[2].at(8, y, 2) == 0) continue;
+            const double distance_m = 1048576 * test::Drawn::values(images[2], 8, y).x;
+            const glm::dvec3 ray = drawn.ray(8.5, y + 0.5);
+            const double sine = dot(ray, up);
+            const double level = std::sqrt((1 - sine * sine) * (1 - sun_sine * sun_sine));
+            const sky::Atmosphere::View view{eye.height_m, sine, sun_sine,
+                                             (dot(ray, to_sun) - sine * sun_sine) / level};
+            const glm::dvec3 expected = sky::colour_of(air->scattered_in(view, distance_m));
+            const glm::dvec3 through =
+                sky::colour_of(air->transmittance(view.height_m, view.sine, distance_m));
+            const double black = images[0].at(8, y, 1), white = images[1].at(8, y, 1);
+            scattered.push_back(std::abs(black / expected.g - 1));
+            passed.push_back(std::abs(white - black - through.g));
+        }
+        ASSERT_GT(scattered.size(), 20u);
+        test::print_accuracy("light of the air, drawn", scattered, "", 0.05);
+        test::print_accuracy("share of light that passes, drawn", passed, "", 0.03);
+        EXPECT_LT(*std::max_element(scattered.begin(), scattered.end()), 0.05);
+        EXPECT_LT(*std::max_element(passed.begin(), passed.end()), 0.03);
+    }
+}
+
+TEST(Haze, IsNoClearerThanTheAtmosphere) {
+    // Of an extinction, what the atmosphere does not have comes on top.
+    test::GpuSnippet gpu("haze");
+    gpu.frame().air_mapping.w = 8e-5f;
+    const char* body = "result = vec4(haze_extra_share());";
+    gpu.values().set("haze.density", "0.02");
+    EXPECT_EQ(gpu.run(body, 1, 1)[0].x, 0);
+    gpu.values().set("haze.density", "0.8");
+    EXPECT_NEAR(gpu.run(body, 1, 1)[0].x, 0.9, 1e-6);
+    gpu.values().set("haze.visibility", "10");
+    EXPECT_NEAR(gpu.run(body, 1, 1)[0].x, 1 - 0.08 / 0.3912, 1e-6);
 }
 
 TEST(Haze, VisibilityIsTheDistanceOfTwoPercentContrast) {

@@ -7,6 +7,10 @@
 #include <glm/vec3.hpp>
 
 #include "base/units.h"
+#include "render/air_textures.h"
+#include "sky/eye_tables.h"
+#include "sky/path.h"
+#include "sky/shipped.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -287,6 +291,86 @@ TEST(Sky, AirMassIsRozenbergs) {
         errors.push_back(std::abs(results[static_cast<std::size_t>(deg)].x / expected - 1));
     }
     EXPECT_LT(worst(errors, "sky air mass, relative", 1e-3), 1e-3);
+}
+
+/// An eye over the DEM's centre, the sun in the north.
+void look(test::GpuSnippet& gpu, render::AirTextures& air, double height_m, double sun_deg) {
+    render::FrameBlock& frame = gpu.frame();
+    const double sun = radians(sun_deg);
+    frame.eye_m = {0, 0, height_m, height_m};
+    frame.eye_up = {0, 0, 1, sky::horizon_sine(height_m)};
+    frame.eye_sun = {0, std::cos(sun), std::sin(sun), sun};
+    frame.sun_direction = frame.eye_sun;
+    air.update(sky::Air{}, frame);
+    gpu.bind("air_sky", *air.texture("air_sky"));
+    gpu.bind("air_between", *air.texture("air_between"));
+}
+
+TEST(SkyAir, RadianceOnTheGpuIsTheAtmospheres) {
+    // 30 directions of 12 azimuths from the sun's; the sun's disc is not part of it.
+    const auto atmosphere = sky::atmosphere_of(sky::Air{});
+    for (const double height : {2.0, 3000.0, 11000.0}) {
+        for (const double sun_deg : {60.0, 5.0, -2.0, -8.0}) {
+            test::GpuSnippet gpu("sky");
+            render::AirTextures air;
+            look(gpu, air, height, sun_deg);
+            const auto results = gpu.run(
+                "float azimuth = radians(15.0 * float(x) + 7.0), elevation = radians(3.0 * "
+                "float(y) + 1.0);\n"
+                "vec3 view = vec3(cos(elevation) * vec2(sin(azimuth), cos(azimuth)), "
+                "sin(elevation));\n"
+                "result = vec4(sky_on_background_radiance(view, false), 1.0);",
+                12, 30);
+            std::vector<double> errors;
+            double mean = 0;
+            for (int y = 0; y < 30; ++y) {
+                for (int x = 0; x < 12; ++x) {
+                    const double elevation = radians(3.0 * y + 1);
+                    const glm::dvec3 expected =
+                        sky::colour_of(atmosphere->radiance({height, std::sin(elevation),
+                                                             std::sin(radians(sun_deg)),
+                                                             std::cos(radians(15.0 * x + 7))})) +
+                        sky::night_radiance(std::sin(elevation));
+                    const glm::dvec3 found(results[static_cast<std::size_t>(12 * y + x)]);
+                    errors.push_back(std::abs(found.g / expected.g - 1));
+                    mean += errors.back() / 360;
+                }
+            }
+            fmt::print("[ sky ] from {:.0f} m, sun {:.0f}: mean {:.2f} %\n", height, sun_deg,
+                       100 * mean);
+            EXPECT_LT(worst(errors, "sky radiance, GPU against the atmosphere", 0.08), 0.08);
+            EXPECT_LT(mean, 0.01);
+        }
+    }
+}
+
+TEST(SkyAir, GroundOfTheEarthIsSeenThroughItsAir) {
+    const auto atmosphere = sky::atmosphere_of(sky::Air{});
+    test::GpuSnippet gpu("sky");
+    render::AirTextures air;
+    look(gpu, air, 8000, 30);
+    const auto results = gpu.run(
+        "float elevation = radians(-4.0 - 3.0 * float(x));\n"
+        "vec3 view = vec3(0.0, cos(elevation), sin(elevation));\n"
+        "result = vec4(air_radiance(view) + 0.12 * air_ground(view), 1.0);",
+        28, 1);
+    std::vector<double> errors;
+    for (int x = 0; x < 28; ++x) {
+        const glm::dvec3 expected = sky::colour_of(atmosphere->radiance(
+            {8000, std::sin(radians(-4.0 - 3 * x)), std::sin(radians(30.0)), 1}));
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].g / expected.g - 1));
+    }
+    EXPECT_LT(worst(errors, "ground of the Earth, GPU against the atmosphere", 0.03), 0.03);
+}
+
+TEST(SkyAir, ColoursOfTheDuskStayAboveBlack) {
+    test::GpuSnippet gpu("sky");
+    render::AirTextures air;
+    look(gpu, air, 2, 0);
+    for (const glm::vec4& result :
+         gpu.run(std::string(kDirection) + "result = vec4(air_radiance(view), 1.0);", 360, 181))
+        for (int c = 0; c < 3; ++c)
+            ASSERT_GE(result[c], 0);
 }
 
 // Stars. tools/sky/stars.h has their texture, tests/golden/test_stars.cpp their places in pictures.

@@ -1,0 +1,195 @@
+#include "sky/atmosphere.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "sky/columns.h"
+
+namespace relevo::sky {
+namespace {
+
+constexpr std::size_t kCount = kWavelengths;
+constexpr int kViewSteps = 40;
+
+/// Directions over which light at a place is summed, by elevation; those around are even.
+struct Ring {
+    double sine, weight;  // weights of all sum to 2
+};
+constexpr int kAround = 6, kTableSteps = 20;
+
+/// Gauss-Legendre nodes above and below the horizon, dense about it.
+std::vector<Ring> rings(double horizon) {
+    constexpr std::array<double, 4> kNodes{0.1834346424956498, 0.5255324099163290,
+                                           0.7966664774136267, 0.9602898564975363};
+    constexpr std::array<double, 4> kWeights{0.3626837833783620, 0.3137066458778873,
+                                             0.2223810344533745, 0.1012285362903763};
+    std::vector<Ring> made;
+    for (const double side : {1.0, -1.0}) {
+        const double reach = side - horizon;
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (const double sign : {-1.0, 1.0}) {
+                const double x = 0.5 + 0.5 * sign * kNodes[i];
+                made.push_back({horizon + reach * x * x, kWeights[i] * x * std::abs(reach)});
+            }
+        }
+    }
+    return made;
+}
+
+/// The part of the aerosol's phase function that harmonics of the second degree have, without
+/// what counts as not scattered [1/sr].
+float smooth_phase(const Coefficients& air, double cosine) {
+    constexpr double g = kAerosolAsymmetry;
+    const double f = air.forward;
+    return static_cast<float>(
+        (1 - f + 3 * (g - f) * cosine + 2.5 * (g * g - f) * (3 * cosine * cosine - 1)) / (4 * kPi));
+}
+
+/// Adds what a ray brings to the light of a place.
+void add(const Coefficients& air, const Brought& brought, double sine, const Sun& sun,
+         double solid_angle, Diffuse& to) {
+    const auto direction = harmonics(sine, std::sqrt(1 - sine * sine) * sun.azimuth_cos);
+    const float phase = smooth_phase(air, ray_sun_cosine(sine, sun));
+    const auto weight = static_cast<float>(solid_angle);
+    const auto level = static_cast<float>(std::max(sine, 0.0));
+    for (std::size_t k = 0; k < kCount; ++k) {
+        const float radiance =
+            weight * (brought.air[k] + phase * brought.aerosol[k] + air.albedo * brought.ground[k]);
+        for (std::size_t c = 0; c < kHarmonics; ++c)
+            to.moments[c][k] += direction[c] * radiance;
+        to.level[k] += level * radiance;
+    }
+}
+
+/// The light that arrives everywhere after one more scattering of `sources`.
+DiffuseTable scatter(const Coefficients& air, const Sources& sources) {
+    std::vector<Sun> suns;
+    for (int column = 0; column < DiffuseTable::kSuns; ++column)
+        for (int i = 0; i < kAround; ++i)
+            suns.push_back({DiffuseTable::sun_of(column), std::cos((i + 0.5) * kPi / kAround)});
+    DiffuseTable made;
+    parallel_for(0, DiffuseTable::kHeights, 1, [&](int first, int last) {
+        std::vector<Brought> brought(suns.size());
+        for (int row = first; row < last; ++row) {
+            const double height = DiffuseTable::height_of(row);
+            for (const Ring& ring : rings(horizon_sine(height))) {
+                const Path path = path_of(height, ring.sine);
+                brought.assign(suns.size(), Brought{.through = filled(1)});
+                integrate(air, sources, {height, ring.sine, suns}, step_ends(path, kTableSteps),
+                          path.ground, brought);
+                for (std::size_t i = 0; i < suns.size(); ++i)
+                    add(air, brought[i], ring.sine, suns[i], 2 * kPi * ring.weight / kAround,
+                        made.at(row, static_cast<int>(i) / kAround));
+            }
+        }
+    });
+    return made;
+}
+
+/// Adds an order of scattering to a sum, each value times a factor that may depend on it.
+template <class Factor>
+void add(DiffuseTable& to, const DiffuseTable& order, const Factor& factor) {
+    for (int row = 0; row < DiffuseTable::kHeights; ++row) {
+        for (int column = 0; column < DiffuseTable::kSuns; ++column) {
+            Diffuse& sum = to.at(row, column);
+            const Diffuse& one = order.at(row, column);
+            for (std::size_t k = 0; k < kCount; ++k) {
+                const float times = factor(row, column, k);
+                for (std::size_t c = 0; c < kHarmonics; ++c)
+                    sum.moments[c][k] += times * one.moments[c][k];
+                sum.level[k] += times * one.level[k];
+            }
+        }
+    }
+}
+
+DiffuseTable all_orders(const Coefficients& air) {
+    constexpr int kOrders = 4;
+    DiffuseTable order = scatter(air, {.sun = true, .diffuse = nullptr});
+    DiffuseTable sum = order;
+    for (int i = 2; i <= kOrders; ++i) {
+        DiffuseTable next = scatter(air, {.sun = false, .diffuse = &order});
+        if (i < kOrders) {
+            add(sum, next, [](int, int, std::size_t) { return 1.0f; });
+        } else {
+            // Further orders are each the same share of the one before.
+            add(sum, next, [&](int row, int column, std::size_t k) {
+                const float before = order.at(row, column).moments[0][k];
+                const float ratio = before > 0 ? next.at(row, column).moments[0][k] / before : 0.0f;
+                return 1 / (1 - std::clamp(ratio, 0.0f, 0.9f));
+            });
+        }
+        order = std::move(next);
+    }
+    return sum;
+}
+
+Brought brought_to(const Atmosphere& from, const Atmosphere::View& view, double distance_m) {
+    const double height = std::max(view.height_m, 0.0);
+    Path path = path_of(height, view.sine);
+    const bool whole = distance_m >= path.end_m;
+    path.end_m = std::clamp(distance_m, path.begin_m, path.end_m);
+    path.lowest_m = std::min(path.lowest_m, path.end_m);
+    Brought brought;
+    brought.through = filled(1);
+    const Sun sun{view.sun_sine, view.azimuth_cos};
+    integrate(from.coefficients(), {.sun = true, .diffuse = &from.diffuse()},
+              {height, view.sine, std::span(&sun, 1)}, step_ends(path, kViewSteps),
+              path.ground && whole, std::span(&brought, 1));
+    return brought;
+}
+
+Spectrum spectrum(const Values& values) {
+    Spectrum made{};
+    std::copy(values.begin(), values.end(), made.begin());
+    return made;
+}
+
+}  // namespace
+
+Atmosphere::Atmosphere(const Air& air)
+    : coefficients_(sky::coefficients(air)), diffuse_(all_orders(coefficients_)) {}
+
+Atmosphere::Atmosphere(const Air& air, DiffuseTable diffuse)
+    : coefficients_(sky::coefficients(air)), diffuse_(std::move(diffuse)) {}
+
+Spectrum Atmosphere::scattered_in(const View& view, double distance_m) const {
+    const Brought brought = brought_to(*this, view, distance_m);
+    const double phase =
+        aerosol_phase(ray_sun_cosine(view.sine, {view.sun_sine, view.azimuth_cos}));
+    Spectrum radiance{};
+    for (std::size_t k = 0; k < kCount; ++k)
+        radiance[k] = kPi * (brought.air[k] + phase * brought.aerosol[k] +
+                             coefficients_.albedo * brought.ground[k]);
+    return radiance;
+}
+
+Spectrum Atmosphere::radiance(const View& view) const {
+    return scattered_in(view, 1e9);
+}
+
+Spectrum Atmosphere::transmittance(double height_m, double sine, double distance_m) const {
+    return spectrum(brought_to(*this, {.height_m = height_m, .sine = sine}, distance_m).through);
+}
+
+Spectrum Atmosphere::sunlight(double height_m, double sun_sine) const {
+    return spectrum(
+        sky::sunlight(coefficients_, coefficients_.aerosol, std::max(height_m, 0.0), sun_sine));
+}
+
+Spectrum Atmosphere::sky_irradiance(double height_m, double sun_sine) const {
+    Spectrum level = spectrum(diffuse_.level(height_m, sun_sine));
+    // What counts as not scattered comes from around the sun.
+    const double h = std::max(height_m, 0.0);
+    const Values passed = sky::sunlight(coefficients_, coefficients_.aerosol_taken, h, sun_sine);
+    const Values direct = sky::sunlight(coefficients_, coefficients_.aerosol, h, sun_sine);
+    for (std::size_t k = 0; k < kCount; ++k)
+        level[k] += (passed[k] - direct[k]) * std::max(sun_sine, 0.0);
+    return level;
+}
+
+}  // namespace relevo::sky

@@ -1,0 +1,219 @@
+#include "sky/eye_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "sky/path.h"
+
+namespace relevo::sky {
+namespace {
+
+constexpr std::size_t kCount = kWavelengths;
+/// Steps along rays. From high up, rays pass the Earth's shadow far away, where steps are long.
+int view_steps(double height_m) {
+    return 24 + static_cast<int>(48 * std::clamp(height_m / 40e3, 0.0, 1.0));
+}
+
+/// A night without moon: airglow and starlight, 0.002 lux on level ground of the sun's 127 500.
+constexpr double kNight = 0.002 / 127500;
+/// The true colour of the night sky is a dull white, which eyes do not see as one: rods have no
+/// colours, and pictures of nights are blue by convention.
+constexpr glm::dvec3 kNightTint{0.66, 0.98, 1.95};
+
+/// colour_of() in single precision.
+glm::vec3 colour(const Values& values) {
+    static const std::array<glm::vec3, kCount> kWeights = [] {
+        std::array<glm::vec3, kCount> weights{};
+        for (std::size_t k = 0; k < kCount; ++k) {
+            Spectrum one{};
+            one[k] = 1;
+            weights[k] = glm::vec3(colour_of(one));
+        }
+        return weights;
+    }();
+    glm::vec3 sum(0);
+    for (std::size_t k = 0; k < kCount; ++k)
+        sum += values[k] * kWeights[k];
+    return sum;
+}
+
+std::vector<Sun> suns_around(int azimuths, double sun_sine) {
+    std::vector<Sun> suns;
+    for (int i = 0; i < azimuths; ++i)
+        suns.push_back({sun_sine, EyeLayout::azimuth_cos(i / (azimuths - 1.0))});
+    return suns;
+}
+
+/// One row of the sky.
+void write_row(const Atmosphere& air, const EyeLayout& layout, int row, std::span<const Sun> suns,
+               std::vector<glm::vec4>& to) {
+    const bool above = row < EyeLayout::kAbove;
+    const double v = above ? row / (EyeLayout::kAbove - 1.0)
+                           : (row - EyeLayout::kAbove) / (EyeLayout::kBelow - 1.0);
+    // A hair off the horizon, on the side that is meant.
+    const double sine = above ? std::max(layout.sine_above(v), layout.horizon + 1e-9)
+                              : std::min(layout.sine_below(v), layout.horizon - 1e-9);
+    const Path path = path_of(layout.height_m, sine);
+    std::vector<Brought> brought(suns.size(), Brought{.through = filled(1)});
+    integrate(air.coefficients(), {.sun = true, .diffuse = &air.diffuse()},
+              {layout.height_m, sine, suns}, step_ends(path, view_steps(layout.height_m)),
+              path.ground, brought);
+    const glm::vec3 tint(kNight * kNightTint);
+    // Air and ground below the horizon are lit by the night sky.
+    const glm::vec3 through = colour(brought.front().through);
+    const glm::vec3 night =
+        above ? glm::vec3(night_radiance(std::max(sine, 0.0))) : 0.5f * tint * (1.0f - through);
+    const glm::vec3 ground = path.ground ? tint * through : glm::vec3(0);
+    constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
+    const auto pi = static_cast<float>(kPi);
+    for (int i = 0; i < EyeLayout::kAzimuths; ++i) {
+        const auto at = static_cast<std::size_t>(row * EyeLayout::kAzimuths + i);
+        constexpr auto kLayer = static_cast<std::size_t>(kRows * EyeLayout::kAzimuths);
+        const Brought& one = brought[static_cast<std::size_t>(i)];
+        to[at] = glm::vec4(pi * colour(one.air) + night, 0);
+        to[kLayer + at] = glm::vec4(pi * colour(one.aerosol), 0);
+        to[2 * kLayer + at] = glm::vec4(pi * colour(one.ground) + ground, 0);
+    }
+}
+
+/// Air between, in all directions of one elevation.
+class Between {
+  public:
+    Between(const Atmosphere& air, const EyeLayout& layout, const glm::vec3& extinction,
+            std::span<const Sun> suns)
+        : air_(air), layout_(layout), extinction_(extinction), suns_(suns) {}
+
+    void write(int row, std::vector<glm::vec4>& to) const {
+        const double sine = layout_.sine_between(row / (EyeLayout::kBetweenElevations - 1.0));
+        // The ground does not end the rays: DEMs have ground below the sea, too.
+        const double begin = path_of(layout_.height_m, sine).begin_m;
+        std::vector<Brought> brought(suns_.size(), Brought{.through = filled(1)});
+        double before = 0;
+        for (int slice = 0; slice < EyeLayout::kDistances; ++slice) {
+            const double distance =
+                std::max(layout_.distance_m(slice / (EyeLayout::kDistances - 1.0)), 10.0);
+            const std::array<double, 3> ends{begin + before, begin + 0.5 * (before + distance),
+                                             begin + distance};
+            integrate(air_.coefficients(), {.sun = true, .diffuse = &air_.diffuse()},
+                      {layout_.height_m, sine, suns_}, ends, false, brought);
+            before = distance;
+            for (std::size_t i = 0; i < suns_.size(); ++i)
+                to[(static_cast<std::size_t>(slice) * EyeLayout::kBetweenElevations +
+                    static_cast<std::size_t>(row)) *
+                       suns_.size() +
+                   i] = texel(brought[i], sine, suns_[i], distance);
+        }
+    }
+
+  private:
+    glm::vec4 texel(const Brought& brought, double sine, const Sun& sun, double distance) const {
+        const auto phase = static_cast<float>(aerosol_phase(ray_sun_cosine(sine, sun)));
+        const glm::vec3 scattered =
+            static_cast<float>(kPi) * (colour(brought.air) + phase * colour(brought.aerosol));
+        const double through = std::clamp<double>(colour(brought.through).g, 1e-20, 1.0);
+        const auto depth = static_cast<float>(std::max(-std::log(through), 1e-9));
+        const glm::vec3 taken(-std::expm1(-depth * extinction_.r),
+                              -std::expm1(-depth * extinction_.g),
+                              -std::expm1(-depth * extinction_.b));
+        const auto night = static_cast<float>(0.5 * kNight);
+        return {scattered / taken + night * glm::vec3(kNightTint),
+                depth / static_cast<float>(distance)};
+    }
+
+    const Atmosphere& air_;
+    const EyeLayout& layout_;
+    glm::vec3 extinction_;
+    std::span<const Sun> suns_;
+};
+
+/// Extinction of colours relative to that of green, on the way to the horizon, where half of the
+/// green light is left.
+glm::vec3 extinction_colour(const Atmosphere& air, const EyeLayout& layout) {
+    const auto passed = [&](double distance_m) {
+        return colour_of(air.transmittance(layout.height_m, layout.horizon, distance_m));
+    };
+    double near_m = 1000, far_m = 4e6;
+    for (int i = 0; i < 24; ++i) {
+        const double middle_m = std::sqrt(near_m * far_m);
+        (passed(middle_m).g > 0.5 ? near_m : far_m) = middle_m;
+    }
+    const glm::dvec3 seen = glm::clamp(passed(near_m), 1e-6, 1 - 1e-9);
+    return glm::vec3(glm::log(seen) / std::log(seen.g));
+}
+
+/// The inverse of EyeLayout::place_of(), by bisection.
+double away_of(double place, double band) {
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (EyeLayout::place_of(middle, band) < place ? low : high) = middle;
+    }
+    return place >= 1 ? 1 : low;
+}
+
+}  // namespace
+
+EyeLayout::EyeLayout(double eye_height_m)
+    : height_m(std::max(eye_height_m, 0.0)), horizon(horizon_sine(height_m)) {
+    constexpr double kAir_m = 8000;  // scale height
+    const double to_horizon_m = -horizon * (kEarthRadius_m + height_m);
+    above_band = std::clamp(4 * kAir_m / std::max(to_horizon_m, 1.0), 0.012, 0.5);
+    below_band = std::max(-5 * horizon, 0.002);
+    farthest_m = std::min(to_horizon_m + 350e3, 1200e3);
+}
+
+double EyeLayout::place_of(double away, double band) {
+    return kEven * away + (1 - kEven) * std::sqrt(away * (1 + band) / (away + band));
+}
+
+double EyeLayout::sine_above(double v) const {
+    return std::min(horizon + (1 - horizon) * away_of(v, above_band), 1.0);
+}
+
+double EyeLayout::sine_below(double v) const {
+    return std::max(horizon - (1 + horizon) * away_of(v, below_band), -1.0);
+}
+
+double EyeLayout::sine_between(double v) const {
+    return v > 0.5 ? sine_above(2 * v - 1) : sine_below(1 - 2 * v);
+}
+
+EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine) {
+    EyeTables made{.layout = EyeLayout(height_m), .sky = {}, .between = {}, .colour = {}};
+    made.colour = extinction_colour(air, made.layout);
+    constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
+    made.sky.resize(static_cast<std::size_t>(EyeLayout::kAzimuths * kRows * EyeLayout::kLayers));
+    made.between.resize(static_cast<std::size_t>(
+        EyeLayout::kBetweenAzimuths * EyeLayout::kBetweenElevations * EyeLayout::kDistances));
+    const std::vector<Sun> around = suns_around(EyeLayout::kAzimuths, sun_sine);
+    const std::vector<Sun> between_around = suns_around(EyeLayout::kBetweenAzimuths, sun_sine);
+    const Between between(air, made.layout, made.colour, between_around);
+    parallel_for(0, kRows + EyeLayout::kBetweenElevations, 4, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            if (row < kRows)
+                write_row(air, made.layout, row, around, made.sky);
+            else
+                between.write(row - kRows, made.between);
+        }
+    });
+    return made;
+}
+
+// The glow of a layer 100 km up, brighter towards the horizon, where air takes it away again.
+// Source: P. van Rhijn 1921, in F. E. Roach and J. L. Gordon, The Light of the Night Sky, 1973.
+glm::dvec3 night_radiance(double sine) {
+    const double ratio = 6371.0 / 6471.0;
+    const double cosine2 = 1 - sine * sine;
+    const double glow = 1 / std::sqrt(1 - ratio * ratio * cosine2);
+    const double air = 1 / (sine + 0.15 * std::pow(std::asin(sine) * 180 / kPi + 3.885, -1.253));
+    const glm::dvec3 kDepth{0.11, 0.16, 0.26};
+    return kNight * 0.72 * kNightTint * (glow * glm::exp(-0.2 * kDepth * air) + 0.35);
+}
+
+}  // namespace relevo::sky

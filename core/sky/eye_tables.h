@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "sky/atmosphere.h"
+
+/// What an eye at a height sees of the air under a sun, as tables of colours that shaders read
+/// (shaders/lib/air.glsl has the same coordinates). Linear sRGB; radiance 1 is that of a white
+/// diffuse surface which faces the sun outside the atmosphere.
+namespace relevo::sky {
+
+/// Coordinates of the tables, all from 0 to 1, 0 and 1 at the centres of the outer texels.
+struct EyeLayout {
+    // Of the sky: rows above the horizon, then rows below it.
+    static constexpr int kAzimuths = 40, kAbove = 72, kBelow = 32;
+    static constexpr double kEven = 0.2;  ///< share of the rows that are even in the sine
+    static constexpr int kLayers = 3;     ///< air, aerosol, ground: as Brought
+    // Of the air between.
+    static constexpr int kBetweenAzimuths = 24, kBetweenElevations = 48, kDistances = 28;
+
+    double height_m = 0;
+    double horizon = 0;  ///< sine of its elevation
+    double above_band =
+        1;  ///< how much of the sky above the horizon gets half of the rows, roughly
+    double below_band = 1;  ///< the same below
+    double farthest_m = 1;  ///< distance at the last slice, from where the ray enters the air
+
+    explicit EyeLayout(double height_m);
+
+    /// Cosine of the angle from the sun's azimuth.
+    static double azimuth_cos(double u) { return 1 - 2 * u * u; }
+    /// Place of an elevation above or below the horizon: dense at the horizon.
+    /// @param away  0 on the horizon, 1 in the zenith or nadir: linear in the sine
+    static double place_of(double away, double band);
+    double sine_above(double v) const;
+    double sine_below(double v) const;
+    /// For the air between: 0 at the nadir, 0.5 at the horizon, 1 at the zenith.
+    double sine_between(double v) const;
+    double distance_m(double w) const { return farthest_m * w * w; }
+};
+
+struct EyeTables {
+    EyeLayout layout;
+    /// By layer, elevation, azimuth; rgb. What the air scatters towards the eye but for sunlight
+    /// scattered by the aerosol; that, without the phase function; what white ground at the end of
+    /// the rays below the horizon sends.
+    std::vector<glm::vec4> sky;
+    /// By distance, elevation, azimuth. rgb: light scattered towards the eye over what the air
+    /// between takes away, 1 - exp(-a distance colour); a: mean extinction of green light on the
+    /// way [1/m].
+    std::vector<glm::vec4> between;
+    /// Extinction in red, green and blue, relative to that of green light.
+    glm::vec3 colour;
+};
+
+/// @param sun_sine  of the sun's elevation at the eye, geometric: most of the light of dusk comes
+/// from
+///                  air so high that it is hardly bent
+EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine);
+
+/// Radiance of a moonless night sky, which is added to the sun's. @param sine  of the elevation
+glm::dvec3 night_radiance(double sine);
+
+}  // namespace relevo::sky

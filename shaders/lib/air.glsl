@@ -1,0 +1,81 @@
+//! provides  air_radiance, air_ground, air_between_eye_and: the clear atmosphere as the eye of the frame sees it
+//! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
+//! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model
+
+//@ include lib/filtered.glsl
+
+uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight by the aerosol, ground
+uniform sampler3D air_between;   // by azimuth, elevation and distance
+
+const vec3 air_sky_size = vec3(40.0, 72.0, 32.0);      // EyeLayout: azimuths, rows above the horizon and below
+const vec3 air_between_size = vec3(24.0, 48.0, 28.0);  // azimuths, elevations, distances
+const float air_even = 0.2;                            // share of the rows that are even in the sine
+const float air_asymmetry = 0.8;                       // core/sky/air.h: kAerosolAsymmetry
+
+/// What the sun's light is scattered into, of an aerosol. @param cosine  of the angle from the sun [1/sr]
+float air_aerosol_phase(in float cosine) {
+    const float g = air_asymmetry;
+    float root = inversesqrt(1.0 + g * g - 2.0 * g * cosine);
+    return 0.0795774715 * (1.0 - g * g) * root * root * root;
+}
+
+/// Place of a direction among the azimuths, 0 towards the sun and 1 away from it.
+float air_azimuth(in vec3 direction) {
+    vec3 up = frame.eye_up.xyz, to_sun = frame.eye_sun.xyz;
+    float sine = dot(direction, up), sun_sine = dot(to_sun, up);
+    float level2 = max((1.0 - sine * sine) * (1.0 - sun_sine * sun_sine), 1e-12);
+    float cosine = (dot(direction, to_sun) - sine * sun_sine) * inversesqrt(level2);
+    return sqrt(clamp(0.5 - 0.5 * cosine, 0.0, 1.0));
+}
+
+/// Place of an elevation: 0 on the horizon, 1 in the zenith, -1 in the nadir. @param sine  of the elevation
+float air_elevation(in float sine) {
+    float above = sine - frame.eye_up.w;
+    bool below = above < 0.0;
+    float x = below ? -above / (1.0 + frame.eye_up.w) : above / (1.0 - frame.eye_up.w);
+    float band = below ? frame.air_mapping.y : frame.air_mapping.x;
+    float place = mix(sqrt(max(x * (1.0 + band) / (x + band), 0.0)), x, air_even);
+    return below ? -min(place, 1.0) : min(place, 1.0);
+}
+
+/// Where a direction is in air_sky.
+vec2 air_sky_place(in vec3 direction) {
+    float elevation = air_elevation(dot(direction, frame.eye_up.xyz));
+    float row = elevation < 0.0 ? air_sky_size.y - elevation * (air_sky_size.z - 1.0) : elevation * (air_sky_size.y - 1.0);
+    return vec2((air_azimuth(direction) * (air_sky_size.x - 1.0) + 0.5) / air_sky_size.x,
+                (row + 0.5) / (air_sky_size.y + air_sky_size.z));
+}
+
+/// Radiance of the air in a direction, up to its end or to the ground, which is not part of it.
+vec3 air_radiance(in vec3 direction) {
+    vec2 place = air_sky_place(direction);
+    float phase = air_aerosol_phase(dot(direction, frame.eye_sun.xyz));
+    vec3 radiance = filtered(air_sky, vec3(place, 0.0)).rgb + phase * filtered(air_sky, vec3(place, 1.0)).rgb;
+    return max(radiance, 0.0);  // a few colours of dusk are outside of sRGB
+}
+
+/// What plain ground of the Earth sends through the air, for an albedo of 1; 0 above the horizon.
+vec3 air_ground(in vec3 direction) {
+    if (dot(direction, frame.eye_up.xyz) >= frame.eye_up.w) return vec3(0.0);
+    return max(filtered(air_sky, vec3(air_sky_place(direction), 2.0)).rgb, 0.0);
+}
+
+/// The air between the eye and a point.
+struct AirBetween {
+    vec3 radiance;  // of air that lets no light through
+    vec3 depth;     // optical depth in red, green and blue
+};
+
+/// What takes of the light of a point, and adds to it: mix(radiance, light, exp(-depth)).
+/// @param direction  unit vector from the eye  @param distance_m  to the point
+AirBetween air_between_eye_and(in vec3 direction, in float distance_m) {
+    float sine = dot(direction, frame.eye_up.xyz);
+    // An eye above the air looks through empty space first.
+    float down = (6371000.0 + max(frame.eye_m.w, 0.0)) * sine;
+    float entry_m = max(-down - sqrt(max(down * down - frame.air_colour.w, 0.0)), 0.0);
+    float way_m = max(distance_m - entry_m, 0.0);
+    vec3 at = vec3(air_azimuth(direction), 0.5 + 0.5 * air_elevation(sine),
+                   sqrt(min(way_m / frame.air_mapping.z, 1.0)));
+    vec4 air = filtered(air_between, (at * (air_between_size - 1.0) + 0.5) / air_between_size);
+    return AirBetween(air.rgb, way_m * air.a * frame.air_colour.rgb);
+}

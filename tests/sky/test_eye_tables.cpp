@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "sky/eye_tables.h"
+#include "sky/path.h"
+#include "sky/shipped.h"
+
+namespace relevo::sky {
+namespace {
+
+const Atmosphere& clean() {
+    static const Atmosphere kClean;
+    return kClean;
+}
+
+double luminance(const glm::dvec3& c) {
+    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+}
+
+/// As a sampler reads a table of two dimensions, 0 and 1 at the outer texels' centres.
+glm::dvec3 read(const glm::vec4* table, int columns, int rows, double u, double v) {
+    const double x = u * (columns - 1), y = v * (rows - 1);
+    const int i = std::min(static_cast<int>(x), columns - 2);
+    const int j = std::min(static_cast<int>(y), rows - 2);
+    const auto at = [&](int c, int r) { return glm::dvec3(table[r * columns + c]); };
+    return glm::mix(glm::mix(at(i, j), at(i + 1, j), x - i),
+                    glm::mix(at(i, j + 1), at(i + 1, j + 1), x - i), y - j);
+}
+
+/// The inverse of EyeLayout::sine_above() and sine_below().
+double row_of(const EyeLayout& layout, double sine, bool above) {
+    const double x = above ? (sine - layout.horizon) / (1 - layout.horizon)
+                           : (layout.horizon - sine) / (1 + layout.horizon);
+    const double band = above ? layout.above_band : layout.below_band;
+    return 0.2 * x + 0.8 * std::sqrt(x * (1 + band) / (x + band));
+}
+
+TEST(EyeLayout, CoversAllElevations) {
+    for (const double height : {0.0, 2.0, 300.0, 3e3, 11e3, 40e3, 400e3}) {
+        const EyeLayout layout(height);
+        EXPECT_NEAR(layout.sine_above(0), layout.horizon, 1e-12);
+        EXPECT_NEAR(layout.sine_above(1), 1, 1e-12);
+        EXPECT_NEAR(layout.sine_below(0), layout.horizon, 1e-12);
+        EXPECT_NEAR(layout.sine_below(1), -1, 1e-12);
+        EXPECT_NEAR(layout.sine_between(0.5), layout.horizon, 1e-12);
+        for (const double v : {0.1, 0.5, 0.9}) {
+            EXPECT_NEAR(row_of(layout, layout.sine_above(v), true), v, 1e-9);
+            EXPECT_NEAR(row_of(layout, layout.sine_below(v), false), v, 1e-9);
+        }
+    }
+}
+
+TEST(EyeTables, BetweenTheirTexelsAreTheAtmospheresRadiance) {
+    // Between texels, from the sea to orbit, of suns from noon to dusk.
+    for (const double height : {2.0, 300.0, 3e3, 11e3, 40e3, 400e3}) {
+        for (const double sun_deg : {40.0, 5.0, 0.0, -4.0, -8.0}) {
+            const double sun = std::sin(radians(sun_deg));
+            const EyeTables tables = eye_tables(clean(), height, sun);
+            std::vector<double> errors;
+            double brightest = 0;
+            std::vector<double> of_brightest;
+            for (double v = 0.03; v < 0.995; v += 0.061) {
+                for (double u = 0.05; u < 1; u += 0.15) {
+                    const double sine = tables.layout.sine_above(v);
+                    const double azimuth_cos = EyeLayout::azimuth_cos(u);
+                    const glm::dvec3 night = night_radiance(std::max(sine, 0.0));
+                    const double expected = luminance(
+                        colour_of(clean().radiance({height, sine, sun, azimuth_cos})) + night);
+                    const double phase = aerosol_phase(ray_sun_cosine(sine, {sun, azimuth_cos}));
+                    constexpr int kLayer =
+                        EyeLayout::kAzimuths * (EyeLayout::kAbove + EyeLayout::kBelow);
+                    const auto layer = [&](int l) {
+                        return read(tables.sky.data() + l * kLayer, EyeLayout::kAzimuths,
+                                    EyeLayout::kAbove, u, v);
+                    };
+                    const double found = luminance(layer(0) + phase * layer(1));
+                    if (expected < 1e-7) continue;
+                    errors.push_back(std::abs(found / expected - 1));
+                    brightest = std::max(brightest, expected);
+                    of_brightest.push_back(std::abs(found - expected));
+                }
+            }
+            ASSERT_FALSE(errors.empty());
+            double mean = 0;
+            for (const double e : errors)
+                mean += e / static_cast<double>(errors.size());
+            const double worst = *std::max_element(errors.begin(), errors.end());
+            fmt::print(
+                "[ accuracy ] sky from {:.0f} m, sun {:.0f}: mean {:.2f} %, worst {:.1f} %\n",
+                height, sun_deg, 100 * mean, 100 * worst);
+            // From orbit, few rows are in the thin upper air.
+            EXPECT_LT(mean, height > 100e3 ? 0.07 : 0.01) << height << " " << sun_deg;
+            EXPECT_LT(*std::max_element(of_brightest.begin(), of_brightest.end()),
+                      0.02 * brightest);
+        }
+    }
+}
+
+TEST(EyeTables, AirBetweenScattersAndPassesWhatTheAtmosphereDoes) {
+    for (const double height : {2.0, 3e3, 11e3}) {
+        for (const double sun_deg : {40.0, 5.0, -4.0}) {
+            const double sun = std::sin(radians(sun_deg));
+            const EyeTables tables = eye_tables(clean(), height, sun);
+            std::vector<double> errors, passed;
+            // On texels, between distances: 1 to 300 km.
+            for (const int row : {20, 23, 26}) {
+                for (const int column : {3, 12, 20}) {
+                    for (double w = 0.1; w < 0.9; w += 0.083) {
+                        const double distance = tables.layout.distance_m(w);
+                        const double sine =
+                            tables.layout.sine_between(row / (EyeLayout::kBetweenElevations - 1.0));
+                        const double u = column / (EyeLayout::kBetweenAzimuths - 1.0);
+                        const Path path = path_of(height, sine);
+                        if (path.ground && distance > path.end_m) continue;
+                        constexpr int kSlice =
+                            EyeLayout::kBetweenAzimuths * EyeLayout::kBetweenElevations;
+                        const double z = w * (EyeLayout::kDistances - 1);
+                        const int slice = static_cast<int>(z);
+                        const auto at = [&](int s) {
+                            return glm::dvec4(tables.between[static_cast<std::size_t>(
+                                s * kSlice + row * EyeLayout::kBetweenAzimuths + column)]);
+                        };
+                        const glm::dvec4 air = glm::mix(at(slice), at(slice + 1), z - slice);
+                        const glm::dvec3 through =
+                            glm::exp(-air.a * distance * glm::dvec3(tables.colour));
+                        const glm::dvec3 scattered = glm::dvec3(air) * (1.0 - through);
+                        const double expected = luminance(colour_of(clean().scattered_in(
+                            {height, sine, sun, EyeLayout::azimuth_cos(u)}, distance)));
+                        errors.push_back(std::abs(luminance(scattered) / expected - 1));
+                        passed.push_back(
+                            std::abs(through.g -
+                                     colour_of(clean().transmittance(height, sine, distance)).g));
+                    }
+                }
+            }
+            const double worst = *std::max_element(errors.begin(), errors.end());
+            const double lost = *std::max_element(passed.begin(), passed.end());
+            fmt::print(
+                "[ accuracy ] air between, from {:.0f} m, sun {:.0f}: scattered {:.1f} %, "
+                "passed {:.3f}\n",
+                height, sun_deg, 100 * worst, lost);
+            EXPECT_LT(worst, 0.02) << height << " " << sun_deg;
+            EXPECT_LT(lost, 0.03) << height << " " << sun_deg;
+        }
+    }
+}
+
+TEST(EyeTables, MeetTheGroundWithoutAGap) {
+    // Just above and just below the horizon of a low eye, where the same air is looked through.
+    const EyeTables tables = eye_tables(clean(), 2, std::sin(radians(20.0)));
+    constexpr int kRow = EyeLayout::kAzimuths;
+    for (int i = 0; i < kRow; ++i) {
+        const double above = luminance(tables.sky[static_cast<std::size_t>(i)]);
+        const double next = luminance(tables.sky[static_cast<std::size_t>(kRow + i)]);
+        EXPECT_NEAR(next / above, 1, 0.02);
+    }
+}
+
+TEST(Shipped, TheDefaultAtmosphereIsTheOneThatIsComputed) {
+    const auto shipped = atmosphere_of(Air{});
+    EXPECT_EQ(shipped, atmosphere_of(Air{}));
+    const Diffuse found = shipped->diffuse().read(1200, 0.3),
+                  expected = clean().diffuse().read(1200, 0.3);
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        EXPECT_EQ(found.moments[0][k], expected.moments[0][k]);
+    EXPECT_NE(atmosphere_of(Air{.angstrom_beta = 0.1}), shipped);
+}
+
+}  // namespace
+}  // namespace relevo::sky

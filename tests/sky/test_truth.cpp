@@ -1,0 +1,46 @@
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "sky/atmosphere.h"
+#include "support/sky_truth.h"
+
+namespace relevo::sky {
+namespace {
+
+/// Atmospheres are slow to make.
+const Atmosphere& atmosphere(const Air& air) {
+    static std::map<double, Atmosphere> made;
+    const auto found = made.find(air.angstrom_beta);
+    return found != made.end() ? found->second
+                               : made.emplace(air.angstrom_beta, Atmosphere(air)).first->second;
+}
+
+TEST(Atmosphere, IsThePathIntegralsSky) {
+    // The limits of a sky that is to be told from the true one by nobody: the luminance of 30
+    // directions, and their colours.
+    const auto scores = test::score_sky(test::sky_truth(), [](const test::SkyRow& row) {
+        return atmosphere(row.parameters())
+            .radiance({.height_m = row.height_m,
+                       .sine = std::sin(radians(row.elevation_deg)),
+                       .sun_sine = std::sin(radians(row.sun_deg)),
+                       .azimuth_cos = std::cos(radians(row.azimuth_deg))});
+    });
+    ASSERT_GT(scores.size(), 10u);
+    for (const test::SkyScore& score : scores) {
+        SCOPED_TRACE(score.air + " air, " + std::to_string(score.height_m) + " m, sun " +
+                     std::to_string(score.sun_deg));
+        const double limit = score.sun_deg >= 5 ? 0.05 : score.sun_deg >= -2 ? 0.15 : 0.5;
+        // In turbid air the aerosol scatters several times, more sharply than the harmonics have
+        // it.
+        const bool turbid = score.air == "turbid";
+        EXPECT_LT(score.mean_error, turbid ? std::max(limit, 0.11) : limit);
+        EXPECT_LT(score.mean_uv, 0.01);
+        EXPECT_LT(score.worst_uv, turbid ? 0.03 : 0.021);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::sky
