@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,8 +11,9 @@
 
 #include "base/units.h"
 #include "path_integral.h"
+#include "sun/daylight.h"
 #include "sun/position.h"
-#include "support/support.h"
+#include "support/sky_truth.h"
 
 /// The path integral beside light that was measured. What is fitted and what is taken from
 /// elsewhere: docs/accuracy-sky.md.
@@ -318,6 +320,30 @@ TEST(MeasuredLight, SpectraOfClearSkiesOverSingapore) {
         fmt::print("{}\n", text);
         EXPECT_LT(shape.error, 0.08) << c.name;
     }
+}
+
+/// Illuminance of level ground at dusk: P. K. Seidelmann (ed.), Explanatory Supplement to the
+/// Astronomical Almanac, 1992, p. 491, a fit to measurements. Days differ by a factor of two.
+TEST(MeasuredLight, IlluminanceOfDusk) {
+    const std::vector<std::pair<double, double>> published{
+        {-2, 189.4}, {-4, 29.93}, {-6, 3.412}, {-8, 0.3481}};
+    double largest = 1;
+    for (const test::SkyRow& row : test::sky_truth("sky_truth_level.csv")) {
+        if (row.air != "clean" || row.height_m != 0) continue;
+        for (const auto& [sun_deg, lux] : published) {
+            if (row.sun_deg != sun_deg) continue;
+            const double ratio = sun::kSolarIlluminance_lux * row.luminance / lux;
+            fmt::print("[ sky ] sun {:.0f} degrees: {:.4g} lux, published {:.4g}: {:.2f} of it\n",
+                       sun_deg, lux * ratio, lux, ratio);
+            largest = std::max({largest, ratio, 1 / ratio});
+        }
+    }
+    fmt::print(
+        "[ accuracy ] illuminance of dusk, -2 to -8 degrees: within a factor of {:.2f} of the "
+        "Explanatory Supplement's\n",
+        largest);
+    EXPECT_GT(largest, 1);
+    EXPECT_LT(largest, 2.1);
 }
 
 }  // namespace

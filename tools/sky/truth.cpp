@@ -37,7 +37,7 @@ std::vector<Place> places() {
             {"clean", clean, 3000, some, high, three},
             {"clean", clean, 11000, some, high, three},
             {"clean", clean, 400000, {60, 10, 0, -8}, limb, {15}},
-            {"turbid", turbid, 0, {60, 30, 10, 2, -2, -6}, sky, round}};
+            {"turbid", turbid, 0, {60, 30, 10, 2}, sky, round}};
 }
 
 double wanted_error(double sun_deg) {
