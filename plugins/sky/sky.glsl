@@ -7,6 +7,7 @@
 //!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
 //@ include lib/filtered.glsl
+//@ include lib/moon.glsl
 
 uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
@@ -88,7 +89,8 @@ vec3 sky_air_light(in float cosine) {
 
 /// What level ground sends upwards.
 vec3 sky_ground(in float sun_sine) {
-    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
+    float sine = frame.eye_moon_light.a > 0.0 ? frame.sun_apparent.z : sun_sine;
+    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sine, 0.0) * frame.sun_light[0].rgb);
 }
 
 /// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
@@ -261,11 +263,19 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     // What has set is behind the Earth.
     if (with_disc && sine > frame.eye_up.w) {
         vec3 apart = to_sun - direction;
-        sun += sky_disc * sky_sun(dot(apart, apart));
+        float uncovered = moon_uncovered(direction);
+        sun += uncovered * sky_disc * sky_sun(dot(apart, apart));
 #if HAS_night
-        radiance += sky_starlight(direction, up);
+        radiance += uncovered * sky_starlight(direction, up);
 #endif
+        radiance += moon_on_sky(direction, to_sun, uncovered);
     }
+#if HAS_night
+    // As the aureole of the sun.
+    if (frame.eye_moon_light.a > 0.0)
+        radiance += sky_aureole * sky_air_mass_of(dot(frame.eye_moon.xyz, up)) *
+                    sky_glow(dot(frame.eye_moon.xyz, direction)) * frame.eye_moon_light.rgb;
+#endif
     radiance += sun * frame.eye_sun_light.rgb;
     if (sky_earth) {
         // The light of the horizon comes from far away; what is seen lower has nearer air before it.
