@@ -14,6 +14,8 @@
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/celestial.h"
+#include "sun/eclipse.h"
+#include "sun/moon.h"
 
 namespace relevo::session {
 
@@ -47,6 +49,12 @@ void SceneState::set_time(sun::Instant utc) {
             return refraction_at(model, at);
         };
     inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
+    const sun::MoonPosition moon = sun::moon_position(utc, place);
+    inputs.moon = render::make_moon(moon, position_, inputs.stars);
+    inputs.sun_visible = sun::sun_visible_fraction(utc, place);
+    inputs.sun.strength = glm::dvec3(inputs.sun_visible);
+    render::choose_direct_light(inputs,
+                                render::make_sun_light(moon, air_, *ground_, dem_->field.grid));
     inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
 }
 

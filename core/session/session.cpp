@@ -241,7 +241,7 @@ std::vector<render::SunSeen> Session::read_sun_seen() const {
 }
 
 const render::SunLight& Session::sun_light() const {
-    return impl_->state.inputs.sun;
+    return impl_->state.inputs.direct_light();
 }
 
 const scene::Camera& Session::camera() const {
