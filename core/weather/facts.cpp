@@ -113,7 +113,7 @@ std::vector<std::string> present_words(const PresentWeather& now) {
     if (now.drizzle) words.push_back(fmt::format("{}drizzle", how));
     if (now.snow) words.push_back(fmt::format("{}snow", how));
     if (now.hail) words.emplace_back("hail");
-    if (now.fog) words.emplace_back(now.shallow_fog ? "shallow fog" : "fog");
+    if (now.fog) words.push_back(fmt::format("{}fog", now.shallow_fog ? "shallow " : ""));
     if (now.mist) words.emplace_back("mist");
     return words;
 }

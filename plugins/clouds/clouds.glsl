@@ -27,10 +27,10 @@ float clouds_over(in vec2 place, in float height_m) {
     float tau = 0.0;
     int count = clouds_count();
     for (int i = 0; i < 3; ++i) {
-        if (i >= count) break;
         clouds_Deck d = clouds_deck(i);
         float above = clamp((clouds_column_top_m(d, columns[i], columns.a) - height_m) / max(clouds_column_top_m(d, columns[i], columns.a) - d.base_m, 1.0), 0.0, 1.0);
         if (d.cover > 0.0) tau += above * clouds_tau(d, columns[i], columns.a);
+        if (i + 1 >= count) break;
     }
     return tau;
 }
@@ -40,15 +40,14 @@ float clouds_before_sun(in vec3 position_m, in float height_m, in vec3 up, in ve
     float tau = 0.0;
     int count = clouds_count();
     for (int i = 0; i < 3; ++i) {
-        if (i >= count) break;
         clouds_Deck d = clouds_deck(i);
-        if (d.cover <= 0.0 || height_m >= d.top_m) continue;
         float deck_m = max(d.base_m, height_m + 0.1);
         vec3 there = position_m + clouds_way_up(deck_m - height_m, dot(to_sun, up)) * to_sun;
         vec4 columns = clouds_at(clouds_place(there, deck_m));
         float top_m = clouds_column_top_m(d, columns[i], columns.a);
         float above = clamp((top_m - height_m) / max(top_m - d.base_m, 1.0), 0.0, 1.0);
         tau += above * clouds_tau(d, columns[i], columns.a) / max(dot(to_sun, up_at(there)), 0.02);
+        if (i + 1 >= count) break;
     }
     return tau;
 }

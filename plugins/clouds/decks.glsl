@@ -101,24 +101,30 @@ float clouds_thickness(in int deck, in vec2 place) {
     return clouds_share(d.kind, clouds_field(d.kind, cells, stream), d.cover);
 }
 
+/// Decks up to the last one that covers anything; those beyond cost nothing. Loops end after a deck and
+/// not before the next one: software devices compute what follows a break.
+int clouds_count() {
+    return clouds_cover_3 > 0.0 ? 3 : clouds_cover_2 > 0.0 ? 2 : 1;
+}
+
 /// Thickness of the three decks: clouds_share(); and how their tops and depths vary, 0..1.
 vec4 clouds_pass_columns(in Texel t) {
     vec2 place = clouds_of_map(t.at);
     vec2 cells = clouds_cells(place);
     uint stream = uint(clouds_seed) * 4099u + 700u;
     float vary = 0.6 * clouds_octaves(0.55 * cells, 4, stream) + 0.4 * clouds_domes(0.8 * cells, stream + 9u);
-    return vec4(clouds_thickness(0, place), clouds_thickness(1, place), clouds_thickness(2, place),
-                clamp(vary, 0.0, 1.0));
+    vec3 shares = vec3(-4.0);
+    int count = clouds_count();
+    for (int i = 0; i < 3; ++i) {
+        shares[i] = clouds_thickness(i, place);
+        if (i + 1 >= count) break;
+    }
+    return vec4(shares, clamp(2.2 * vary - 0.7, 0.0, 1.0));
 }
 
 /// The same at any place, from 0 to 1. Clamped after the texture's filter, so that edges are smooth.
 vec4 clouds_at(in vec2 place) {
     return clamp(textureLod(clouds_columns, clouds_map_at(place), 0.0), 0.0, 1.0);
-}
-
-/// Decks beyond the last one that covers anything cost nothing.
-int clouds_count() {
-    return clouds_cover_3 > 0.0 ? 3 : clouds_cover_2 > 0.0 ? 2 : 1;
 }
 
 /// Height of a cloud over its deck's, 0..1. @param share  clouds_share()
@@ -136,5 +142,5 @@ float clouds_tau(in clouds_Deck d, in float share, in float vary) {
 
 /// Top of a column [m].
 float clouds_column_top_m(in clouds_Deck d, in float share, in float vary) {
-    return mix(d.base_m, d.top_m, max(clouds_height(d, share) * (1.0 - 0.8 * clouds_variation * vary), 1e-3));
+    return mix(d.base_m, d.top_m, max(clouds_height(d, share) * (1.0 - (d.kind == 1 ? 1.6 : 0.8) * clouds_variation * vary), 1e-3));
 }

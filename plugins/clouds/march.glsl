@@ -72,6 +72,15 @@ float clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in 
     return exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu);
 }
 
+/// Light on the waves of a sheet's top over that of a level one: slopes towards the sun have more.
+float clouds_relief(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float mu) {
+    const float step_m = 250.0;
+    vec2 place = clouds_place(position_m, height_m);
+    vec4 here = clouds_at(place), there = clouds_at(place + step_m * normalize(to_sun.xy + 1e-6));
+    float rise = (clouds_column_top_m(d, there[deck], there.a) - clouds_column_top_m(d, here[deck], here.a)) / step_m;
+    return clamp(1.0 - 0.9 * rise / max(mu, 0.25), 0.4, 1.5);
+}
+
 /// Light of a point in a deck: x by the sun's light, y by that of the sky.
 /// @param taus  clouds_extinction()
 vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 taus, in vec3 direction,
@@ -83,10 +92,12 @@ vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float heig
     float mu = clamp(sun_sine, 0.0, 1.0);
     // As a layer, lit from above; as a heap, which stands in the light.
     float layer = max(mu, 0.03) * clouds_inside(taus.y / max(mu, 0.15) * max(mu, 0.3), taus.z, sine);
-    float heap = clouds_inside(before, behind, cosine) * (0.45 + 0.55 * mu);
+    float heap = clouds_inside(before, behind, cosine) * (d.kind == 0 ? 0.45 + 0.55 * mu : 1.5 * mu);
     float open = mix(d.kind == 0 ? 0.35 : 0.6, 1.0, clamp((height_m - d.base_m) / (d.top_m - d.base_m), 0.0, 1.0));
-    float stands = d.kind == 0 ? 0.75 : 0.1;
-    float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + 0.6 * clouds_phase(cosine) * exp(-before);
+    float once = d.kind == 0 ? 0.6 : mu / (mu + abs(sine) + 0.05);
+    if (d.kind == 1 && sine < 0.0) layer *= clouds_relief(d, deck, position_m, height_m, to_sun, mu);
+    float stands = d.kind == 0 ? 0.75 : sine < 0.0 ? 0.25 : 0.1;
+    float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + once * clouds_phase(cosine) * exp(-before);
     float sky = open * clouds_inside(taus.y, taus.z, sine);
     // Below, the ground's light; less of it the more is in shade.
     float bounced = 0.15 * clouds_inside(taus.z, taus.y, -sine);
@@ -100,9 +111,30 @@ float clouds_ray_height(in float sine, in float way_m) {
     return frame.eye_m.w + way_m * (sine + 0.5 * (1.0 - sine * sine) / clouds_earth_m * way_m);
 }
 
-/// Where sample i of a ray begins, 0..1: nearer to each other near the eye.
-float clouds_step(in float i, in vec2 ends) {
-    return pow(i / float(clouds_steps), ends.y > 1.5 * ends.x ? 1.7 : 1.0);
+/// How far along a deck a share of the samples reaches [m]: nearer to each other near the eye.
+float clouds_way(in float share, in vec2 ends) {
+    return mix(ends.x, ends.y, ends.y > 1.5 * ends.x ? pow(share, 1.7) : share);
+}
+
+float clouds_share_of_way(in float way_m, in vec2 ends) {
+    float share = clamp((way_m - ends.x) / (ends.y - ends.x), 0.0, 1.0);
+    return ends.y > 1.5 * ends.x ? pow(share, 1.0 / 1.7) : share;
+}
+
+/// Follows a ray into a cloud by growing steps. @returns opacity, mean way of what is seen, end [m]
+vec3 clouds_dig(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float from_m, in float first_m,
+                in float limit_m) {
+    float passes = 1.0, mean_m = 0.0, step_m = first_m;
+    for (int i = 0; i < 8; ++i) {
+        float at_m = min(from_m + 0.5 * step_m, limit_m);
+        step_m = min(step_m, max(limit_m - from_m, 0.0));
+        float opaque = 1.0 - exp(-step_m * clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x);
+        mean_m += passes * opaque * at_m;
+        passes *= 1.0 - opaque;
+        from_m += step_m;
+        step_m *= 1.8;
+    }
+    return vec3(1.0 - passes, mean_m / max(1.0 - passes, 1e-6), from_m);
 }
 
 /// The edge of a cloud between a point outside and one inside of it [m].
@@ -124,46 +156,35 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     vec2 ends = clouds_inside_deck(d, frame.eye_m.w, sine);
     ends.y = min(ends.y, min(limit_m, clouds_far_m));
     if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
-    int i = 0;
-    bool outside = ends.x > 0.0;
-    float before_m = ends.x, last_m = ends.x;
+    float way = 0.0, last_m = ends.x, part = 1.0 / float(clouds_steps);
     vec3 to_sun = frame.eye_sun.xyz;
     float shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
                                      dot(to_sun, up_at(ends.x * direction)));
-    // Each turn finds the next sample with cloud, then lights it: light is dear, and a device computes
-    // it for all pixels of a group.
-    for (int turn = 0; turn < clouds_steps; ++turn) {
-        float at_m = 0.0, next_m = 0.0;
+    // Each turn finds the next cloud, follows the ray into it and lights it once: light is dear, and a
+    // device computes it for all pixels of a group.
+    for (int turn = 0; turn < 8; ++turn) {
+        float at_m = last_m;
         bool found = false;
         for (int k = 0; k < clouds_steps; ++k) {
-            if (i >= clouds_steps || found) break;
-            next_m = mix(ends.x, ends.y, clouds_step(float(i + 1), ends));
-            at_m = mix(before_m, next_m, jitter);
+            if (way >= 1.0 || found) break;
+            at_m = clouds_way(min(way + jitter * part, 1.0), ends);
             found = clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x > 0.0;
-            outside = outside || !found;
             if (!found) last_m = at_m;
-            before_m = next_m;
-            ++i;
+            way += part;
         }
         if (!found || seen.z < 0.02) break;
-        // Where the ray enters, so that a cloud's outline does not depend on where samples are.
-        float from_m = outside ? last_m : at_m;
-        if (outside) from_m = clouds_entry(d, deck, direction, sine, last_m, at_m);
-        outside = false;
-        last_m = at_m;
-        float step_m = next_m - from_m;
-        float middle_m = 0.5 * (from_m + next_m);
-        vec3 taus = max(clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)),
-                        clouds_extinction(d, deck, middle_m * direction, clouds_ray_height(sine, middle_m)));
-        float opaque = 1.0 - exp(-taus.x * step_m);
-        float lit_m = from_m + min(1.0 / max(taus.x, 1e-5), 0.5 * (at_m - from_m) + 1.0);
-        vec3 position_m = lit_m * direction;
-        vec3 lit_taus = clouds_extinction(d, deck, position_m, clouds_ray_height(sine, lit_m));
-        vec2 lit = clouds_lit(d, deck, position_m, clouds_ray_height(sine, lit_m), lit_taus, direction, to_sun,
-                              up_at(position_m)) * vec2(shade, 1.0);
-        seen.xy += seen.z * opaque * lit;
-        seen.w += seen.z * opaque * 0.001 * lit_m;
-        seen.z *= 1.0 - opaque;
+        float from_m = at_m > last_m ? clouds_entry(d, deck, direction, sine, last_m, at_m) : at_m;
+        float grid_m = clouds_way(min(way + part, 1.0), ends) - clouds_way(way, ends);
+        vec3 dug = clouds_dig(d, deck, direction, sine, from_m, max(0.02 * (d.top_m - d.base_m), 0.02 * grid_m), ends.y);
+        vec3 position_m = dug.y * direction;
+        float here_m = clouds_ray_height(sine, dug.y);
+        vec3 taus = clouds_extinction(d, deck, position_m, here_m);
+        vec2 lit = clouds_lit(d, deck, position_m, here_m, taus, direction, to_sun, up_at(position_m)) * vec2(shade, 1.0);
+        seen.xy += seen.z * dug.x * lit;
+        seen.w += seen.z * dug.x * 0.001 * dug.y;
+        seen.z *= 1.0 - dug.x;
+        last_m = dug.z;
+        way = max(way, clouds_share_of_way(dug.z, ends));
     }
     return seen;
 }
@@ -174,8 +195,8 @@ vec4 clouds_seen(in vec3 direction, in float limit_m, in float jitter) {
     bool upwards = frame.eye_m.w < clouds_deck(0).top_m || dot(direction, frame.eye_up.xyz) > 0.0;
     int count = clouds_count();
     for (int i = 0; i < 3; ++i) {
-        if (i >= count) break;
         seen = clouds_through(upwards ? i : count - 1 - i, direction, limit_m, jitter, seen);
+        if (i + 1 >= count) break;
     }
     seen.w /= max(1.0 - seen.z, 1e-4);
     return seen;
@@ -184,7 +205,7 @@ vec4 clouds_seen(in vec3 direction, in float limit_m, in float jitter) {
 /// Where in a step a pixel samples, 0..1, even over its neighbours. source: J. Jimenez, Next Generation Post
 /// Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
 float clouds_jitter(in vec2 at_px) {
-    return 0.3 + 0.4 * fract(52.9829189 * fract(dot(floor(at_px), vec2(0.06711056, 0.00583715))));
+    return 0.25 + 0.5 * fract(52.9829189 * fract(dot(floor(at_px), vec2(0.06711056, 0.00583715))));
 }
 
 /// Nearness of the ground that every second pixel shows [1/m]; 0 in the sky.

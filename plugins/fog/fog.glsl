@@ -83,7 +83,10 @@ vec3 fog_light(in vec3 view, in float over, in float under) {
     return (mu * all + 0.5 * once) * frame.eye_sun_light.rgb + all * frame.sky_irradiance.rgb;
 }
 
+bool fog_is_ground = false;  // set by the hooks of the ground: haze then asks for the sky
+
 void fog_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
+    fog_is_ground = true;
 #if !HAS_outside
     float drawn_m = s.height_m * frame.height_range.z;
     factor *= exp(-fog_above(drawn_m, fog_top_at(s.ground_m.xy)) / max(dot(to_sun, s.up), 0.05));
@@ -132,6 +135,8 @@ void fog_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 void fog_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance) {
 #if !HAS_outside
     float sine = dot(direction, frame.eye_up.xyz), top_m = fog_top_m * frame.height_range.z;
+    // From above the air before mountains keeps its own colour.
+    if (fog_is_ground && frame.eye_m.w > top_m) return;
     float up = fog_above(frame.eye_m.w, top_m) / max(sine, 0.005);
     // Below the horizon the fog lies on ground that is not in the DEM.
     float below = frame.eye_m.w > top_m ? smoothstep(-0.002, -0.012, sine - frame.eye_up.w) * 8.0 : 50.0;

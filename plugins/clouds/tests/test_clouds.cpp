@@ -8,8 +8,11 @@
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
+#include "light/fields.h"
+#include "render/drawn.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
+#include "weather/two_stream.h"
 
 namespace relevo {
 namespace {
@@ -161,6 +164,51 @@ TEST(Clouds, LightBelowAUniformDeckIsTheTwoStreams) {
         }
     test::print_accuracy("two-stream on the device", errors, "of the irradiance", 1e-3);
     EXPECT_LT(*std::ranges::max_element(errors), 1e-3);
+}
+
+/// Irradiance on level ground under a uniform deck as a picture has it, in multiples of the sun's
+/// on the level without it, and what is expected: weather::two_stream.
+void check_drawn_light(double tau, const char* utc) {
+    const auto plain = test::field_of(65, 65, {480000, 30, 0, 5400000, 0, -30}, "EPSG:32632",
+                                      [](int, int row) { return 500.0 + 1e-3 * (row % 2); });
+    const test::TestEffect probe{
+        "probe",
+        "void probe_on_material(inout Surface s) {\n"
+        "    s.normal = s.up;\n"
+        "    s.diffuse = s.ambient = vec3(1.0);\n"
+        "    s.specular = vec3(0.0);\n"
+        "}\n"
+        "void probe_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+        "    float sun = frame.sun_light[0].r * frame.sun_apparent.z;\n"
+        "    radiance = vec3(radiance.r / sun, frame.sky_irradiance.r / sun, 1.0) / "
+        "frame.exposure;\n"
+        "}\n"};
+    const auto clouds = effect::load_effect(test::source_dir() / "plugins/clouds", {});
+    test::Drawn drawn(plain, {probe}, 64, 64, 0, {clouds},
+                      {{"clouds.cover_1", "1"},
+                       {"clouds.kind_1", "stratus"},
+                       {"clouds.base_1_m", "3000"},
+                       {"clouds.top_1_m", "3500"},
+                       {"clouds.variation", "0"},
+                       {"clouds.depth_1", fmt::format("{}", tau)}});
+    drawn.shine(utc);
+    drawn.stand(0.5, 0.5, 1200, 0, -89);
+    const image::ImageF image = drawn.radiance();
+    const glm::dvec2 found = test::Drawn::values(image, 32, 32);
+    const double elevation = std::asin(drawn.frame().sun.direction.z);
+    const double mu = std::sin(elevation + drawn.frame().sun.refraction_rad(elevation));
+    const weather::CloudLayerOptics layer{tau};
+    const weather::LayerLight sky = weather::sky_through(layer);
+    const double expected =
+        weather::over_ground(weather::beam_through(layer, mu), sky, 0.15).transmitted() +
+        found.y * weather::over_ground(sky, sky, 0.15).transmitted();
+    EXPECT_NEAR(found.x, expected, 1e-3 * expected + 2e-4) << tau << ' ' << utc;
+}
+
+TEST(Clouds, IrradianceOfADrawnPlainIsTheTwoStreams) {
+    for (const char* const utc : {"2026-06-21T11:00Z", "2026-06-21T16:00Z"})
+        for (const double tau : {0.3, 2.0, 10.0, 100.0})
+            check_drawn_light(tau, utc);
 }
 
 TEST(Clouds, OvercastSkyIsCiesAndShedsItsIrradiance) {
