@@ -1,6 +1,7 @@
 //! provides  what exclusive hooks do when no enabled plugin provides them
 
 //@ include lib/ground.glsl
+//@ include lib/neutral.glsl
 
 /// Phong's reflection of direct light. @returns radiance for an irradiance of 1
 /// source: B. T. Phong, Illumination for computer generated pictures, CACM 18 (1975), eq. 1
@@ -19,20 +20,8 @@ vec3 core_on_background_radiance(in vec3 direction, in bool with_disc) {
     return mix(horizon, zenith, sqrt(height));
 }
 
-/// Keeps colours as they are up to one half and bends brighter ones softly below 1, towards white.
-/// source: Khronos PBR Neutral Tone Mapper specification 1.0 (2024), without its toe; it starts at 0.5
-/// instead of 0.76 and takes less colour away, because skies at dusk and snow at noon are brighter
-/// than the lit studio that it was made for
 void core_on_tonemap(inout vec3 colour) {
-    const float start = 0.5;
-    const float desaturation = 0.07;
-    float peak = max(colour.r, max(colour.g, colour.b));
-    if (peak > start) {
-        const float room = 1.0 - start;
-        float bent = 1.0 - room * room / (peak + room - start);
-        float white = 1.0 - 1.0 / (desaturation * (peak - bent) + 1.0);
-        colour = mix(colour * (bent / peak), vec3(bent), white);
-    }
+    colour = neutral_tones(colour);
 }
 
 /// A matt grey wall.

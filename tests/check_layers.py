@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "effect": 3, "output": 4,
+RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "sky": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "effect": 3, "output": 4,
         "scene": 4, "chart": 5, "render": 6, "session": 7}
 
 # Library headers, and the only layers of core/ that may include them. What is not listed is free.
@@ -16,6 +16,7 @@ OWNERS = {
     "GDAL or PROJ": (re.compile(r"(gdal|ogr_|cpl_|proj\.h|vrtdataset)"), {"geo", "dem", "output"}),
     "GeographicLib": (re.compile(r"GeographicLib/"), {"geo"}),
     "ERFA": (re.compile(r"erfa"), {"sun"}),
+    "libnova": (re.compile(r"libnova/"), {"sun"}),
     "date": (re.compile(r"date/"), {"sun"}),
     "GL": (re.compile(r"(epoxy/|EGL/|GL/)"), {"gl", "render"}),
     "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),
@@ -78,7 +79,7 @@ def check_plugins(root):
     for path in sorted((root / "plugins").glob("*/plugin.json")):
         if not (path.parent / "README.md").exists():
             yield f"{path.parent.relative_to(root)}: no README.md"
-    allowed = {"base", "geo", "sun", "shader", "effect"}
+    allowed = {"base", "geo", "sky", "sun", "shader", "effect"}
     for path in sorted((root / "plugins").rglob("*")):
         if path.suffix not in {".h", ".cpp"} or "tests" in path.parts:
             continue

@@ -37,6 +37,7 @@ FIGURES = {
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
     "layering": {"layering_range": f"{HILLS} --set layering.limits=normalised", "layering_climate": HILLS},
     "stars": {"stars": "--eye 36.40,-84.30,1100 --heading 190 --pitch 26 --fov 62 --time 2026-01-15T22:30-05:00"},
+    "agx": {"agx": f"{WIDE} --ab agx"},
     "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},
 }
 

@@ -107,6 +107,7 @@ class Timings {
         json["triangles"] = session.triangles();
         json["stages_ms"] = stages_;
         json["whole_ms"] = milliseconds_since(began_);
+        json["ev100"] = session.ev100();
         json["memory_mib"] = memory_of(session.scene().dem.memory);
         if (const auto net = dem::network_use())
             json["net"] = {{"requests", net->requests}, {"read_bytes", net->read_bytes}};

@@ -304,6 +304,12 @@ class WaterFinder {
 
 }  // namespace
 
+double Water::sea_floor_share() const {
+    if (!has_sea_floor || kind.empty()) return 0;
+    const auto floor = std::count(kind.data(), kind.data() + kind.size(), WaterKind::SeaFloor);
+    return static_cast<double>(floor) / static_cast<double>(kind.size());
+}
+
 Water find_water(const Array2d<float>& heights_m, const Grid& grid) {
     return WaterFinder(heights_m, grid).run();
 }

@@ -27,6 +27,8 @@ struct Water {
     std::vector<std::string> assumptions;
 
     bool any() const { return !kind.empty(); }
+    /// Fraction of all posts that are WaterKind::SeaFloor.
+    double sea_floor_share() const;
 };
 
 /// Tells water from land by the heights of a DEM and by its place.

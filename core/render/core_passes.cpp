@@ -407,7 +407,7 @@ class Declaration {
                 {"WALLS_OUTPUT", std::to_string(1 + has_overlay() + facts_.surface)});
         Pass pass{.name = "side",
                   .kind = PassKind::Geometry,
-                  .program = program("side", std::move(recipe)),
+                  .program = program("side", std::move(recipe), outside_word()),
                   .reads = {"tiles"},
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
@@ -429,7 +429,7 @@ class Declaration {
                                            .fragment_main = std::string(name) + ".frag.glsl",
                                            .defines = end_defines_};
         Pass pass{.name = "background",
-                  .program = program(name, recipe),
+                  .program = program(name, recipe, outside_word()),
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Uncovered},
                   .after = {"side"}};  // a pass of views from outside only
@@ -444,7 +444,7 @@ class Declaration {
             .vertex_main = kFullscreen, .fragment_main = "post.frag.glsl", .defines = end_defines_};
         if (facts_.pixel_hooks) recipe.defines.push_back({"PIXEL_HOOKS", ""});
         add(Pass{.name = "post",
-                 .program = program("post", std::move(recipe)),
+                 .program = program("post", std::move(recipe), outside_word()),
                  .colours = {{tone_mapped_}}});
     }
 

@@ -203,8 +203,9 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
                           inputs.displacement.range_m(ground.lowest_m, ground.highest_m).first};
     block.ground_extent = glm::vec4(ground.south_west_m,
                                     1.0 / glm::max(ground.north_east_m - ground.south_west_m, 1.0));
-    block.exposure =
-        static_cast<float>(sun::natural_exposure(elevation) * std::exp2(inputs.exposure_ev));
+    const double exposure =
+        inputs.ev100 ? sun::exposure_of_ev100(*inputs.ev100) : sun::natural_exposure(elevation);
+    block.exposure = static_cast<float>(exposure * std::exp2(inputs.exposure_ev));
     block.footprint_limit = static_cast<float>(footprint_limit);
 
     const glm::dvec3 eye_up = ground.frame.up(eye.lat_rad, eye.lon_rad);
@@ -234,12 +235,13 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
-    block.seconds = static_cast<float>(inputs.seconds);
+    block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;
     const glm::dvec2 sides_m =
         footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());
     block.footprint_area = glm::vec4(footprint.south_west_m, 1.0 / glm::max(sides_m, 1.0));
+    block.sea_floor_share = static_cast<float>(ground.sea_floor_share);
     if (camera.map) write_map(inputs, width_px, height_px, block);
     return block;
 }

@@ -68,9 +68,10 @@ struct FrameInputs {
     std::optional<PicturePart> part{};  ///< nullopt: the frame is the picture
     SunLight sun;
     sun::CelestialFrame stars;  ///< at the DEM's centre
-    double exposure_ev = 0;     ///< stops above the natural exposure of this sun
-    double exaggeration = 1;    ///< vertical exaggeration, a factor
-    Displacement displacement;  ///< by effects; set by the renderer
+    double exposure_ev = 0;     ///< stops above the natural exposure of this sun, or above `ev100`
+    std::optional<double> ev100;  ///< of a camera; without: the natural exposure of this sun
+    double exaggeration = 1;      ///< vertical exaggeration, a factor
+    Displacement displacement;    ///< by effects; set by the renderer
     Loading loading = Loading::Wait;
     /// Freezes cached passes of native effects, such as shadow maps.
     bool freeze_native = false;
@@ -109,7 +110,8 @@ struct Ground {
     Footprint footprint;
     /// Depth of the block below the DEM's lowest post [m]; 0 for a globe, which has no block.
     double block_m = 0;
-    double floor_m = 0;  ///< least z in the local frame of the rim at height 0
+    double floor_m = 0;          ///< least z in the local frame of the rim at height 0
+    double sea_floor_share = 0;  ///< dem::Water::sea_floor_share()
 
     /// Height of the block's lower side as drawn [m].
     double base_m(double exaggeration) const { return lowest_m * exaggeration - block_m; }

@@ -374,6 +374,10 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
     impl_->draw(terrain, ground, inputs, block, times);
 }
 
+double Renderer::exposure() const {
+    return impl_->exposure;
+}
+
 std::optional<double> Renderer::drawn_height_m(Terrain& terrain, const Ground& ground,
                                                const FrameInputs& frame) {
     FrameInputs inputs = frame;

@@ -147,6 +147,8 @@ class Renderer {
     PixelData read_data() const;
     /// Pixels of the last frame that are NaN or infinite.
     NonFinite non_finite() const;
+    /// Factor on the last frame's radiance before tone mapping.
+    double exposure() const;
     /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.
     image::ImageF read_radiance(int* non_finite = nullptr) const;
 

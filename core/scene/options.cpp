@@ -176,6 +176,11 @@ constexpr Option kOptions[] = {
      "Brighter than the default by this many stops, EV", Kind::Number, -20, 20, {},
      [](const Scene& s) { return number(s.exposure_ev); },
      [](Scene& s, const Value& v) { s.exposure_ev = v.number; }},
+    {"picture", "ev100", "--ev100", "Options",
+     "Exposure value of a camera at ISO 100, instead of one by the sun's elevation: 15 suits a sunny "
+     "noon, -3 a full moon", Kind::Number, -20, 24, {},
+     [](const Scene& s) { return number(s.ev100.value_or(kNone)); },
+     [](Scene& s, const Value& v) { s.ev100 = v.number; }},
     {"picture", "seconds", "--seconds", "Options",
      "Time of effects that move, such as snowfall, in seconds", Kind::Number, 0, kMaxSeconds, {},
      [](const Scene& s) { return number(s.seconds); },

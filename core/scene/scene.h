@@ -81,11 +81,12 @@ struct Scene {
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
     double seconds = 0;  ///< of effects that move, frame.seconds in their shaders; to kMaxSeconds
     double exposure_ev = 0;
-    double pixel_error = 4;    ///< render::TerrainOptions
-    int samples = 1;           ///< of each pixel, 1 to kMaxSamples
-    bool transparent = false;  ///< what shows no ground of the DEM
-    bool ortho = false;        ///< pictures are maps (scene/map_view.h), and `view` is not used
-    double resolution = 0;     ///< of a map: side of a pixel [units of the DEM's CRS]; 0: by size
+    std::optional<double> ev100;  ///< exposure of a camera, not that of the sun's elevation
+    double pixel_error = 4;       ///< render::TerrainOptions
+    int samples = 1;              ///< of each pixel, 1 to kMaxSamples
+    bool transparent = false;     ///< what shows no ground of the DEM
+    bool ortho = false;           ///< pictures are maps (scene/map_view.h), and `view` is not used
+    double resolution = 0;  ///< of a map: side of a pixel [units of the DEM's CRS]; 0: by size
 };
 
 inline constexpr int kMaxSide_px = 65536;

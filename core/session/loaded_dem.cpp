@@ -113,7 +113,9 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
 }
 
 render::Ground ground_of(const LoadedDem& dem) {
-    return render::make_ground(dem.field, dem.source->grid());
+    render::Ground ground = render::make_ground(dem.field, dem.source->grid());
+    ground.sea_floor_share = dem.drawn.water.sea_floor_share();
+    return ground;
 }
 
 double LoadedDem::height_m(const geo::Geodetic& at) const {

@@ -25,6 +25,7 @@ void SceneState::take_dem(std::shared_ptr<const LoadedDem> dem) {
 void SceneState::take_shape(bool other) {
     inputs.exaggeration = scene.exaggeration;
     inputs.exposure_ev = scene.exposure_ev;
+    inputs.ev100 = scene.ev100;
     inputs.seconds = scene.seconds;
     if (other) {
         to_show_ = render::ground_to_show(dem_->field, *ground_, scene.exaggeration);

@@ -14,6 +14,7 @@
 #include "session/stamps.h"
 #include "session/standing.h"
 #include "session/words.h"
+#include "sun/daylight.h"
 
 namespace relevo::session {
 
@@ -317,6 +318,10 @@ int Session::linked_programs() const {
 
 const StageTimes& Session::stages() const {
     return impl_->stages;
+}
+
+double Session::ev100() const {
+    return sun::ev100_of_exposure(impl_->drawn->renderer().exposure());
 }
 
 int Session::triangles() const {

@@ -284,6 +284,7 @@ class Session {
     /// Number of programs linked so far.
     int linked_programs() const;
     int triangles() const;  ///< of the last frame
+    double ev100() const;   ///< exposure value of the last frame at ISO 100, sun::ev100_of_exposure
     const gl::DeviceInfo& device() const;
 
   private:

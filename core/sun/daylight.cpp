@@ -113,4 +113,17 @@ double natural_exposure(double elevation_rad) {
                     kNightLevel * kSolarIlluminance_lux / level);
 }
 
+namespace {
+constexpr double kMiddleGrey = 0.18;
+constexpr double kMeter_cd_m2 = 0.125;  // luminance at an exposure value of 0
+}  // namespace
+
+double ev100_of_exposure(double exposure) {
+    return std::log2(kMiddleGrey * kUnitLuminance_cd_m2 / (exposure * kMeter_cd_m2));
+}
+
+double exposure_of_ev100(double ev100) {
+    return kMiddleGrey * kUnitLuminance_cd_m2 / (std::exp2(ev100) * kMeter_cd_m2);
+}
+
 }  // namespace relevo::sun

@@ -46,4 +46,15 @@ glm::dvec3 sky_irradiance(double elevation_rad);
 /// @param elevation_rad  of the sun's centre, geometric
 double natural_exposure(double elevation_rad);
 
+/// Luminance of radiance 1 [cd/m2]: that of a white diffuse surface that faces the sun outside the
+/// atmosphere. The same surface has 433 W/m2/sr, over all wavelengths (1361 W/m2).
+inline constexpr double kUnitLuminance_cd_m2 = kSolarIlluminance_lux / 3.14159265358979;
+
+/// Exposure value at ISO 100 of a factor on radiance: that of a light meter which makes what it
+/// sees middle grey, a reflectance of 0.18.
+/// Source: ISO 2720:1974, calibration constant K = 12.5 cd s/m2: L = 2^EV K / 100.
+double ev100_of_exposure(double exposure);
+/// Its inverse.
+double exposure_of_ev100(double ev100);
+
 }  // namespace relevo::sun

@@ -59,12 +59,12 @@ vec2 bump_noise_slope(in ivec2 node, in vec2 f) {
 const mat2 bump_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
 /// Slopes of noise below the post spacing, of variance 1 along either axis from near; none where a post has
-/// fewer than 20 pixels, and all from 64 on.
+/// fewer than 6 pixels, and all from 32 on.
 /// @param anchored_m   place, as of Surface [m]
 /// @param pixel_m      the longer side of a pixel on the ground [m]
 /// @param pixel_posts  a side of it in posts
 vec2 bump_relief_slope(in vec2 anchored_m, in float pixel_m, in float pixel_posts) {
-    float near = 1.0 - smoothstep(1.0 / 64.0, 1.0 / 20.0, pixel_posts);
+    float near = 1.0 - smoothstep(1.0 / 32.0, 1.0 / 6.0, pixel_posts);
     vec2 sum = vec2(0.0);
     float size_m = min(0.5 / frame.normal_texels_per_m, bump_coarsest_m);
     mat2 turn = bump_turn;
@@ -99,7 +99,7 @@ void bump_on_normal(inout Surface s) {
     int count = s.material_weight.y > 0.0 ? 2 : 1;  // a read less in most places
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
-    vec3 ground = s.geometric_normal;
+    vec3 ground = s.normal;
 #if !HAS_outside
     float upright = clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
     float steep = sqrt(1.0 - upright * upright) / upright;

@@ -29,6 +29,7 @@ uniform vec2 cover_bare_deg = vec2(46.0, 64.0); //@ range(0, 90) unit(deg) label
 uniform float cover_open_flats = 0.3; //@ range(0, 1) label("Open flats") description("Fraction of level ground in temperate forests that is meadow")
 uniform float cover_noise = 1.0; //@ range(0, 3) label("Ragged edges") description("Irregularity of the limits between materials")
 uniform float cover_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size") description("Size of the grain, visible from near")
+uniform float cover_crowns = 1.0; //@ range(0, 1) label("Crowns") description("How far forests show the crowns of their trees")
 uniform float cover_grain = 1.0; //@ range(0, 1) label("Grain") description("Strength of the grain, visible from near")
 
 // What it looks like, as albedo.
@@ -159,14 +160,75 @@ vec3 cover_forest(in ClimateGround ground, in float growth) {
     return mix(forest, cover_leafless, 0.5 * falls * (1.0 - ground.green));
 }
 
-/// Crowns of trees and the dark between them, of mean 1; from so far that they are smaller than pixels,
-/// nothing.
-float cover_crowns(in Surface s, in float pixel_m) {
-    const float size_m = 96.0, seen_m = 4.0;
-    if (pixel_m > seen_m) return 1.0;
-    vec4 crowns = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / size_m);  // east and north change places
-    float light = 1.7 * crowns.a + 0.6 * (crowns.b - 0.3);
-    return max(1.0 + light * (1.0 - smoothstep(0.2 * seen_m, seen_m, pixel_m)), 0.25);
+/// A forest from above or from afar.
+struct cover_Canopy {
+    vec2 slope;   // of the crowns, east and north
+    vec3 light;   // factor on the forest's colour: it is dark between crowns
+};
+// Of this pixel, for the hook normal.
+vec2 cover_canopy_slope = vec2(0.0);
+
+/// Three numbers of 0..1 for a cell.
+/// source: M. Jarzynski and M. Olano, Hash functions for GPU rendering, J. Computer Graphics Techniques 9(3), 2020,
+/// pcg3d
+vec3 cover_random(in ivec2 cell) {
+    uvec3 v = uvec3(uvec2(cell), 7u) * 1664525u + 1013904223u;
+    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+    return vec3(v >> 8u) * (1.0 / 16777216.0);
+}
+
+/// The crown that a point of the canopy is on.
+struct cover_Crown {
+    vec2 slope;   // of its surface
+    float height;  // above the mean of their middles, in cells; below -1 between crowns
+    float random;  // of the tree, 0..1
+};
+
+/// One tree stands in a cell: a conifer is a cone, a broadleaf tree an ellipsoid.
+/// @param cell, within  of a grid of trees
+cover_Crown cover_crown_at(in ivec2 cell, in vec2 within, in float conifers) {
+    ivec2 corner = cell + ivec2(floor(within - 0.5));
+    cover_Crown highest = cover_Crown(vec2(0.0), -2.0, 0.5);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 near = corner + ivec2(i & 1, i >> 1);
+        vec3 random = cover_random(near);
+        float size = fract(random.z * 7.0);
+        bool cone = random.z < conifers;
+        float radius = (cone ? 0.38 : 0.46) + 0.3 * size;
+        vec2 from = (within - vec2(near - cell) - 0.16 - 0.68 * random.xy) / radius;
+        float off2 = dot(from, from);
+        float rise = cone ? 1.9 * (1.0 - sqrt(off2)) : sqrt(max(1.0 - off2, 0.0));
+        float height = off2 < 1.0 ? radius * rise + size - 0.9 : -2.0;
+        if (height > highest.height) {
+            vec2 slope = cone ? 1.9 * from * inversesqrt(max(off2, 0.04)) : from * inversesqrt(max(1.0 - off2, 0.1));
+            highest = cover_Crown(slope, height, random.z);
+        }
+    }
+    return highest;
+}
+
+/// Near the eye, where one stands between the trees, and from so far that they are smaller than pixels, none.
+cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float conifers) {
+    const float size_m = 7.5, stand_m = 96.0;
+    cover_Canopy canopy = cover_Canopy(vec2(0.0), vec3(1.0));
+    float crowns = cover_crowns * (1.0 - smoothstep(0.12 * size_m, 0.7 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
+                   smoothstep(0.03, 0.15, -dot(s.position_m, s.geometric_normal) / s.distance_m);
+    float stands = 1.0 - smoothstep(2.0, 16.0, pixel_m);
+    if (stands == 0.0) return canopy;
+    vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
+    canopy.light += stands * (0.9 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
+    if (crowns == 0.0) return canopy;
+    vec2 within;
+    ivec2 cell = ground_cell(s.anchored_m, cover_turn * (1.0 / size_m), within);
+    cover_Crown crown = cover_crown_at(cell, within + 0.5 * stand.ar, conifers);
+    bool between = crown.height < -1.0;
+    canopy.slope = between ? vec2(0.0) : crowns * (crown.slope * cover_turn);
+    float depth = between ? 0.3 : mix(0.5, 1.25, smoothstep(-0.9, 0.7, crown.height));
+    vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.7, 0.4, 0.2);
+    canopy.light *= mix(vec3(1.0), 1.25 * depth * tree, crowns);  // 1.25: as bright in the mean
+    return canopy;
 }
 
 cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain, in float growth,
@@ -241,10 +303,15 @@ void cover_on_albedo(inout Surface s) {
     vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
     // Wet rock is dark, with lichen and moss on it.
     rock *= (1.0 + tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
-    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
+    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone);
     vec3 albedo = mix(open, rock, shares.rock);
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
+    if (trees > 0.02) {
+        cover_Canopy canopy = cover_canopy_at(s, pixel_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
+        cover_canopy_slope = trees * canopy.slope;
+        forest *= max(canopy.light, 0.2);
+    }
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
@@ -271,4 +338,8 @@ void cover_on_albedo(inout Surface s) {
     s.emissive = vec3(0.0);
     s.specular = vec3(dot(s.material_weight, vec2(cover_specular[s.material.x], cover_specular[s.material.y])));
     s.shininess = dot(s.material_weight, vec2(cover_shininess[s.material.x], cover_shininess[s.material.y]));
+}
+
+void cover_on_normal(inout Surface s) {
+    s.normal = normalize(s.normal + cover_canopy_slope.x * s.tangent + cover_canopy_slope.y * s.bitangent);
 }

@@ -42,13 +42,19 @@ vec4 water_at(in vec2 post, in float pixel_posts) {
     return water_between(post, pixel_posts, vec2(pixel_posts, 0.0), vec2(0.0, pixel_posts));
 }
 
-/// To the point that a neighbouring pixel shows of level ground [posts].
+/// To the point that a neighbouring pixel shows of level ground [m]. Not of maps.
 /// @param ray_step  to the ray of that pixel
-vec2 water_step(in Surface s, in vec3 ray_step) {
+/// @param least     sine of the lowest elevation that the view is taken to have, so that steps end
+vec3 water_step_m(in Surface s, in vec3 ray_step, in float least) {
     vec3 forward = normalize(cross(frame.pixel_ray_dy.xyz, frame.pixel_ray_dx.xyz));
     vec3 ray = s.position_m / dot(s.position_m, forward) + ray_step;
-    float slant = min(dot(ray, s.up), -0.02 * length(ray));
-    vec3 step_m = ray * (min(dot(s.position_m, s.up), -0.02 * s.distance_m) / slant) - s.position_m;
+    float slant = min(dot(ray, s.up), -least * length(ray));
+    return ray * (min(dot(s.position_m, s.up), -least * s.distance_m) / slant) - s.position_m;
+}
+
+/// The same in columns and rows of the DEM [posts].
+vec2 water_step(in Surface s, in vec3 ray_step) {
+    vec3 step_m = water_step_m(s, ray_step, 0.02);
     vec3 east = east_at(s.up);
     return frame.light_axes.xy * dot(step_m, east) + frame.light_axes.zw * dot(step_m, cross(s.up, east));
 }

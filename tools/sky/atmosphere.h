@@ -2,21 +2,25 @@
 
 #include <vector>
 
-#include "spectrum.h"
+#include "sky/air.h"
 
 namespace relevo::skymaker {
+
+using sky::Air;
+using sky::colour_of;
+using sky::kWavelengths;
+using sky::Spectrum;
+using sky::wavelength_um;
 
 /// A clear sky over a round Earth, lit by the sun alone.
 ///
 /// Single scattering is integrated along the ray; all further orders are S. Hillaire's: the light
 /// scattered twice, taken as coming from everywhere alike, times the sum of a geometric series.
 /// Source: S. Hillaire, A Scalable and Production Ready Sky and Atmosphere Rendering Technique,
-/// Computer Graphics Forum 39(4), 2020, section 5; air, ozone layer and Earth: E. Bruneton,
-/// A Qualitative and Quantitative Evaluation of 8 Clear Sky Models, 2016; aerosol: Angstrom's
-/// formula with beta 0.04 and alpha 1.3, a clean continental air, as core/sun/daylight has it.
+/// Computer Graphics Forum 39(4), 2020, section 5.
 class Atmosphere {
   public:
-    Atmosphere();
+    explicit Atmosphere(const Air& air = {});
 
     /// What a direction of the sky sends to an eye at sea level, the sun's disc left out, as shares
     /// of the solar irradiance in the unit where a white diffuse surface that faces the sun outside
@@ -48,9 +52,10 @@ class Atmosphere {
     Spectrum many(double height_m, double sun_sine) const;
     void pass(Spectrum& through, const Columns& columns, double length_m) const;
 
-    Spectrum rayleigh_{}, aerosol_{}, ozone_{};  // extinction at sea level, or at the peak [1/m]
-    std::vector<Lit> to_sun_;                    // by height and sine of the sun
-    std::vector<Spectrum> many_;                 // likewise
+    Air air_;
+    sky::Extinction extinction_;
+    std::vector<Lit> to_sun_;     // by height and sine of the sun
+    std::vector<Spectrum> many_;  // likewise
 };
 
 /// The part of the aerosol's forward scattering that is the aureole. The sky draws it as a sum of
@@ -58,8 +63,5 @@ class Atmosphere {
 /// @param distance  between the unit vectors towards the sun and along the view
 /// @returns phase function [1/sr]
 double aureole_phase(double distance);
-
-/// Vertical optical depth of the aerosol at 550 nm.
-double aerosol_depth();
 
 }  // namespace relevo::skymaker

@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "spectrum.h"
+#include "sky/spectrum.h"
 #include "textures.h"
 
 namespace relevo::skymaker {

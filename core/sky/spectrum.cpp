@@ -1,10 +1,11 @@
-#include "spectrum.h"
+#include "sky/spectrum.h"
 
 #include <cmath>
 
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
-namespace relevo::skymaker {
+namespace relevo::sky {
 namespace {
 
 /// A bell with different widths to its left and right.
@@ -20,16 +21,30 @@ glm::dvec3 matching_functions(double nm) {
             1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
-glm::dvec3 linear_srgb(const Spectrum& share) {
+glm::dvec3 tristimulus(const Spectrum& share) {
     glm::dvec3 xyz(0);
     for (int i = 0; i < kWavelengths; ++i) {
         const auto k = static_cast<std::size_t>(i);
         xyz += share[k] * solar_irradiance()[k] * matching_functions(1e3 * wavelength_um(i));
     }
-    const glm::dmat3 to_srgb = glm::transpose(glm::dmat3{3.2406, -1.5372, -0.4986,  //
-                                                         -0.9689, 1.8758, 0.0415,   //
-                                                         0.0557, -0.2040, 1.0570});
-    return to_srgb * xyz;
+    return xyz;
+}
+
+glm::dvec3 sun_tristimulus() {
+    Spectrum one{};
+    one.fill(1);
+    return tristimulus(one);
+}
+
+glm::dmat3 to_srgb() {
+    return glm::transpose(glm::dmat3{3.2406, -1.5372, -0.4986,  //
+                                     -0.9689, 1.8758, 0.0415,   //
+                                     0.0557, -0.2040, 1.0570});
+}
+
+const glm::dvec3& white() {
+    static const glm::dvec3 kWhite = to_srgb() * sun_tristimulus();
+    return kWhite;
 }
 
 }  // namespace
@@ -53,12 +68,22 @@ const Spectrum& ozone_cross_section() {
 }
 
 glm::dvec3 colour_of(const Spectrum& share) {
-    static const glm::dvec3 kWhite = [] {
-        Spectrum one{};
-        one.fill(1);
-        return linear_srgb(one);
-    }();
-    return linear_srgb(share) / kWhite;
+    return to_srgb() * tristimulus(share) / white();
 }
 
-}  // namespace relevo::skymaker
+glm::dvec3 xyz_of(const Spectrum& share) {
+    static const double kLuminance = sun_tristimulus().y;
+    return tristimulus(share) / kLuminance;
+}
+
+glm::dvec3 xyz_of_colour(const glm::dvec3& linear_srgb) {
+    static const double kLuminance = sun_tristimulus().y;
+    static const glm::dmat3 kToXyz = glm::inverse(to_srgb());
+    return kToXyz * (linear_srgb * white()) / kLuminance;
+}
+
+glm::dvec2 chromaticity(const glm::dvec3& xyz) {
+    return glm::dvec2(4 * xyz.x, 9 * xyz.y) / (xyz.x + 15 * xyz.y + 3 * xyz.z);
+}
+
+}  // namespace relevo::sky

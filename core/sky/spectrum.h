@@ -2,9 +2,10 @@
 
 #include <array>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace relevo::skymaker {
+namespace relevo::sky {
 
 /// Wavelengths that light is followed at: 400 to 700 nm, every 20.
 inline constexpr int kWavelengths = 16;
@@ -27,4 +28,13 @@ const Spectrum& ozone_cross_section();
 /// Matching Functions, Journal of Computer Graphics Techniques 2(2), 2013; IEC 61966-2-1.
 glm::dvec3 colour_of(const Spectrum& share);
 
-}  // namespace relevo::skymaker
+/// CIE 1931 tristimulus values of light whose spectrum is the sun's times `share`. The sun's own
+/// has Y = 1; its X and Z are those of a light of 5900 K, where colour_of has white.
+glm::dvec3 xyz_of(const Spectrum& share);
+/// The same from what colour_of returns.
+glm::dvec3 xyz_of_colour(const glm::dvec3& linear_srgb);
+
+/// CIE 1976 u' and v'. Source: CIE 015:2018, section 8.2.
+glm::dvec2 chromaticity(const glm::dvec3& xyz);
+
+}  // namespace relevo::sky

@@ -1,0 +1,60 @@
+//! provides  tone mapping by AgX: the brighter a colour is, the paler, as on film
+//! hook      tonemap
+//! writes    colour, linear, 0 to 1
+//! source    T. Sobotka, AgX (2022): matrix, range of stops and the curve's slope and powers
+
+//@ include lib/neutral.glsl
+
+uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
+uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
+uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
+
+// Each primary with some of the others, so that a bright one takes them along to white.
+const mat3 agx_mixed = mat3(0.842479, 0.0423282, 0.0423756,
+                            0.0784336, 0.878469, 0.0784336,
+                            0.0792237, 0.0791661, 0.879143);
+const float agx_grey = 0.18;          // the curve's middle
+const float agx_stops_below = 10.0;   // it, and
+const float agx_stops_above = 6.5;    // above it
+const float agx_slope = 2.0;
+const float agx_toe = 3.0, agx_shoulder = 3.25;  // powers: higher ones bend more sharply
+const float agx_display = 2.2;        // the curve's values are for a display of this exponent
+
+/// One side of the curve: a sigmoid from the middle that begins with the slope and ends at the edge.
+/// @param x      from the middle, 0 to `width`
+/// @param width  from the middle to the edge
+/// @returns from one half, 0 to 0.5
+float agx_side(in float x, in float width, in float power) {
+    float reach = pow(pow(agx_slope * width, -power) * (pow(2.0 * agx_slope * width, power) - 1.0), -1.0 / power);
+    float t = agx_slope * x / reach;
+    return reach * t * pow(1.0 + pow(t, power), -1.0 / power);
+}
+
+/// @param light  linear, exposed
+/// @returns 0 to 1, for a display
+float agx_tone(in float light) {
+    float stops = log2(max(light, 1e-10) / agx_grey);
+    float range = agx_stops_below + agx_stops_above;
+    return stops < 0.0
+        ? 0.5 - agx_side(min(-stops, agx_stops_below) / range, agx_stops_below / range, agx_toe)
+        : 0.5 + agx_side(min(stops, agx_stops_above) / range, agx_stops_above / range, agx_shoulder);
+}
+
+/// @param colour  linear, exposed
+vec3 agx_tones(in vec3 colour) {
+    vec3 mixed = agx_mixed * (exp2(agx_exposure) * max(colour, 0.0));
+    vec3 tone = vec3(agx_tone(mixed.r), agx_tone(mixed.g), agx_tone(mixed.b));
+    tone = pow(tone, vec3(agx_contrast));
+    tone = mix(vec3(dot(tone, vec3(0.2126, 0.7152, 0.0722))), tone, agx_saturation);
+    tone = inverse(agx_mixed) * tone;
+    return pow(clamp(tone, 0.0, 1.0), vec3(agx_display));
+}
+
+void agx_on_tonemap(inout vec3 colour) {
+    // Models and maps have colours that are compared with legends and photographs.
+#if HAS_outside || HAS_tint || HAS_drape
+    colour = neutral_tones(colour);
+#else
+    colour = agx_tones(colour);
+#endif
+}
