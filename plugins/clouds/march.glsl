@@ -219,7 +219,8 @@ vec4 clouds_pass_near(in Texel t) {
 vec4 clouds_pass_view(in Texel t) {
     vec3 direction = normalize(pixel_ray_at(2.0 * floor(t.at_px) + 0.5));
     float near = texelFetch(clouds_near, ivec2(t.at_px), 0).r;
-    return clouds_seen(direction, near > 0.0 ? 1.0 / near : 2.0 * clouds_far_m, clouds_jitter(t.at_px));
+    return clouds_seen(direction, near > 0.0 ? 1.0 / near : 2.0 * clouds_far_m,
+                       clouds_jitter(t.at_px + 0.5 * vec2(frame.part_left, frame.part_below)));
 }
 
 const float clouds_turns = 6.2831853;
