@@ -60,20 +60,21 @@ void clouds_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
 }
 
 /// Light on level ground below all decks, by place on the map of columns: x of the sun's light that the
-/// decks scatter, y of the sky's that they let through, over what meets their tops.
+/// decks scatter, y of the sky's that they let through, over what meets their tops; z of the sun's that
+/// passes unscattered.
 vec4 clouds_pass_below(in Texel t) {
     vec2 place = clouds_of_map(t.at);
     float around_m = 0.7 * max(clouds_deck(0).base_m - frame.height_range.x, 500.0);
     float sine = frame.sun_apparent.z;
-    vec2 sum = vec2(0.0);
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < 9; ++i) {
         vec2 way = vec2(float(i % 3 - 1), float(i / 3 - 1));
         float tau = clouds_over(place + around_m * way, frame.height_range.w - 1000.0);
         float mirrored = clouds_reflected_sky(tau), direct = exp(-tau / max(sine, 0.02));
         float fro = 1.0 / (1.0 - clouds_albedo * mirrored);  // between ground and deck
-        sum += vec2((clouds_diffuse_of_sun(tau, sine) + direct) * fro - direct, (1.0 - mirrored) * fro) / 9.0;
+        sum += vec3((clouds_diffuse_of_sun(tau, sine) + direct) * fro - direct, (1.0 - mirrored) * fro, direct) / 9.0;
     }
-    return vec4(sum, 0.0, 0.0);
+    return vec4(sum, 0.0);
 }
 
 void clouds_on_ambient(in Surface s, inout vec3 irradiance) {
@@ -123,7 +124,8 @@ vec4 clouds_of_pixel(in float near) {
     for (int i = 0; i < 4; ++i) {
         ivec2 step_px = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(first + step_px, ivec2(0), most);
-        float alike = abs(texelFetch(clouds_near, texel, 0).r - near) <= 0.1 * near ? 1.0 : 1e-4;
+        float apart = abs(texelFetch(clouds_near, texel, 0).r - near) / max(near, 1e-9);
+        float alike = 1.0 / (1.0 + 100.0 * min(apart * apart, 1e4));
         vec2 w = mix(1.0 - part, part, vec2(step_px));
         float weight = alike * (w.x * w.y + 1e-3);
         sum += weight * texelFetch(clouds_view, texel, 0);
@@ -139,10 +141,23 @@ vec4 clouds_around(in vec3 direction) {
     return textureLod(clouds_dome, vec2(fract(azimuth / clouds_turns + 1.0), sqrt((sine - 0.01) / 0.99)), 0.0);
 }
 
+/// Light of the air below the decks, of what it is in a clear sky: dimmer, and grey where no sun shines.
+vec3 clouds_air(in vec3 clear) {
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    vec3 below = textureLod(clouds_below, vec2(0.5), 0.0).rgb;
+    vec2 light = vec2(max(frame.sun_apparent.z, 0.0) * dot(frame.sun_light[0].rgb, luminance),
+                      dot(frame.sky_irradiance.rgb, luminance));
+    float share = ((below.x + below.z) * light.x + below.y * light.y) / max(light.x + light.y, 1e-12);
+    vec3 dimmed = share * mix(vec3(dot(clear, luminance)), clear, 0.15 + 0.85 * below.z);
+    clouds_Deck last = clouds_deck(clouds_count() - 1);
+    return mix(dimmed, clear, smoothstep(last.base_m, last.top_m, frame.eye_m.w));
+}
+
 void clouds_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance) {
 #if !HAS_outside
     vec4 seen = clouds_is_ground ? clouds_around(direction) : clouds_of_pixel(0.0);
-    radiance = clouds_laid(seen, direction, radiance, radiance);
+    vec3 air = clouds_air(radiance);
+    radiance = clouds_laid(seen, direction, air, clouds_is_ground ? air : radiance);
     transmittance *= seen.z;
 #endif
 }
