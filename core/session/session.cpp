@@ -284,6 +284,14 @@ std::string Session::sun_text() const {
     return impl_->state.sun_text();
 }
 
+sun::Refraction Session::refraction(const geo::Geodetic& place) const {
+    return impl_->state.refraction(place);
+}
+
+const SceneWeather* Session::weather() const {
+    return impl_->state.weather ? &*impl_->state.weather : nullptr;
+}
+
 std::string Session::view_reason() const {
     return impl_->state.view_reason();
 }
