@@ -280,6 +280,21 @@ void check_named(const Effect& effect, const std::string& address, std::string_v
                                                : "of type " + std::string(glsl_name(param->type))));
 }
 
+/// A parameter of one number, which users set.
+void check_number(const Effect& effect, const std::string& address, std::string_view key,
+                  int line) {
+    const std::vector<shader::Param> params = effect.params();
+    const auto param = std::ranges::find(params, address, &shader::Param::address);
+    const bool number =
+        param != params.end() && !param->is_host &&
+        (param->type == shader::ParamType::Float || param->type == shader::ParamType::Int);
+    if (!number)
+        fail(effect.manifest.file.string(), line,
+             fmt::format("{}: expected a float or int parameter of the plugin's, not host, but "
+                         "got \"{}\"",
+                         key, address));
+}
+
 void check_bound(const Effect& effect, const DisplaceSpec& spec) {
     for (const DisplaceSpec::Length* length : spec.lengths())
         if (!length->address.empty()) check_named(effect, length->address, "displaces", spec.line);
@@ -370,6 +385,12 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     check_displace(effect);
     if (const auto& invents = effect.manifest.invents)
         check_named(effect, invents->address, "invents", invents->line);
+    if (const auto& weather = effect.manifest.weather)
+        for (const WeatherSpec::Setting& setting : weather->settings)
+            check_number(effect, setting.address, "weather.set", setting.line);
+    for (const Rising& rising : effect.manifest.rising)
+        for (const std::string& address : rising.addresses)
+            check_number(effect, address, "rising", rising.line);
     check_wants(effect);
     check_passes(effect);
     check_instances(effect);

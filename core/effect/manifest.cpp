@@ -130,6 +130,9 @@ class ManifestReader {
         texts(object);
         displaces(object);
         invents(object);
+        manifest_.rising = read_rising(object, manifest_.id);
+        if (const json::Value* const value = object.take("weather"))
+            manifest_.weather = read_weather_spec(manifest_.file.string(), manifest_.id, *value);
         object.string("$schema", "");  // which editors look for
         object.finish();
         return std::move(manifest_);

@@ -9,6 +9,8 @@
 
 #include "effect/ground_data.h"
 #include "effect/marks_spec.h"
+#include "effect/rising.h"
+#include "effect/weather_spec.h"
 #include "shader/instance_set.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
@@ -92,6 +94,8 @@ struct Manifest {
     std::vector<shader::InstanceSet> instances;
     std::optional<DisplaceSpec> displaces;
     std::optional<Invention> invents;
+    std::optional<WeatherSpec> weather;
+    std::vector<Rising> rising;
     std::string module;                    ///< name of a native library, or empty
     std::vector<shader::TextParam> texts;  ///< that the module reads, or that name data
 

@@ -125,6 +125,9 @@ class Linter {
             for (const DisplaceSpec::Length* length : effect_.manifest.displaces->lengths())
                 addresses.insert(length->address);
         if (effect_.manifest.invents) addresses.insert(effect_.manifest.invents->address);
+        if (effect_.manifest.weather)
+            for (const WeatherSpec::Setting& setting : effect_.manifest.weather->settings)
+                addresses.insert(setting.address);
         for (const MarksSpec& marks : effect_.manifest.marks)
             for (const MarkKey& key : mark_keys())
                 addresses.insert((marks.*key.member).address);

@@ -405,17 +405,6 @@ class Selector {
     std::vector<std::string> notices_, warnings_, refused_;
 };
 
-/// The value to set. A relative path is relative to the folder of the file that sets it.
-std::string text_of(const Setting& setting, const shader::ParamStore& store) {
-    const shader::TextParam* const text = store.find_text(setting.address);
-    if (!text || !text->is_file || setting.text.empty()) return setting.text;
-    return (std::filesystem::path(setting.folder) / setting.text).string();
-}
-
-std::string plugin_of(const std::string& address) {
-    return address.substr(0, address.find('.'));
-}
-
 }  // namespace
 
 bool Selection::has(std::string_view id) const {
@@ -449,51 +438,6 @@ Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable,
                  const GroundWords& ground) {
     return Selector(registry, presets, command_line, unusable, ground).run();
-}
-
-std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,
-                                        const Selection& selection,
-                                        const std::vector<Preset>& presets,
-                                        const std::vector<Setting>& command_line) {
-    std::vector<std::string> notices;
-    for (const Preset& preset : presets) {
-        for (const Setting& setting : preset.settings) {
-            const std::string plugin = plugin_of(setting.address);
-            const std::string place = fmt::format("{}:{}", preset.file, setting.line);
-            const bool known = store.find(setting.address) || store.find_text(setting.address);
-            if (!known && !registry.find(plugin)) {
-                notices.push_back(fmt::format("{}: {} is skipped, there is no plugin {}", place,
-                                              setting.address, plugin));
-                continue;
-            }
-            try {
-                store.set(setting.address, text_of(setting, store));
-            } catch (const Error& error) {
-                const std::string_view what = error.what();
-                throw Error(error.code(), fmt::format("effects: {}: {}", place,
-                                                      what.substr(what.find(": ") + 2)));
-            }
-        }
-    }
-    for (const Setting& setting : command_line) {
-        store.set(setting.address, text_of(setting, store));
-        const std::string plugin = plugin_of(setting.address);
-        if (registry.find(plugin) && !selection.has(plugin))
-            notices.push_back(fmt::format("{} is set, but {} is off; --enable {} switches it on",
-                                          setting.address, plugin, plugin));
-    }
-    return notices;
-}
-
-std::vector<Setting> with_absolute_files(std::vector<Setting> settings,
-                                         const shader::ParamStore& store) {
-    for (Setting& setting : settings) {
-        const shader::TextParam* const text = store.find_text(setting.address);
-        if (!text || !text->is_file || setting.text.empty()) continue;
-        setting.text = std::filesystem::absolute(text_of(setting, store)).string();
-        setting.folder.clear();
-    }
-    return settings;
 }
 
 }  // namespace relevo::effect

@@ -7,6 +7,7 @@
 
 #include "sky/eye_tables.h"
 #include "sky/shipped.h"
+#include "sun/daylight.h"
 
 namespace relevo::render {
 namespace {
@@ -30,6 +31,43 @@ shader::Param number(const char* address, double initial, shader::ParamRange ran
     param.initial[0] = initial;
     param.range = range;
     return param;
+}
+
+/// Adds the mean over all azimuths of one table to another: moonlight scattered by the air differs
+/// little with the azimuth, but for the aureole, which sky.glsl draws.
+/// @param azimuths  texels from one elevation to the next  @param count  texels
+void add_mean(std::span<const glm::vec4> from, int azimuths, std::size_t count,
+              const glm::vec3& factor, std::span<glm::vec4> to) {
+    const auto width = static_cast<std::size_t>(azimuths);
+    for (std::size_t row = 0; row < count; row += width) {
+        glm::vec3 sum(0);
+        for (std::size_t i = 0; i < width; ++i)
+            sum += glm::vec3(from[row + i]);
+        for (std::size_t i = 0; i < width; ++i)
+            to[row + i] += glm::vec4(factor * sum / static_cast<float>(width), 0);
+    }
+}
+
+sky::EyeTables tables_of(const sky::Air& air, double height_m, const AirLight& light) {
+    const auto atmosphere = sky::atmosphere_of(air);
+    sky::EyeTables tables = eye_tables(*atmosphere, height_m, light.sun_sine);
+    const auto share = static_cast<float>(light.sun_share);
+    if (share < 1)
+        for (std::vector<glm::vec4>* const table : {&tables.sky, &tables.between})
+            for (glm::vec4& texel : *table)
+                texel = glm::vec4(share * glm::vec3(texel), texel.a);
+    if (light.moon == glm::vec3(0)) return tables;
+    const sky::EyeTables moonlit = eye_tables(*atmosphere, height_m, light.moon_sine);
+    const auto layer = static_cast<std::size_t>(EyeLayout::kAzimuths) *
+                       static_cast<std::size_t>(EyeLayout::kAbove + EyeLayout::kBelow);
+    const std::span<const glm::vec4> from(moonlit.sky);
+    const std::span<glm::vec4> to(tables.sky);
+    for (const std::size_t first : {std::size_t{0}, 2 * layer})  // air and ground
+        add_mean(from.subspan(first, layer), EyeLayout::kAzimuths, layer, light.moon,
+                 to.subspan(first, layer));
+    add_mean(moonlit.between, EyeLayout::kBetweenAzimuths, moonlit.between.size(), light.moon,
+             tables.between);
+    return tables;
 }
 
 }  // namespace
@@ -62,12 +100,20 @@ sky::Air air_of(const shader::ParamStore& values) {
     return air;
 }
 
-void AirTextures::update(const sky::Air& air, FrameBlock& block) {
-    const Of wanted{air, std::max(block.eye_m.w, 0.0f),
-                    glm::dot(glm::vec3(block.sun_direction), glm::vec3(block.eye_up))};
+AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up) {
+    AirLight light{.sun_sine = dot(inputs.sun.direction, eye_up),
+                   .sun_share = sun::eclipsed_sky(inputs.sun_visible)};
+    if (inputs.moonlight) {
+        light.moon_sine = dot(inputs.moonlight->direction, eye_up);
+        light.moon = glm::vec3(inputs.moonlight->strength);
+    }
+    return light;
+}
+
+void AirTextures::update(const sky::Air& air, const AirLight& light, FrameBlock& block) {
+    const Of wanted{air, std::max(block.eye_m.w, 0.0f), light};
     if (of_ != wanted) {
-        const sky::EyeTables tables =
-            eye_tables(*sky::atmosphere_of(air), wanted.height_m, wanted.sun_sine);
+        const sky::EyeTables tables = tables_of(air, wanted.height_m, light);
         if (!of_) {
             sky_ =
                 gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA32F, kSky, 1, kAirSkyTexture);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gl/texture.h"
-#include "render/frame_block.gen.h"
+#include "render/frame_block.h"
 #include "shader/param_store.h"
 #include "sky/air.h"
 
@@ -20,13 +20,24 @@ std::vector<shader::Param> air_params();
 /// Their values; the defaults where a store has none of them.
 sky::Air air_of(const shader::ParamStore& values);
 
+/// What lights the air over an eye.
+struct AirLight {
+    double sun_sine = 0;   ///< of the sun's geometric elevation at the eye
+    double sun_share = 1;  ///< of its light, less than 1 in an eclipse
+    double moon_sine = 0;
+    glm::vec3 moon{0};  ///< irradiance outside the atmosphere; 0 unless the moon lights the night
+    bool operator==(const AirLight&) const = default;
+};
+/// @param eye_up  vertical at the eye
+AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up);
+
 /// What the eye of a frame sees of the air, on the device: sky::EyeTables for lib/air.glsl.
 class AirTextures {
   public:
-    /// Computes them again if the air, the eye's height or the sun's elevation have changed, and
-    /// writes their coordinates. 15 ms on two processors.
-    /// @param block  has the eye and its sun
-    void update(const sky::Air& air, FrameBlock& block);
+    /// Computes them again if the air, the eye's height or the light have changed, and writes their
+    /// coordinates. 15 ms on two processors, 30 at night with the moon.
+    /// @param block  has the eye
+    void update(const sky::Air& air, const AirLight& light, FrameBlock& block);
 
     /// Null for another name, and before update().
     const gl::Texture* texture(std::string_view name) const;
@@ -34,7 +45,8 @@ class AirTextures {
   private:
     struct Of {
         sky::Air air;
-        float height_m, sun_sine;
+        float height_m;
+        AirLight light;
         bool operator==(const Of&) const = default;
     };
     std::optional<Of> of_;

@@ -31,7 +31,7 @@ void update_light(PassContext& frame, bool with_walls) {
         LodView::of_camera(inputs.camera, picture.x, picture.y, 1, inputs.exaggeration);
     // If no ground is visible, shadows of an earlier sun are kept. If there are none, the coarsest
     // are computed. While the sun stands still, tiles are a good enough answer.
-    const bool has_moved = light.shadow_sun() != inputs.sun.direction;
+    const bool has_moved = light.shadow_sun() != inputs.direct_light().direction;
     const bool sees_ground =
         frame.tiles.triangles() > 0 &&
         (with_walls || !has_moved || frame.terrain.sees_ground(frame.tiles, view));
@@ -39,7 +39,7 @@ void update_light(PassContext& frame, bool with_walls) {
         sees_ground ? frame.tiles.nearest_m() * view.tolerance / frame.terrain.normal_spacing_m()
                     : std::numeric_limits<double>::infinity();
     if (frame.is_read("light_clearance") && (sees_ground || !light.shadow_sun()))
-        light.update_shadows(inputs.sun, inputs.exaggeration, pixel_posts);
+        light.update_shadows(inputs.direct_light(), inputs.exaggeration, pixel_posts);
     if (frame.is_read("light_sky")) light.update_sky_view(inputs.exaggeration);
     light.describe(frame.block);
 }

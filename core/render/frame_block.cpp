@@ -11,6 +11,7 @@
 #include "geo/ellipsoid.h"
 #include "scene/map_view.h"
 #include "sun/daylight.h"
+#include "sun/moonlight.h"
 
 namespace relevo::render {
 namespace {
@@ -26,8 +27,24 @@ glm::dvec4 light_at(const SunLight& sun, double sine) {
     const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
     // Refraction raises normalize(direction + a up). There is none at the zenith.
     const double cosine = std::cos(elevation + lift);
-    return {sun::direct_transmittance(elevation + lift, sun.ground_height_m),
+    return {sun.strength * sun::direct_transmittance(elevation + lift, sun.ground_height_m),
             cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
+}
+
+/// The direct light on the ground: direction, refraction, irradiance.
+void write_direct_light(const SunLight& light, FrameBlock& block) {
+    const double elevation = std::asin(std::clamp(light.direction.z, -1.0, 1.0));
+    const double lift = light.refraction_rad ? light.refraction_rad(elevation) : 0.0;
+    const glm::dvec3 level{light.direction.x, light.direction.y, 0};
+    const glm::dvec3 heading = length(level) > 0 ? normalize(level) : glm::dvec3(0, 1, 0);
+    block.sun_direction = glm::vec4(light.direction, elevation);
+    block.sun_apparent = glm::vec4(
+        std::cos(elevation + lift) * heading + glm::dvec3(0, 0, std::sin(elevation + lift)),
+        elevation + lift);
+    block.sun_light[0] = glm::vec4(light_at(light, 0.5 * (light.lowest_sine + light.highest_sine)));
+    const SunLightTable table = sun_light_table(light);
+    block.sun_light_table = table.light;
+    block.sun_light_domain = {table.domain.x, table.domain.y, 0, 0};
 }
 
 /// Half of the width and of the height of the picture, at view depth 1.
@@ -184,27 +201,18 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.up_matrix = glm::mat4(glm::mat3(matrix));
     block.polar_axis = glm::vec4(axis, 0);
 
+    write_direct_light(inputs.direct_light(), block);
     const double elevation = std::asin(std::clamp(inputs.sun.direction.z, -1.0, 1.0));
-    const double lift = inputs.sun.refraction_rad ? inputs.sun.refraction_rad(elevation) : 0.0;
-    const glm::dvec3 level{inputs.sun.direction.x, inputs.sun.direction.y, 0};
-    const glm::dvec3 heading = length(level) > 0 ? normalize(level) : glm::dvec3(0, 1, 0);
-    block.sun_direction = glm::vec4(inputs.sun.direction, elevation);
-    block.sun_apparent = glm::vec4(
-        std::cos(elevation + lift) * heading + glm::dvec3(0, 0, std::sin(elevation + lift)),
-        elevation + lift);
-    block.sun_light[0] =
-        glm::vec4(light_at(inputs.sun, 0.5 * (inputs.sun.lowest_sine + inputs.sun.highest_sine)));
-    const SunLightTable table = sun_light_table(inputs.sun);
-    block.sun_light_table = table.light;
-    block.sun_light_domain = {table.domain.x, table.domain.y, 0, 0};
-    block.sky_irradiance = glm::vec4(sun::sky_irradiance(elevation), 0);
+    block.sky_irradiance =
+        glm::vec4(sun::eclipsed_sky(inputs.sun_visible) * sun::sky_irradiance(elevation), 0);
     block.height_range = {ground.lowest_m, 1 / std::max(ground.highest_m - ground.lowest_m, 1e-3),
                           inputs.exaggeration,
                           inputs.displacement.range_m(ground.lowest_m, ground.highest_m).first};
     block.ground_extent = glm::vec4(ground.south_west_m,
                                     1.0 / glm::max(ground.north_east_m - ground.south_west_m, 1.0));
     const double exposure =
-        inputs.ev100 ? sun::exposure_of_ev100(*inputs.ev100) : sun::natural_exposure(elevation);
+        inputs.ev100 ? sun::exposure_of_ev100(*inputs.ev100)
+                     : sun::natural_exposure(elevation, inputs.sun_visible, moonlight_lux(inputs));
     block.exposure = static_cast<float>(exposure * std::exp2(inputs.exposure_ev));
     block.footprint_limit = static_cast<float>(footprint_limit);
 
@@ -226,7 +234,9 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const double bent =
         inputs.sun.refraction_rad ? thinned * inputs.sun.refraction_rad(kPi / 4) : 0;
     block.eye_sun_light = glm::vec4(
-        sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m), bent / kBennett45_rad);
+        inputs.sun.strength * sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m),
+        bent / kBennett45_rad);
+    write_moon(inputs, eye_up, above_sea_m, thinned, block);
     const glm::dmat3 rows = glm::transpose(inputs.stars.axes);
     for (int i = 0; i < 3; ++i)
         block.celestial[static_cast<std::size_t>(i)] = glm::vec4(rows[i], inputs.stars.velocity[i]);

@@ -14,6 +14,7 @@
 #include "render/displacement.h"
 #include "render/frame_block.gen.h"
 #include "render/loading.h"
+#include "render/moon.h"
 #include "scene/camera.h"
 #include "sun/celestial.h"
 #include "sun/refraction.h"
@@ -29,6 +30,8 @@ struct SunLight {
     /// Range of the sine of the sun's geometric elevation over the DEM.
     double lowest_sine = 0, highest_sine = 1;
     double semidiameter_rad = 0;  ///< of the solar disc; 0: a point source
+    /// Irradiance outside the atmosphere, linear sRGB: less in an eclipse, and of moonlight.
+    glm::dvec3 strength{1};
     /// Refraction as seen from a place at its height; empty without refraction.
     std::function<sun::Refraction(const geo::Geodetic&)> air{};
     /// Curvature of rays over the ground, as a fraction of the Earth's: light::ShadowOptions.
@@ -67,6 +70,12 @@ struct FrameInputs {
     scene::Camera camera;
     std::optional<PicturePart> part{};  ///< nullopt: the frame is the picture
     SunLight sun;
+    double sun_visible = 1;      ///< fraction of the sun's disc that the moon does not cover
+    std::optional<Moon> moon{};  ///< drawn in the sky if there is one
+    /// The moon's light, if it is the direct light on the ground: set by choose_direct_light().
+    std::optional<SunLight> moonlight{};
+    /// The direct light on the ground, with its shadows.
+    const SunLight& direct_light() const { return moonlight ? *moonlight : sun; }
     sun::CelestialFrame stars;  ///< at the DEM's centre
     double exposure_ev = 0;     ///< stops above the natural exposure of this sun, or above `ev100`
     std::optional<double> ev100;  ///< of a camera; without: the natural exposure of this sun

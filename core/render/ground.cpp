@@ -285,7 +285,7 @@ std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, cons
     return moved;
 }
 
-SunLight make_sun_light(const sun::Position& position, const sun::Refraction& refraction,
+SunLight make_sun_light(const sun::SkyPosition& position, const sun::Refraction& refraction,
                         const Ground& ground, const dem::Grid& grid) {
     SunLight light;
     light.direction = position.direction;

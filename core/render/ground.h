@@ -44,9 +44,9 @@ std::vector<glm::dvec3> block_below(std::span<const glm::dvec3> rim, const Groun
 std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, const Ground& ground,
                                         double exaggeration, const Displacement& displacement);
 
-/// The sun over a DEM.
+/// The sun, or the moon, over a DEM.
 /// @param refraction  at the DEM's centre, as a function of elevation
-SunLight make_sun_light(const sun::Position& position, const sun::Refraction& refraction,
+SunLight make_sun_light(const sun::SkyPosition& position, const sun::Refraction& refraction,
                         const Ground& ground, const dem::Grid& grid);
 
 }  // namespace relevo::render

@@ -170,7 +170,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         write_matrix(view_matrix(camera), full.view);
         write_matrix(projection_matrix(camera, picture.x, picture.y), full.projection);
         full.exposure = static_cast<double>(drawn.block.exposure);
-        write_vector(drawn.inputs.sun.direction, full.sun);
+        write_vector(drawn.inputs.direct_light().direction, full.sun);
         write_vector(normalize(glm::dvec3(drawn.block.sun_apparent)), full.sun_apparent);
         full.exaggeration = drawn.inputs.exaggeration;
         full.lowest_m = drawn.ground.lowest_m;

@@ -280,7 +280,8 @@ struct Renderer::Impl : FrameServices {
         if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
         write_places(terrain.rasters());
-        if (reads(kAirSkyTexture) || reads(kAirBetweenTexture)) air.update(air_of(values), block);
+        if (reads(kAirSkyTexture) || reads(kAirBetweenTexture))
+            air.update(air_of(values), air_light(inputs, glm::dvec3(block.eye_up)), block);
         if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),

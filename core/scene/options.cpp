@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "scene/scene_words.h"
+#include "weather/metar.h"
 
 namespace relevo::scene {
 namespace {
@@ -27,7 +28,7 @@ constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundss
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
 constexpr std::array<std::string_view, 4> kStereos = {"none", "parallel", "cross-eyed", "anaglyph"};
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // in no range
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 Value number(double value) {
@@ -91,6 +92,16 @@ constexpr Option kOptions[] = {
      "none", Kind::Word, 0, 0, kRefractions,
      [](const Scene& s) { return text(s.refraction); },
      [](Scene& s, const Value& v) { s.refraction = v.text; }},
+    {"", "weather", "--weather", "Options",
+     "Weather of a METAR, as text or in a file: clouds, fog, rain, snow, wind, visibility, and the air "
+     "of the sun's refraction", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.weather); },
+     [](Scene& s, const Value& v) { s.weather = v.text.empty() ? "" : weather::report_of(v.text); }},
+    {"", "station_height", "--station-height", "Options",
+     "Height of the weather's station above sea level, metres, from which bases of clouds count; "
+     "default: the ground in the middle of the DEM", Kind::Number, -500, 9000, {},
+     [](const Scene& s) { return number(s.station_height_m.value_or(kNone)); },
+     [](Scene& s, const Value& v) { s.station_height_m = v.number; }},
     {"camera", "fov", "--fov", "View",
      "Vertical field of view, degrees; 40 without it", Kind::Number, 0.1, 170, {},
      [](const Scene& s) { return number(written_deg(s.view.fov_y_rad)); },

@@ -11,6 +11,7 @@
 #include "dem/source.h"
 #include "effect/preset.h"
 #include "scene/view.h"
+#include "weather/facts.h"
 
 namespace relevo::scene {
 
@@ -27,6 +28,8 @@ struct Effects {
     std::vector<std::string> presets;  ///< names and paths, applied in turn before the rest
     std::vector<effect::Setting> settings;
     std::vector<std::string> plugin_path;  ///< folders of further plugins
+    /// Of Scene::weather. Sessions find it; no file has it.
+    weather::Facts weather{};
 };
 
 /// A week: a 32-bit float still has steps of 1/16 s there.
@@ -68,6 +71,8 @@ struct Scene {
     dem::Holes holes = dem::Holes::Fill;  ///< how they are drawn
     TimeSpec time;
     std::string refraction = "standard";
+    std::string weather;  ///< a METAR; empty: none. Readers replace names of files by their report
+    std::optional<double> station_height_m;  ///< of the weather's station; none: of the ground
     View view;
     std::optional<Overlay> overlay;
     Stamps stamps;

@@ -94,7 +94,7 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
         set_size(scene, default_panorama_px(scene.view));
 }
 
-void SceneReader::take_options(ObjectReader& object, std::string_view name, Scene& scene) {
+void SceneReader::take_options(ObjectReader& object, std::string_view name, Scene& scene) const {
     for (const Option& option : options()) {
         if (option.object != name) continue;
         const std::string key(option.key);
@@ -104,8 +104,17 @@ void SceneReader::take_options(ObjectReader& object, std::string_view name, Scen
         if (option.kind == Option::Kind::Flag) object.boolean(key, false);
         if (const std::string fault = fault_of(option, *value); !fault.empty())
             object.fail(value->line, key, fault);
-        option.set(scene, *value);
+        if (option.key == "weather")
+            check(object, "weather", [&] { option.set(scene, whole_report(*value)); });
+        else
+            option.set(scene, *value);
     }
+}
+
+json::Value SceneReader::whole_report(json::Value value) const {
+    if (!value.text.empty() && value.text.find(' ') == std::string::npos)
+        value.text = beside(value.text);
+    return value;
 }
 
 ObjectReader SceneReader::inside(const json::Value& value, const std::string& path) const {

@@ -43,11 +43,13 @@ class SceneReader {
     /// A path that counts from the file's folder; what is no path of this machine stays.
     std::string beside(const std::string& name) const;
     /// A reader of an object inside the file.
+    /// A weather's text, with the name of a file counted from the folder.
+    json::Value whole_report(json::Value value) const;
     json::ObjectReader inside(const json::Value& value, const std::string& path) const;
 
   private:
     /// Takes the options that the table has for an object.
-    static void take_options(json::ObjectReader& object, std::string_view name, Scene& scene);
+    void take_options(json::ObjectReader& object, std::string_view name, Scene& scene) const;
     void dem(const json::Value& value, const std::string& path, Scene& scene) const;
     void time(const json::Value& value, const std::string& path, TimeSpec& spec) const;
     void check_time(const json::ObjectReader& object, const TimeSpec& spec) const;

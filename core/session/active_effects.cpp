@@ -8,6 +8,7 @@
 #include "base/contains.h"
 #include "base/log.h"
 #include "effect/instance_reader.h"
+#include "effect/weather_preset.h"
 
 namespace relevo::session {
 
@@ -27,6 +28,9 @@ InstalledEffects::InstalledEffects(const scene::Effects& effects)
           {effects.plugin_path.begin(), effects.plugin_path.end()})) {
     for (const std::string& preset : effects.presets)
         presets.push_back(effect::load_preset(preset));
+    // The first one, so that presets and settings replace what it has.
+    if (effects.weather != weather::Facts{})
+        presets.insert(presets.begin(), effect::weather_preset(registry, effects.weather));
     values = defaults();
 }
 
@@ -139,7 +143,7 @@ render::EffectInputs ActiveEffects::inputs() const {
 void ActiveEffects::visit_files(
     const std::function<void(const std::filesystem::path&, const std::string&)>& visit) const {
     for (const effect::Preset& preset : presets)
-        visit(preset.file, "the preset");
+        if (!preset.file.empty()) visit(preset.file, "the preset");
     for (const effect::Effect& effect : registry.effects()) {
         const effect::Manifest& manifest = effect.manifest;
         const std::string what = fmt::format("a file of the plugin {},", effect.id());

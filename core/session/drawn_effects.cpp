@@ -12,7 +12,8 @@ namespace relevo::session {
 
 bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
     return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
-           effects.plugin_path == other.effects.plugin_path && compared == other.compared &&
+           effects.plugin_path == other.effects.plugin_path &&
+           effects.weather == other.effects.weather && compared == other.compared &&
            ground == other.ground && overlay_raster == other.overlay_raster &&
            hides_shadows == other.hides_shadows;
 }

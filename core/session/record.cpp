@@ -15,6 +15,7 @@
 #include "effect/selection.h"
 #include "session/active_effects.h"
 #include "session/panorama_maker.h"
+#include "session/scene_weather.h"
 #include "session/words.h"
 #include "sun/position.h"
 
@@ -27,8 +28,7 @@ ordered_json sun_json(const Session& session) {
     const geo::Geodetic middle = session.ground().frame.origin();
     const sun::Position at = sun::position(session.time(), middle);
     const sun::Refraction air =
-        refraction_at(session.scene().refraction,
-                      {middle.lat_rad, middle.lon_rad, session.ground().air_height_m()});
+        session.refraction({middle.lat_rad, middle.lon_rad, session.ground().air_height_m()});
     return {{"lat_deg", degrees(middle.lat_rad)},
             {"lon_deg", degrees(middle.lon_rad)},
             {"azimuth_deg", degrees(at.azimuth_rad)},
@@ -220,6 +220,9 @@ std::string sidecar_text(const Session& session, SceneInputs& inputs, const std:
     json["utc"] = sun::exact_iso(session.time());
     json["sun"] = sun_json(session);
     json["camera"] = camera_json(session);
+    if (const SceneWeather* const weather = session.weather())
+        json["weather"] = {{"report", weather->report.text},
+                           {"station_height_m", weather->station_m}};
     json["effects"] = ordered_json::array();
     for (const effect::Effect* effect : session.effects().loaded.selection.effects)
         json["effects"].push_back(effect->id());

@@ -14,6 +14,8 @@
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/celestial.h"
+#include "sun/eclipse.h"
+#include "sun/moon.h"
 
 namespace relevo::session {
 
@@ -38,15 +40,23 @@ void SceneState::set_time(sun::Instant utc) {
     utc_ = utc;
     const geo::Geodetic place = ground_->frame.origin();
     position_ = sun::position(utc, place);
-    const Air asked{scene.refraction, {place.lat_rad, place.lon_rad, ground_->air_height_m()}};
-    if (air_of_ != asked) air_ = refraction_at(asked.model, asked.place);
+    const auto measured = weather ? weather->air : std::nullopt;
+    const Air asked{
+        scene.refraction, {place.lat_rad, place.lon_rad, ground_->air_height_m()}, measured};
+    if (air_of_ != asked) air_ = refraction_at(asked.model, asked.place, measured);
     air_of_ = asked;
     inputs.sun = render::make_sun_light(position_, air_, *ground_, dem_->field.grid);
     if (air_.bends())
-        inputs.sun.air = [model = scene.refraction](const geo::Geodetic& at) {
-            return refraction_at(model, at);
+        inputs.sun.air = [model = scene.refraction, measured](const geo::Geodetic& at) {
+            return refraction_at(model, at, measured);
         };
     inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
+    const sun::MoonPosition moon = sun::moon_position(utc, place);
+    inputs.moon = render::make_moon(moon, position_, inputs.stars);
+    inputs.sun_visible = sun::sun_visible_fraction(utc, place);
+    inputs.sun.strength = glm::dvec3(inputs.sun_visible);
+    render::choose_direct_light(inputs,
+                                render::make_sun_light(moon, air_, *ground_, dem_->field.grid));
     inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
 }
 
@@ -144,7 +154,11 @@ std::string SceneState::place_text() const {
 std::string SceneState::sun_text() const {
     const std::optional<geo::Geodetic> from = eye();
     if (!from) return session::sun_text(position_, air_);
-    return session::sun_text(sun::position(utc_, *from), refraction_at(scene.refraction, *from));
+    return session::sun_text(sun::position(utc_, *from), refraction(*from));
+}
+
+sun::Refraction SceneState::refraction(const geo::Geodetic& place) const {
+    return refraction_at(scene.refraction, place, weather ? weather->air : std::nullopt);
 }
 
 }  // namespace relevo::session

@@ -10,6 +10,7 @@
 #include "render/ground.h"
 #include "scene/default_time.h"
 #include "scene/scene.h"
+#include "session/scene_weather.h"
 #include "session/session.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
@@ -70,8 +71,12 @@ class SceneState {
 
     bool is_map() const { return draws_maps_ && scene.ortho; }
 
+    /// Of the scene at a place, for the model of the scene and its weather.
+    sun::Refraction refraction(const geo::Geodetic& place) const;
+
     scene::Scene scene;
-    render::FrameInputs inputs;  ///< of the next frame
+    std::optional<SceneWeather> weather;  ///< of the scene; set_time() applies its air
+    render::FrameInputs inputs;           ///< of the next frame
     /// Least height above the drawn ground for eyes with an absolute height [m]; nullopt:
     /// unconstrained.
     std::optional<double> keep_above_m;
@@ -81,6 +86,7 @@ class SceneState {
     struct Air {
         std::string model;
         geo::Geodetic place;
+        std::optional<weather::StationAir> measured;
         bool operator==(const Air&) const = default;
     };
     struct MovedPoints {

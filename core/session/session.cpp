@@ -241,7 +241,7 @@ std::vector<render::SunSeen> Session::read_sun_seen() const {
 }
 
 const render::SunLight& Session::sun_light() const {
-    return impl_->state.inputs.sun;
+    return impl_->state.inputs.direct_light();
 }
 
 const scene::Camera& Session::camera() const {
@@ -282,6 +282,14 @@ std::string Session::clock_text() const {
 
 std::string Session::sun_text() const {
     return impl_->state.sun_text();
+}
+
+sun::Refraction Session::refraction(const geo::Geodetic& place) const {
+    return impl_->state.refraction(place);
+}
+
+const SceneWeather* Session::weather() const {
+    return impl_->state.weather ? &*impl_->state.weather : nullptr;
 }
 
 std::string Session::view_reason() const {

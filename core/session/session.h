@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "session/data_layers.h"
 #include "session/overlay_time.h"
+#include "sun/refraction.h"
 #include "sun/zone.h"
 
 /// Turns a scene into frames, pictures and descriptions. Shared by all front ends.
@@ -106,6 +107,7 @@ struct Options {
 };
 
 struct ActiveEffects;
+struct SceneWeather;
 struct NonFiniteCause;
 struct Marks;
 
@@ -261,6 +263,12 @@ class Session {
     std::string clock_text() const;
     /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", in degrees, at place_text().
     std::string sun_text() const;
+
+    /// Refraction at a place, by the scene's model and the air of its weather.
+    sun::Refraction refraction(const geo::Geodetic& place) const;
+
+    /// The scene's weather; null without one.
+    const SceneWeather* weather() const;
 
     /// Reason for the default view angles; empty if all were given.
     std::string view_reason() const;

@@ -4,6 +4,7 @@
 #include <future>
 #include <utility>
 
+#include "base/log.h"
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
 #include "scene/panorama.h"
@@ -49,8 +50,14 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     // Deferred to get() if no thread can be created.
     auto loading = std::async(std::launch::async | std::launch::deferred,
                               [this] { return options.dem ? options.dem : load_own(); });
+    std::shared_ptr<const LoadedDem> loaded;
+    if (!scene.weather.empty()) {  // heights of its clouds need the ground
+        loaded = loading.get();
+        state.weather = weather_of(scene, *loaded);
+        log::info(state.weather->notice(timed));
+    }
     open_device(files);
-    const std::shared_ptr<const LoadedDem> loaded = loading.get();
+    if (!loaded) loaded = loading.get();
     dem::add_all(scene.dems, files);
     // Which effects are on may depend on the DEM.
     drawn->take_ground(loaded->ground_words(scene.holes));
@@ -85,6 +92,7 @@ void Session::Impl::open_device(FilesInUse& files) {
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
     request.allow_unmet = options.allow_unmet;
+    request.effects.weather = state.weather ? state.weather->facts : weather::Facts{};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
     request.hides_shadows = has_overlay_raster() && hides_shadows;
@@ -188,6 +196,12 @@ void Session::Impl::resize(int width_px, int height_px) {
 void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     context->make_current();
     state.inputs.deterministic = true;
+    if (next.weather != state.scene.weather ||
+        next.station_height_m != state.scene.station_height_m) {
+        state.scene.weather = next.weather;
+        state.scene.station_height_m = next.station_height_m;
+        state.weather = weather_of(next, *state.dem());
+    }
     if (const EffectsRequest wanted = request(next.effects); wanted != drawn->request()) {
         switch_to(wanted);
         take_effects();
@@ -248,10 +262,14 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
 void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given) {
     context->make_current();
     upload(dem);
+    state.weather = weather_of(state.scene, *dem);
     look(given.view);
     state.set_time(given.time.at.empty() ? state.default_time() : state.utc());
     const scene::Effects effects = drawn->request().effects;
-    if (request(effects).ground != drawn->request().ground) set_effects(effects);
+    const EffectsRequest wanted = request(effects);
+    if (wanted.ground != drawn->request().ground ||
+        wanted.effects.weather != drawn->request().effects.weather)
+        set_effects(effects);
 }
 
 void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted,

@@ -95,22 +95,30 @@ glm::dvec3 sky_irradiance(double elevation_rad) {
            (sky_illuminance_lux(elevation_rad) / kSolarIlluminance_lux);
 }
 
-double natural_exposure(double elevation_rad) {
+double eclipsed_sky(double visible_fraction) {
+    constexpr double kTotality = 3e-4;
+    return visible_fraction + (1 - visible_fraction) * kTotality;
+}
+
+double natural_exposure(double elevation_rad, double visible_fraction, double moonlight_lux) {
     // Light on level ground, against that of a sun 45 degrees high. The eye and every camera give
     // part of the difference back; three quarters keep noon at its place, the colours of a sunset
     // in the picture and civil twilight readable.
-    const auto level_lux = [](double h_rad) {
+    const auto level_lux = [](double h_rad, double visible) {
         const double direct =
-            dot(direct_transmittance(h_rad, 0), glm::dvec3(0.2126, 0.7152, 0.0722));
+            visible * dot(direct_transmittance(h_rad, 0), glm::dvec3(0.2126, 0.7152, 0.0722));
         return kSolarIlluminance_lux * direct * std::max(0.0, std::sin(h_rad)) +
-               sky_illuminance_lux(h_rad);
+               eclipsed_sky(visible) * sky_illuminance_lux(h_rad);
     };
-    static const double kReference_lux = level_lux(radians(45));
+    static const double kReference_lux = level_lux(radians(45), 1);
     // From nautical dusk on, as long exposures do, white ground is held at what is left.
-    constexpr double kNightLevel = 0.05;
-    const double level = level_lux(elevation_rad);
-    return std::max(2.2 * std::pow(kReference_lux / level, 0.74),
-                    kNightLevel * kSolarIlluminance_lux / level);
+    // Of moonlight a quarter (in its logarithm) is left over that: ground is seen, and dark.
+    constexpr double kNightLevel = 0.05, kMoonlit = 0.25;
+    const double moonless = level_lux(elevation_rad, visible_fraction);
+    const double level = moonless + moonlight_lux;
+    return std::max(
+        2.2 * std::pow(kReference_lux / level, 0.74),
+        kNightLevel * std::pow(level / moonless, kMoonlit) * kSolarIlluminance_lux / level);
 }
 
 namespace {

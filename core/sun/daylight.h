@@ -40,11 +40,22 @@ double sky_illuminance_lux(double elevation_rad);
 /// bluer through twilight, when ozone takes the yellow away.
 glm::dvec3 sky_irradiance(double elevation_rad);
 
+/// Share of a clear sky's light that an eclipse leaves. The sky follows the visible fraction of the
+/// sun up to an obscuration of 99.8 %; in totality it is lit from beyond the umbra, by some lux
+/// where 13 000 were.
+/// Source: W. E. Sharp, S. M. Silverman, J. W. F. Lloyd, Appl. Optics 10 (1971) 1207; K.-P.
+/// Moellmann, M. Vollmer, Eur. J. Phys. 27 (2006) 1299
+double eclipsed_sky(double visible_fraction);
+
 /// Factor on radiance that a photographer would choose for a sun at this elevation: 2 with the sun
-/// high, more the less light there is, though never so much that dusk looks like day. It depends on
-/// the sun alone, never on the picture, so that frames of one moment match.
-/// @param elevation_rad  of the sun's centre, geometric
-double natural_exposure(double elevation_rad);
+/// high, more the less light there is, though never so much that dusk looks like day, nor a moonlit
+/// night like a sunlit one. It depends on sun and moon alone, never on the picture, so that frames
+/// of one moment match.
+/// @param elevation_rad     of the sun's centre, geometric
+/// @param visible_fraction  of the sun's disc, in an eclipse
+/// @param moonlight_lux     on level ground, of the moon and the sky that it lights
+double natural_exposure(double elevation_rad, double visible_fraction = 1,
+                        double moonlight_lux = 0);
 
 /// Luminance of radiance 1 [cd/m2]: that of a white diffuse surface that faces the sun outside the
 /// atmosphere. The same surface has 433 W/m2/sr, over all wavelengths (1361 W/m2).

@@ -8,6 +8,7 @@
 
 //@ include lib/air.glsl
 //@ include lib/filtered.glsl
+//@ include lib/moon.glsl
 
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
 uniform sampler2DArray sky_times;
@@ -88,7 +89,8 @@ vec3 sky_air_light(in float cosine) {
 
 /// What level ground sends upwards.
 vec3 sky_ground(in float sun_sine) {
-    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
+    float sine = frame.eye_moon_light.a > 0.0 ? frame.sun_apparent.z : sun_sine;
+    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sine, 0.0) * frame.sun_light[0].rgb);
 }
 
 /// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
@@ -260,6 +262,18 @@ vec3 sky_of_paper(in vec3 direction, in bool with_disc) {
     return with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
 }
 
+/// Sun, moon and stars, which stand over the horizon.
+vec3 sky_bodies(in vec3 direction) {
+    vec3 up = frame.eye_up.xyz, to_sun = frame.eye_sun.xyz;
+    vec3 apart = to_sun - direction;
+    float uncovered = moon_uncovered(direction);
+    vec3 radiance = uncovered * sky_disc * sky_sun(dot(apart, apart)) * frame.eye_sun_light.rgb;
+#if HAS_night
+    radiance += uncovered * sky_starlight(direction, up);
+#endif
+    return radiance + moon_on_sky(direction, to_sun, uncovered);
+}
+
 vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 radiance;
     if (sky_colours == 0) {
@@ -269,13 +283,13 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
         radiance = sky_of_paper(direction, with_disc);
     }
     // What has set is behind the Earth.
-    if (with_disc && dot(direction, frame.eye_up.xyz) > frame.eye_up.w) {
-        vec3 apart = frame.eye_sun.xyz - direction;
-        radiance += sky_disc * sky_sun(dot(apart, apart)) * frame.eye_sun_light.rgb;
+    if (with_disc && dot(direction, frame.eye_up.xyz) > frame.eye_up.w) radiance += sky_bodies(direction);
 #if HAS_night
-        radiance += sky_starlight(direction, frame.eye_up.xyz);
+    // As the aureole of the sun in the paper's skies.
+    if (frame.eye_moon_light.a > 0.0)
+        radiance += sky_aureole * sky_air_mass_of(dot(frame.eye_moon.xyz, frame.eye_up.xyz)) *
+                    sky_glow(dot(frame.eye_moon.xyz, direction)) * frame.eye_moon_light.rgb;
 #endif
-    }
     return radiance;
 }
 

@@ -13,7 +13,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 up_at_eye;           // xyz: normal of the ellipsoid below the eye, scaled for up_matrix
     mat4 up_matrix;           // its change with position: up(p) = normalize(up_at_eye + up_matrix p)
     vec4 polar_axis;          // xyz: unit vector along the Earth's axis, northwards
-    vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, geometric; w: its elevation [rad]
+    vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, or the moon that lights a night (eye_moon_light),
+                              // geometric; w: its elevation [rad]
     vec4 sun_apparent;        // xyz: the same with refraction; w: apparent elevation [rad]
     vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM,
                               // with refraction; the others are 0
@@ -71,4 +72,12 @@ layout(std140, binding = 0) uniform Frame {
     float instance_shadow_weight; // 1 where there are such maps, else 0
     float still_seconds;      // as seconds: a window does not draw on for effects that read only this [s]
     float sea_floor_share;    // of the DEM's posts that are below a sea and have the height of its floor, 0..1
+    vec4 eye_moon;            // xyz: towards the moon as the eye sees it, with refraction; w: its semidiameter [rad], 0: it is
+                              // below the horizon, and all that follows is 0
+    vec4 eye_moon_light;      // rgb: irradiance there on a surface that faces it; a: 1 where the moon is the direct light of
+                              // sun_direction, sun_apparent and sun_light, at night; else 0
+    vec4 moon_to_sun;         // xyz: towards the sun from the moon
+    vec4 moon_axis;           // xyz: axis of the moon, northwards
+    vec4 moon_radiance;       // rgb: of its full disc before the eye; a: that of its dark side, relative
+    vec4 corona;              // rgb: in totality, irradiance that the sun would have at the eye; else 0
 } frame;

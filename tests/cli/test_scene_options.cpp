@@ -51,6 +51,7 @@ Scene from_file(const Option& option, const std::string& value) {
 /// A value that is not the default.
 std::string other_value(const Option& option) {
     if (option.kind == Kind::Word) return std::string(option.words.back());
+    if (option.key == "weather") return "LSZB 011150Z 24009KT CAVOK 17/13 Q1014";
     if (option.kind == Kind::Text) return "a text";
     if (option.kind == Kind::Whole) return "7";
     if (option.kind == Kind::Flag)

@@ -182,7 +182,7 @@ constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, default_where, provides, "
     "exclusive, requires, "
     "wants, after, module, glsl, textures, passes, instances, "
-    "marks, texts, displaces, invents, $schema";
+    "marks, texts, displaces, invents, rising, weather, $schema";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(

@@ -52,6 +52,8 @@ TEST(PluginSchema, HasTheLoadersKeys) {
     EXPECT_THAT(keys(member(properties, "invents")),
                 UnorderedElementsAreArray(
                     known_keys(R"("invents": {"what": "w", "by": "b", )" + unknown + "}")));
+    EXPECT_THAT(keys(member(properties, "weather")),
+                UnorderedElementsAreArray(known_keys(R"("weather": {)" + unknown + "}")));
     const std::string sizes = R"("spacing_m": 1, "height_m": 1)";
     EXPECT_THAT(keys(member(objects, "instances")),
                 UnorderedElementsAreArray(

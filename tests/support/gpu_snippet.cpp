@@ -5,7 +5,9 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "base/paths.h"
 #include "base/text.h"
+#include "effect/manifest.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/texture.h"
@@ -33,22 +35,40 @@ class TextsWithTest : public shader::CoreTexts {
     std::string main_;
 };
 
-shader::Snippet read_snippet(const std::string& plugin) {
-    const std::filesystem::path file =
-        source_dir() / "plugins" / plugin / fmt::format("{}.glsl", plugin);
-    return shader::parse_snippet(plugin, file.string(), read_text(file, "test"));
+/// Whether a plugin's folder has more than one file of GLSL, which its manifest then orders.
+bool effect_has_several(const std::filesystem::path& folder) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        files += entry.path().extension() == ".glsl" ? 1 : 0;
+    return files > 1;
+}
+
+/// The plugin's GLSL: one file, or those that its manifest names.
+std::vector<shader::Snippet> read_snippets(const std::string& plugin) {
+    const std::filesystem::path folder = source_dir() / "plugins" / plugin;
+    std::vector<std::filesystem::path> files{folder / fmt::format("{}.glsl", plugin)};
+    if (effect_has_several(folder))
+        files = effect::load_manifest(folder, share_dir() / "data").glsl;
+    std::vector<shader::Snippet> snippets;
+    for (const std::filesystem::path& file : files)
+        snippets.push_back(shader::parse_snippet(plugin, file.string(), read_text(file, "test")));
+    return snippets;
 }
 
 }  // namespace
 
 GpuSnippet::GpuSnippet(const std::string& plugin, const std::string& include)
     : plugin_(plugin), include_(include) {
-    if (!plugin.empty()) values_.declare(read_snippet(plugin).source.params);
+    if (plugin.empty()) return;
+    std::vector<shader::Param> params;
+    for (const shader::Snippet& snippet : read_snippets(plugin))
+        params.insert(params.end(), snippet.source.params.begin(), snippet.source.params.end());
+    values_.declare(params);
 }
 
 std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int rows) {
-    std::optional<shader::Snippet> snippet;
-    if (!plugin_.empty()) snippet = read_snippet(plugin_);
+    std::vector<shader::Snippet> snippets;
+    if (!plugin_.empty()) snippets = read_snippets(plugin_);
     const TextsWithTest texts(source_dir() / "shaders",
                               (include_.empty() ? "" : fmt::format("//@ include {}\n", include_)) +
                                   "layout(location = 0) out vec4 result;\n"
@@ -56,7 +76,8 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
                                   "    int x = int(gl_FragCoord.x), y = int(gl_FragCoord.y);\n" +
                                   body + "\n}\n");
     shader::StitchInput input;
-    if (snippet) input.snippets = {&*snippet};
+    for (const shader::Snippet& snippet : snippets)
+        input.snippets.push_back(&snippet);
     input.values = &values_;
     const shader::Stitched stitched = shader::stitch(
         texts, {.vertex_main = "fullscreen.vert.glsl", .fragment_main = "test.frag.glsl"}, input);

@@ -33,7 +33,7 @@ const std::vector<Row>& rows() {
          {"DEM",        "-o",       "--scene", "--save-scene", "--from",     "--timings",
           "--overlay",  "--points", "--times", "--along",      "--save-job", "--contact-sheet",
           "JOB",        "A",        "B",       "GOLDEN",       "OUTPUT",     "--slurm",
-          "--parallel", "--stac",   "--tiles"}},
+          "--parallel", "--stac",   "--tiles", "--weather"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},

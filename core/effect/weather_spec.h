@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relevo::json {
+struct Value;
+}  // namespace relevo::json
+
+namespace relevo::effect {
+
+/// What a plugin takes from the weather of a scene, the object "weather" of plugin.json:
+///     "weather": {"on": ["rainy"], "set": {"wetness": "rain"}}
+struct WeatherSpec {
+    /// A parameter of the plugin, and the figure that sets it.
+    struct Setting {
+        std::string address;  ///< "wet.wetness"
+        std::string figure;   ///< of weather::fact_figures()
+        int line = 0;         ///< in plugin.json
+    };
+    std::vector<std::string> on;  ///< of weather::fact_words(): each switches the effect on
+    std::vector<Setting> settings;
+};
+
+/// Reads the object.
+/// @param file  plugin.json
+/// @param id    of the plugin
+/// @throws Error (BadInput) with file and line
+WeatherSpec read_weather_spec(const std::string& file, const std::string& id,
+                              const json::Value& value);
+
+}  // namespace relevo::effect

@@ -1,0 +1,107 @@
+#include "render/moon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/units.h"
+#include "render/frame_block.h"
+#include "sun/daylight.h"
+#include "sun/moonlight.h"
+
+namespace relevo::render {
+namespace {
+
+double refracted_rad(const SunLight& light, double elevation_rad) {
+    return elevation_rad + (light.refraction_rad ? light.refraction_rad(elevation_rad) : 0.0);
+}
+
+bool shines(const SunLight& light) {
+    const double highest_rad = std::asin(std::clamp(light.highest_sine, -1.0, 1.0));
+    return sun::direct_transmittance(refracted_rad(light, highest_rad), 0).y > 0;
+}
+
+double luminance(const glm::dvec3& rgb) {
+    return dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+/// A geometric direction as the eye sees it.
+glm::dvec3 lifted(const glm::dvec3& direction, const SunLight& air, const glm::dvec3& up,
+                  double bent) {
+    const double elevation_rad = std::asin(std::clamp(dot(direction, up), -1.0, 1.0));
+    const double lift = bent * (refracted_rad(air, elevation_rad) - elevation_rad);
+    const double cosine = std::cos(elevation_rad + lift);
+    return normalize(direction + (cosine > 1e-6 ? std::sin(lift) / cosine : 0) * up);
+}
+
+}  // namespace
+
+Moon make_moon(const sun::MoonPosition& moon, const sun::Position& sun,
+               const sun::CelestialFrame& stars) {
+    // The axis stands within 1.6 degrees of the pole of the ecliptic.
+    constexpr double kObliquity_rad = radians(23.4393);
+    const glm::dvec3 ecliptic_pole(0, -std::sin(kObliquity_rad), std::cos(kObliquity_rad));
+    // A full Earth is 0.00012 of the sun: -16.9 to -26.7 magnitudes (Allen, Astrophysical
+    // Quantities, 1976).
+    constexpr double kFullEarth = 1.2e-4;
+    Moon result;
+    result.direction = moon.direction;
+    result.to_sun = normalize(sun.direction * sun.distance_au - moon.direction * moon.distance_au);
+    result.axis = normalize(glm::transpose(stars.axes) * ecliptic_pole);
+    result.semidiameter_rad = moon.semidiameter_rad;
+    result.light = sun::moonlight(moon);
+    result.radiance = sun::moon_radiance(moon);
+    result.earthshine = kFullEarth * (1 - moon.illuminated_fraction);
+    return result;
+}
+
+void choose_direct_light(FrameInputs& inputs, SunLight moonlight) {
+    inputs.moonlight.reset();
+    if (shines(inputs.sun) || !shines(moonlight)) return;
+    moonlight.strength = inputs.moon->light;
+    moonlight.air = inputs.sun.air;
+    inputs.moonlight = std::move(moonlight);
+}
+
+double moonlight_lux(const FrameInputs& inputs) {
+    if (!inputs.moonlight) return 0;
+    const double elevation_rad = std::asin(std::clamp(inputs.moonlight->direction.z, -1.0, 1.0));
+    const double apparent_rad = refracted_rad(*inputs.moonlight, elevation_rad);
+    const glm::dvec3 direct = inputs.moon->light * sun::direct_transmittance(apparent_rad, 0) *
+                              std::max(0.0, std::sin(apparent_rad));
+    return sun::kSolarIlluminance_lux *
+           luminance(direct + sun::moonlit_sky_irradiance(elevation_rad, inputs.moon->light));
+}
+
+void write_moon(const FrameInputs& inputs, const glm::dvec3& eye_up, double eye_height_m,
+                double bent, FrameBlock& block) {
+    if (inputs.moonlight)
+        block.sky_irradiance +=
+            glm::vec4(sun::moonlit_sky_irradiance(
+                          std::asin(std::clamp(inputs.moonlight->direction.z, -1.0, 1.0)),
+                          inputs.moon->light),
+                      0);
+    if (!inputs.moon) return;
+    const Moon& moon = *inputs.moon;
+    const glm::dvec3 seen = lifted(moon.direction, inputs.sun, eye_up, bent);
+    const double elevation_rad = std::asin(std::clamp(dot(seen, eye_up), -1.0, 1.0));
+    const double horizon_rad = std::asin(static_cast<double>(block.eye_up.w));
+    if (elevation_rad + moon.semidiameter_rad < horizon_rad) return;
+    // Seen from above its own horizon, the disc is through the air of its centre.
+    const glm::dvec3 air =
+        sun::direct_transmittance(std::max(elevation_rad, radians(0.3)), eye_height_m);
+    block.eye_moon = glm::vec4(seen, moon.semidiameter_rad);
+    block.eye_moon_light = glm::vec4(moon.light * air, inputs.moonlight ? 1 : 0);
+    block.moon_to_sun = glm::vec4(moon.to_sun, 0);
+    block.moon_axis = glm::vec4(moon.axis, 0);
+    block.moon_radiance = glm::vec4(moon.radiance * air, moon.earthshine);
+    // The corona is a millionth of the sun: the sky drowns it in all but the last of an eclipse.
+    constexpr double kShowsCorona = 0.002;
+    if (inputs.sun_visible < kShowsCorona)
+        block.corona = glm::vec4(sun::direct_transmittance(block.eye_sun.w, eye_height_m), 0);
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "weather/metar.h"
+
+namespace relevo::weather {
+namespace {
+
+constexpr std::size_t kMostTried = 1000;  // lines from the end; errors take time
+
+/// "2026/06/01 11:50", which NOAA's files have before each report.
+bool is_date_line(std::string_view line) {
+    return line.size() >= 10 && line[4] == '/' && line[7] == '/' &&
+           std::ranges::all_of(line, [](char c) {
+               return (c >= '0' && c <= '9') || c == '/' || c == ':' || c == ' ';
+           });
+}
+
+/// Reports of a file: lines, with those joined that go on after blanks.
+std::vector<std::string> reports_of(const std::string& text) {
+    std::vector<std::string> reports;
+    for (const std::string& line : split(text, '\n')) {
+        const std::string_view content = trimmed(line);
+        if (content.empty() || is_date_line(content) || content.front() == '#') continue;
+        const bool goes_on = (line[0] == ' ' || line[0] == '\t') && !reports.empty();
+        if (goes_on)
+            reports.back() += " " + std::string(content);
+        else
+            reports.emplace_back(content);
+    }
+    return reports;
+}
+
+}  // namespace
+
+std::string report_of(const std::string& text_or_file) {
+    std::error_code unknown;
+    if (is_report(text_or_file) || (text_or_file.find(' ') != std::string::npos &&
+                                    !std::filesystem::exists(text_or_file, unknown)))
+        return parse_metar(text_or_file).text;
+    const std::vector<std::string> reports = reports_of(read_text(text_or_file, "weather"));
+    if (reports.empty())
+        bad_input(fmt::format("weather: {}: expected a METAR but found none", text_or_file));
+    std::string fault;
+    const std::size_t first = reports.size() - std::min(reports.size(), kMostTried);
+    for (std::size_t i = reports.size(); i-- > first;) {
+        try {
+            return parse_metar(reports[i]).text;
+        } catch (const Error& error) {
+            if (fault.empty()) fault = error.what();
+        }
+    }
+    bad_input(fmt::format("{}; in {}{}", fault, text_or_file,
+                          reports.size() > 1 ? ", whose other lines are no METAR either" : ""));
+}
+
+}  // namespace relevo::weather

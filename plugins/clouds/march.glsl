@@ -1,0 +1,236 @@
+//! provides  the decks along a ray: how bright, how opaque, how far
+//! reads     depth of the ground; the sun's direction
+
+//@ include lib/screen.glsl
+
+uniform int clouds_steps = 24; //@ range(4, 64) static label("Steps") description("Samples along a ray through a deck")
+
+uniform sampler2D clouds_depths; //@ from(core.ground_depth)
+uniform sampler2D clouds_near;
+
+const float clouds_far_m = 300000.0;
+
+/// Where a ray is inside of a deck, from x to y along it [m]; empty if y <= x.
+/// @param height_m  of the eye
+/// @param sine      of the ray's elevation
+vec2 clouds_inside_deck(in clouds_Deck d, in float height_m, in float sine) {
+    float bend = 0.5 * (1.0 - sine * sine) / clouds_earth_m;
+    float at_base = sine * sine + 4.0 * bend * (d.base_m - height_m);
+    float at_top = sine * sine + 4.0 * bend * (d.top_m - height_m);
+    if (height_m < d.base_m)
+        return vec2(clouds_way_up(d.base_m - height_m, sine), clouds_way_up(d.top_m - height_m, sine));
+    bool reaches_base = sine < 0.0 && at_base >= 0.0;
+    float base_way = 2.0 * (d.base_m - height_m) / min(sine - sqrt(max(at_base, 0.0)), -1e-6);
+    if (height_m <= d.top_m) return vec2(0.0, reaches_base ? base_way : clouds_way_up(max(d.top_m - height_m, 0.1), sine));
+    if (sine >= 0.0 || at_top < 0.0) return vec2(0.0);
+    float in_way = 2.0 * (d.top_m - height_m) / min(sine - sqrt(at_top), -1e-6);
+    float out_way = (sqrt(at_top) - sine) / max(2.0 * bend, 1e-12);
+    return vec2(in_way, reaches_base ? base_way : out_way);
+}
+
+/// Extinction at a point of a deck [1/m], and in y and z the optical depths straight up and down.
+vec3 clouds_extinction(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m) {
+    if (height_m < d.base_m || height_m > d.top_m) return vec3(0.0);
+    vec4 columns = clouds_at(clouds_place(position_m, height_m));
+    float share = columns[deck];
+    if (share <= 0.0) return vec3(0.0);
+    float top_m = clouds_column_top_m(d, share, columns.a);
+    float tall_m = top_m - d.base_m;
+    float within = (height_m - d.base_m) / tall_m;
+    if (within >= 1.0) return vec3(0.0);
+    float tau = clouds_tau(d, share, columns.a);
+    float soft = min((1.0 - within) * 6.0, 1.0) * min(within * 12.0 + 0.1, 1.0);
+    return vec3(soft * tau / tall_m, tau * (1.0 - within), tau * within);
+}
+
+/// Optical depth from a point of a deck along a direction.
+float clouds_towards(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 way, in float sine) {
+    float tall_m = d.top_m - d.base_m, tau = 0.0, before_m = 0.0;
+    float next_m = 0.06 * tall_m;
+    for (int i = 0; i < 4; ++i) {
+        float at_m = 0.5 * (before_m + next_m);
+        tau += (next_m - before_m) * clouds_extinction(d, deck, position_m + at_m * way, height_m + at_m * sine).x;
+        before_m = next_m;
+        next_m *= 2.6;
+    }
+    return tau;
+}
+
+/// Share of the sun's light that the decks above one let through, at a point [m].
+float clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
+    float tau = 0.0;
+    int count = clouds_count();
+    for (int above = 1; above < 3; ++above) {
+        if (above >= count) break;
+        clouds_Deck d = clouds_deck(above);
+        if (above <= deck || d.cover <= 0.0 || d.base_m <= height_m) continue;
+        vec3 there = position_m + clouds_way_up(d.base_m - height_m, max(sine, 0.02)) * to_sun;
+        vec4 columns = clouds_at(clouds_place(there, d.base_m));
+        tau += clouds_tau(d, columns[above], columns.a);
+    }
+    float mu = max(sine, 0.1);
+    return exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu);
+}
+
+/// Light on the waves of a sheet's top over that of a level one: slopes towards the sun have more.
+float clouds_relief(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float mu) {
+    const float step_m = 250.0;
+    vec2 place = clouds_place(position_m, height_m);
+    vec4 here = clouds_at(place), there = clouds_at(place + step_m * normalize(to_sun.xy + 1e-6));
+    float rise = (clouds_column_top_m(d, there[deck], there.a) - clouds_column_top_m(d, here[deck], here.a)) / step_m;
+    return clamp(1.0 - 0.9 * rise / max(mu, 0.25), 0.4, 1.5);
+}
+
+/// Light of a point in a deck: x by the sun's light, y by that of the sky.
+/// @param taus  clouds_extinction()
+vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 taus, in vec3 direction,
+                in vec3 to_sun, in vec3 up) {
+    float sun_sine = dot(to_sun, up), sine = dot(direction, up);
+    float before = clouds_towards(d, deck, position_m, height_m, to_sun, sun_sine);
+    float behind = clouds_towards(d, deck, position_m, height_m, -to_sun, -sun_sine);
+    float cosine = dot(direction, to_sun);
+    float mu = clamp(sun_sine, 0.0, 1.0);
+    // As a layer, lit from above; as a heap, which stands in the light.
+    float layer = max(mu, 0.03) * clouds_inside(taus.y / max(mu, 0.15) * max(mu, 0.3), taus.z, sine);
+    float heap = clouds_inside(before, behind, cosine) * (d.kind == 0 ? 0.45 + 0.55 * mu : 1.5 * mu);
+    float open = mix(d.kind == 0 ? 0.35 : 0.6, 1.0, clamp((height_m - d.base_m) / (d.top_m - d.base_m), 0.0, 1.0));
+    float once = d.kind == 0 ? 0.6 : mu / (mu + abs(sine) + 0.05);
+    if (d.kind == 1 && sine < 0.0) layer *= clouds_relief(d, deck, position_m, height_m, to_sun, mu);
+    float stands = d.kind == 0 ? 0.75 : sine < 0.0 ? 0.25 : 0.1;
+    float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + once * clouds_phase(cosine) * exp(-before);
+    float sky = open * clouds_inside(taus.y, taus.z, sine);
+    // Below, the ground's light; less of it the more is in shade.
+    float bounced = 0.15 * clouds_inside(taus.z, taus.y, -sine);
+    float overcast = smoothstep(0.6, 1.0, d.cover) * (1.0 - exp(-0.3 * (taus.y + taus.z))) * step(0.0, sine);
+    float cie = mix(1.0, clouds_overcast(sine), overcast * step(frame.eye_m.w, d.base_m));
+    return cie * vec2(sun + bounced * mu * (1.0 - 0.8 * d.cover), sky + bounced * (1.0 - 0.5 * d.cover));
+}
+
+/// Height of a point of the eye's ray on the round Earth [m].
+float clouds_ray_height(in float sine, in float way_m) {
+    return frame.eye_m.w + way_m * (sine + 0.5 * (1.0 - sine * sine) / clouds_earth_m * way_m);
+}
+
+/// How far along a deck a share of the samples reaches [m]: nearer to each other near the eye.
+float clouds_way(in float share, in vec2 ends) {
+    return mix(ends.x, ends.y, ends.y > 1.5 * ends.x ? pow(share, 1.7) : share);
+}
+
+float clouds_share_of_way(in float way_m, in vec2 ends) {
+    float share = clamp((way_m - ends.x) / (ends.y - ends.x), 0.0, 1.0);
+    return ends.y > 1.5 * ends.x ? pow(share, 1.0 / 1.7) : share;
+}
+
+/// Follows a ray into a cloud by growing steps. @returns opacity, mean way of what is seen, end [m]
+vec3 clouds_dig(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float from_m, in float first_m,
+                in float limit_m) {
+    float passes = 1.0, mean_m = 0.0, step_m = first_m;
+    for (int i = 0; i < 8; ++i) {
+        float at_m = min(from_m + 0.5 * step_m, limit_m);
+        step_m = min(step_m, max(limit_m - from_m, 0.0));
+        float opaque = 1.0 - exp(-step_m * clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x);
+        mean_m += passes * opaque * at_m;
+        passes *= 1.0 - opaque;
+        from_m += step_m;
+        step_m *= 1.8;
+    }
+    return vec3(1.0 - passes, mean_m / max(1.0 - passes, 1e-6), from_m);
+}
+
+/// The edge of a cloud between a point outside and one inside of it [m].
+float clouds_entry(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float out_m, in float in_m) {
+    for (int i = 0; i < 5; ++i) {
+        float middle_m = 0.5 * (out_m + in_m);
+        bool inside = clouds_extinction(d, deck, middle_m * direction, clouds_ray_height(sine, middle_m)).x > 0.0;
+        out_m = inside ? out_m : middle_m;
+        in_m = inside ? middle_m : in_m;
+    }
+    return in_m;
+}
+
+/// What a ray meets of a deck, added to what is before it: x, y light by sun and sky, z transmittance,
+/// w distance [km], weighted with the opacity.
+vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float jitter, in vec4 seen) {
+    clouds_Deck d = clouds_deck(deck);
+    float sine = dot(direction, frame.eye_up.xyz);
+    vec2 ends = clouds_inside_deck(d, frame.eye_m.w, sine);
+    ends.y = min(ends.y, min(limit_m, clouds_far_m));
+    if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
+    float way = 0.0, last_m = ends.x, part = 1.0 / float(clouds_steps);
+    vec3 to_sun = frame.eye_sun.xyz;
+    float shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
+                                     dot(to_sun, up_at(ends.x * direction)));
+    // Each turn finds the next cloud, follows the ray into it and lights it once: light is dear, and a
+    // device computes it for all pixels of a group.
+    for (int turn = 0; turn < 8; ++turn) {
+        float at_m = last_m;
+        bool found = false;
+        for (int k = 0; k < clouds_steps; ++k) {
+            if (way >= 1.0 || found) break;
+            at_m = clouds_way(min(way + jitter * part, 1.0), ends);
+            found = clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x > 0.0;
+            if (!found) last_m = at_m;
+            way += part;
+        }
+        if (!found || seen.z < 0.02) break;
+        float from_m = at_m > last_m ? clouds_entry(d, deck, direction, sine, last_m, at_m) : at_m;
+        float grid_m = clouds_way(min(way + part, 1.0), ends) - clouds_way(way, ends);
+        vec3 dug = clouds_dig(d, deck, direction, sine, from_m, max(0.02 * (d.top_m - d.base_m), 0.02 * grid_m), ends.y);
+        vec3 position_m = dug.y * direction;
+        float here_m = clouds_ray_height(sine, dug.y);
+        vec3 taus = clouds_extinction(d, deck, position_m, here_m);
+        vec2 lit = clouds_lit(d, deck, position_m, here_m, taus, direction, to_sun, up_at(position_m)) * vec2(shade, 1.0);
+        seen.xy += seen.z * dug.x * lit;
+        seen.w += seen.z * dug.x * 0.001 * dug.y;
+        seen.z *= 1.0 - dug.x;
+        last_m = dug.z;
+        way = max(way, clouds_share_of_way(dug.z, ends));
+    }
+    return seen;
+}
+
+/// All decks along a ray, the nearest first. @param jitter  0..1, where in a step samples are
+vec4 clouds_seen(in vec3 direction, in float limit_m, in float jitter) {
+    vec4 seen = vec4(0.0, 0.0, 1.0, 0.0);
+    bool upwards = frame.eye_m.w < clouds_deck(0).top_m || dot(direction, frame.eye_up.xyz) > 0.0;
+    int count = clouds_count();
+    for (int i = 0; i < 3; ++i) {
+        seen = clouds_through(upwards ? i : count - 1 - i, direction, limit_m, jitter, seen);
+        if (i + 1 >= count) break;
+    }
+    seen.w /= max(1.0 - seen.z, 1e-4);
+    return seen;
+}
+
+/// Where in a step a pixel samples, 0..1, even over its neighbours. source: J. Jimenez, Next Generation Post
+/// Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
+float clouds_jitter(in vec2 at_px) {
+    return 0.25 + 0.5 * fract(52.9829189 * fract(dot(floor(at_px), vec2(0.06711056, 0.00583715))));
+}
+
+/// Nearness of the ground that every second pixel shows [1/m]; 0 in the sky.
+vec4 clouds_pass_near(in Texel t) {
+    ivec2 pixel = min(2 * ivec2(t.at_px), textureSize(clouds_depths, 0) - 1);
+    float depth_m = screen_depth(clouds_depths, pixel);
+    return vec4(depth_m == kSky_m ? 0.0 : 1.0 / (depth_m * length(pixel_ray_at(vec2(pixel) + 0.5))));
+}
+
+/// The clouds before what every second pixel shows.
+vec4 clouds_pass_view(in Texel t) {
+    vec3 direction = normalize(pixel_ray_at(2.0 * floor(t.at_px) + 0.5));
+    float near = texelFetch(clouds_near, ivec2(t.at_px), 0).r;
+    return clouds_seen(direction, near > 0.0 ? 1.0 / near : 2.0 * clouds_far_m,
+                       clouds_jitter(t.at_px + 0.5 * vec2(frame.part_left, frame.part_below)));
+}
+
+const float clouds_turns = 6.2831853;
+
+/// The same all around, coarsely, for what mirrors the sky and for the light in the air: azimuth by
+/// sine of the elevation, from the horizon up.
+vec4 clouds_pass_dome(in Texel t) {
+    vec3 up = frame.eye_up.xyz, east = east_at(up);
+    float sine = 0.01 + 0.99 * t.at.y * t.at.y;
+    float azimuth = clouds_turns * t.at.x;
+    vec3 level = sin(azimuth) * east + cos(azimuth) * cross(up, east);
+    return clouds_seen(sine * up + sqrt(1.0 - sine * sine) * level, 2.0 * clouds_far_m, 0.5);
+}
