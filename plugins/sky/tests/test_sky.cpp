@@ -301,7 +301,7 @@ void look(test::GpuSnippet& gpu, render::AirTextures& air, double height_m, doub
     frame.eye_up = {0, 0, 1, sky::horizon_sine(height_m)};
     frame.eye_sun = {0, std::cos(sun), std::sin(sun), sun};
     frame.sun_direction = frame.eye_sun;
-    air.update(sky::Air{}, frame);
+    air.update(sky::Air{}, {.sun_sine = std::sin(sun)}, frame);
     gpu.bind("air_sky", *air.texture("air_sky"));
     gpu.bind("air_between", *air.texture("air_between"));
 }
