@@ -11,6 +11,7 @@
 
 in vec3 side_position_m;
 in float side_height_m;
+in float side_ground_m;
 in float side_depth;
 in vec3 side_outwards;
 
@@ -50,6 +51,7 @@ void main() {
     s.pixel_posts = max(length(dFdx(s.post)), length(dFdy(s.post)));
     s.texture_at = s.texture_dx = s.texture_dy = vec2(0.0);
     s.height_dx_m = s.height_dy_m = 0.0;
+    s.above_ground_m = side_height_m - side_ground_m;
     s.gloss = 1.0;
     s.material = ivec2(0);
     s.material_weight = vec2(1.0, 0.0);

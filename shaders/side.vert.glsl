@@ -1,7 +1,8 @@
 //! provides  the cut sides of a DEM that is seen from outside: a wall below each edge of the drawn ground
 //! reads     a tile's net and height page, as terrain.vert.glsl does, so that walls meet the ground as it
 //!           is drawn, whatever its level and however far it has morphed
-//! writes    position [m, relative to the eye], height [m], share of the way down, direction outwards
+//! writes    position [m, relative to the eye], height [m], that of the ground, share of the way down, direction
+//!           outwards
 //!
 //! An edge is one of two kinds: a step along the DEM's rim, or the line on which a triangle of the ground
 //! is cut because a corner of it has no height.
@@ -14,6 +15,7 @@ layout(location = 14) in vec4 third;  // xy: the third one, x below 0 on the rim
 
 out vec3 side_position_m;
 out float side_height_m;
+out float side_ground_m;  // height of the ground at the wall's top, that effects may have moved the wall up from
 out float side_depth;
 out vec3 side_outwards;  // away from the ground beside a hole, of no length on the rim
 
@@ -23,6 +25,7 @@ struct SideCorner {
     vec3 position_m;
     float height_m;
     float coverage;
+    float moved_m;  // up, by effects
 };
 
 SideCorner corner(in vec2 grid) {
@@ -36,7 +39,9 @@ SideCorner corner(in vec2 grid) {
     VertexFrame v = net_vertex(vertex, c.height_m);
     c.position_m = v.position_m;
     hook_displace(v, v.position_m);
-    c.position_m = finite(vec4(v.position_m, 0.0)) == 0.0 ? c.position_m : v.position_m;
+    bool nowhere = finite(vec4(v.position_m, 0.0)) == 0.0;
+    c.moved_m = nowhere ? 0.0 : dot(v.position_m - c.position_m, v.up) / frame.height_range.z;
+    c.position_m = nowhere ? c.position_m : v.position_m;
     return c;
 }
 
@@ -92,7 +97,7 @@ SideCorner crossing(in SideCorner one, in SideCorner other) {
     }
     float share = clamp((0.5 - a.coverage) / (b.coverage - a.coverage), 0.0, 1.0);
     return SideCorner(mix(a.at, b.at, share), mix(a.position_m, b.position_m, share),
-                      mix(a.height_m, b.height_m, share), 0.5);
+                      mix(a.height_m, b.height_m, share), 0.5, mix(a.moved_m, b.moved_m, share));
 }
 
 bool covered(in SideCorner c) {
@@ -135,7 +140,8 @@ void main() {
         end = last;
         back = first.at;
     }
-    side_height_m = down ? frame.block.x : end.height_m;
+    side_height_m = down ? frame.block.x : end.height_m + end.moved_m;
+    side_ground_m = end.height_m;
     side_position_m = down ? placed(end.at, frame.block.x) : end.position_m;
     side_position_m += kOverlap * (placed(end.at, end.height_m) - placed(back, end.height_m));
     side_depth = third.w;

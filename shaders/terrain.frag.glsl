@@ -155,6 +155,7 @@ void main() {
     // Between the pixel's sides across the view and along it, which a slant makes longer.
     s.pixel_posts = across * sqrt(min(longest / shortest, frame.footprint_limit));
     s.height_dx_m = s.height_dy_m = 0.0;
+    s.above_ground_m = 0.0;
 #ifdef HEIGHT_STEPS
     vec2 steps = texelFetch(height_steps, pixel, 0).rg;
     s.height_dx_m = steps.x;

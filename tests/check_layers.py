@@ -16,6 +16,7 @@ OWNERS = {
     "GDAL or PROJ": (re.compile(r"(gdal|ogr_|cpl_|proj\.h|vrtdataset)"), {"geo", "dem", "output"}),
     "GeographicLib": (re.compile(r"GeographicLib/"), {"geo"}),
     "ERFA": (re.compile(r"erfa"), {"sun"}),
+    "libnova": (re.compile(r"libnova/"), {"sun"}),
     "date": (re.compile(r"date/"), {"sun"}),
     "GL": (re.compile(r"(epoxy/|EGL/|GL/)"), {"gl", "render"}),
     "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),

@@ -293,6 +293,7 @@ void add_verbs(CLI::App& app) {
     add_info(line);
     add_export(line);
     add_sun(line);
+    add_moon(line);
     add_plugins(line);
     add_thumbnail(line);
     add_cache(line);

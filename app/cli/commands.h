@@ -17,6 +17,7 @@ void add_doctor(Verb app);
 void add_info(Verb app);
 void add_export(Verb app);
 void add_sun(Verb app);
+void add_moon(Verb app);
 void add_plugins(Verb app);
 void add_thumbnail(Verb app);
 void add_cache(Verb app);

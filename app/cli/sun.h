@@ -1,13 +1,19 @@
 #pragma once
 
 #include "cli/verb.h"
+#include "sun/body.h"
 
-/// The verbs under `relevo sun`, a file each.
+/// The verbs under `relevo sun` and `relevo moon`, a file each.
 namespace relevo::cli {
 
-void add_sun_position(Verb sun_verb);
+/// Verbs that `sun` and `moon` both have.
+void add_position(Verb parent, sun::Body body);
+void add_horizon(Verb parent, sun::Body body);
+
+void add_moon_day(Verb moon_verb);
+
 void add_sun_day(Verb sun_verb);
-void add_sun_horizon(Verb sun_verb);
+void add_sun_eclipses(Verb sun_verb);
 void add_sun_carpet(Verb sun_verb);
 void add_sun_when(Verb sun_verb);
 void add_sun_shadow(Verb sun_verb);

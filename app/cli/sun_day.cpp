@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "chart/sun_path_diagram.h"
+#include "cli/day_parts.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "cli/sun_points.h"
@@ -68,28 +69,9 @@ ordered_json day_json(const Result& result, std::size_t i) {
     json["day_length_h"] = day.day_length_s / 3600;
     json["golden_hour"] = spans_json(day.golden_hour);
     json["blue_hour"] = spans_json(day.blue_hour);
-    ordered_json& events = json["events"] = ordered_json::array();
-    for (const sun::Event& event : day.events)
-        events.push_back({{"kind", sun::name_of(event.kind)},
-                          {"utc", utc_json(event.utc)},
-                          {"local", sun::to_iso(event.utc, result.asked.zone)},
-                          {"azimuth_deg", angle_deg(event.azimuth_rad)},
-                          {"elevation_deg", angle_deg(event.elevation_rad)}});
+    json["events"] = events_json(day.events, result.asked.zone);
     if (!result.light.empty()) {
-        ordered_json& lit = json["direct_sun"] = ordered_json::array();
-        for (const light::LitInterval& interval : result.light[i].lit) {
-            lit.push_back(
-                {{"first_utc", utc_json(interval.begin.utc)},
-                 {"last_utc", utc_json(interval.end.utc)},
-                 {"first_azimuth_deg", angle_deg(interval.begin.azimuth_rad)},
-                 {"last_azimuth_deg", angle_deg(interval.end.azimuth_rad)},
-                 {"first_apparent_elevation_deg", angle_deg(interval.begin.elevation_rad)},
-                 {"last_apparent_elevation_deg", angle_deg(interval.end.elevation_rad)},
-                 {"from_midnight", interval.begin.midnight},
-                 {"to_midnight", interval.end.midnight}});
-            if (!interval.not_known.empty())
-                lit.back()["not_known"] = spans_json(interval.not_known);
-        }
+        json["direct_sun"] = lit_json(result.light[i].lit);
         json["direct_sun_h"] = result.light[i].lit_s / 3600;
         if (!result.doubt.holes.empty()) json["not_known_h"] = result.light[i].not_known_s / 3600;
     }
@@ -130,14 +112,6 @@ ordered_json json_of(const Result& result) {
     return json;
 }
 
-/// Where holes of the DEM leave the light open.
-std::string holes_text(const Result& result) {
-    return fmt::format(
-        "not known: direct sun through voids of the DEM {}, where ground as high as its highest "
-        "post would hide it",
-        sectors_text(result.doubt.holes));
-}
-
 /// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
 std::string columns_of(bool light, bool holes) {
     std::string text = "date,polar";
@@ -147,22 +121,6 @@ std::string columns_of(bool light, bool holes) {
     if (light) text += ",direct_sun,direct_sun_h";
     if (holes) text += ",not_known,not_known_h";
     return text;
-}
-
-/// "begin/end;begin/end".
-template <typename List, typename Begin, typename End>
-std::string spans_of(const List& list, const sun::Zone& zone, const Begin& begin, const End& end) {
-    std::string joined;
-    for (const auto& span : list)
-        joined += fmt::format("{}{}/{}", joined.empty() ? "" : ";", sun::to_iso(begin(span), zone),
-                              sun::to_iso(end(span), zone));
-    return joined;
-}
-
-std::string spans_of(const std::vector<sun::TimeSpan>& list, const sun::Zone& zone) {
-    return spans_of(
-        list, zone, [](const sun::TimeSpan& s) { return s.begin; },
-        [](const sun::TimeSpan& s) { return s.end; });
 }
 
 std::string row_of(const Result& result, std::size_t i, bool holes) {
@@ -179,18 +137,11 @@ std::string row_of(const Result& result, std::size_t i, bool holes) {
     text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, spans_of(day.golden_hour, zone),
                         spans_of(day.blue_hour, zone));
     if (!result.light.empty())
-        text += fmt::format(
-            ",{},{:.4f}",
-            spans_of(
-                result.light[i].lit, zone, [](const light::LitInterval& s) { return s.begin.utc; },
-                [](const light::LitInterval& s) { return s.end.utc; }),
-            result.light[i].lit_s / 3600);
+        text += fmt::format(",{},{:.4f}", spans_of(result.light[i].lit, zone),
+                            result.light[i].lit_s / 3600);
     if (!holes) return text;
-    std::vector<sun::TimeSpan> not_known;
-    for (const light::LitInterval& interval : result.light[i].lit)
-        not_known.insert(not_known.end(), interval.not_known.begin(), interval.not_known.end());
-    return text +
-           fmt::format(",{},{:.4f}", spans_of(not_known, zone), result.light[i].not_known_s / 3600);
+    return text + fmt::format(",{},{:.4f}", spans_of(not_known_of(result.light[i].lit), zone),
+                              result.light[i].not_known_s / 3600);
 }
 
 std::vector<std::string> rows_of(const Result& result, bool holes) {
@@ -207,25 +158,11 @@ std::string csv_of(const Result& result) {
         remarks.push_back(result.horizon_definition);
     }
     const bool holes = !result.doubt.holes.empty();
-    if (holes) remarks.push_back(holes_text(result));
+    if (holes) remarks.push_back(not_known_text(result.doubt, "direct sun"));
     std::string text = csv_remarks(remarks) + columns_of(!result.light.empty(), holes) + "\n";
     for (const std::string& row : rows_of(result, holes))
         text += row + "\n";
     return text;
-}
-
-std::string spans_text(const std::vector<sun::TimeSpan>& spans, const sun::Zone& zone) {
-    std::string text;
-    for (const sun::TimeSpan& span : spans)
-        text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", clock_text(span.begin, zone),
-                            clock_text(span.end, zone));
-    return text.empty() ? "none" : text;
-}
-
-std::string word_of(EventKind kind) {
-    std::string word(sun::name_of(kind));
-    std::ranges::replace(word, '_', ' ');
-    return word;
 }
 
 void print_seasons(const Result& result) {
@@ -257,29 +194,14 @@ void print_definitions(const Result& result) {
     fmt::print("\n{}\n{}\n", result.definition, kTwilights);
     if (!result.light.empty())
         fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
-    if (!result.doubt.holes.empty()) fmt::print("{}\n", holes_text(result));
-}
-
-/// ", of it 0:01:17 not known"; empty where all is known.
-std::string not_known_text(const light::LightDay& day) {
-    if (day.not_known_s <= 0) return {};
-    return fmt::format(", of it {} not known", hours_text(std::max(1.0, day.not_known_s)));
+    if (!result.doubt.holes.empty()) fmt::print("{}\n", not_known_text(result.doubt, "direct sun"));
 }
 
 void print_day(const Result& result) {
     const sun::Day& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
-    for (const sun::Event& event : day.events) {
-        // 359.996 is 0.00 to two decimals.
-        const double azimuth_deg =
-            std::fmod(std::round(degrees(event.azimuth_rad) * 100) / 100, 360.0);
-        fmt::print("{:<20}{}  azimuth {:6.2f} {:<4}", word_of(event.kind),
-                   sun::to_iso(event.utc, zone), azimuth_deg, compass_point(azimuth_deg));
-        if (event.kind == EventKind::Transit || event.kind == EventKind::LowerTransit)
-            fmt::print(" elevation {:6.2f} without refraction", degrees(event.elevation_rad));
-        fmt::print("\n");
-    }
+    print_events(day.events, zone);
     if (const char* polar = polar_of(day))
         fmt::print("polar {:<14}the sun {} all day\n", polar,
                    day.sun == sun::Crossing::AboveAllDay ? "stays up" : "stays down");
@@ -297,20 +219,7 @@ void print_day(const Result& result) {
     fmt::print("day length          {}\n", hours_text(day.day_length_s));
     fmt::print("golden hour         {}\n", spans_text(day.golden_hour, zone));
     fmt::print("blue hour           {}\n", spans_text(day.blue_hour, zone));
-    if (!result.light.empty()) {
-        const light::LightDay& light = result.light.front();
-        for (const light::LitInterval& lit : light.lit)
-            fmt::print("direct sun          {} to {}  azimuth {:6.2f} to {:6.2f}{}\n",
-                       lit.begin.midnight ? "midnight" : clock_text(lit.begin.utc, zone),
-                       lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
-                       degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad),
-                       lit.not_known.empty() ? ""
-                       : lit.all_unknown()   ? "  not known: a void of the DEM"
-                                             : fmt::format("  not known {}: a void of the DEM",
-                                                           spans_text(lit.not_known, zone)));
-        if (light.lit.empty()) fmt::print("direct sun          none\n");
-        fmt::print("direct sun, total   {}{}\n", hours_text(light.lit_s), not_known_text(light));
-    }
+    if (!result.light.empty()) print_lit(result.light.front(), "direct sun", zone);
     print_seasons(result);
     print_definitions(result);
 }

@@ -125,7 +125,7 @@ void print_text(const light::TerrainHorizon& horizon,
     if (!doubt.holes.empty()) fmt::print("{}\n", holes_text(doubt));
 }
 
-/// @param asked  the day or the year whose sun the panorama shows
+/// @param asked  the day or the year whose sun or moon the panorama shows
 chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArguments::Days>& asked,
                     const light::TerrainHorizon& horizon,
                     const std::vector<light::HorizonPoint>& profile) {
@@ -135,6 +135,7 @@ chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArgument
     panorama.place_name = arguments.place.name;
     std::optional<light::DirectLight> direct;
     if (asked) {
+        panorama.body = arguments.light.body;
         panorama.year = asked->first.year;
         panorama.zone = asked->zone;
         panorama.refraction = arguments.light.refraction.at(horizon.place());
@@ -179,26 +180,29 @@ void check_format(const Arguments& arguments, const std::string& format) {
         bad_usage(fmt::format("--points: a file for {} is of one place; pass --at", format));
 }
 
-[[noreturn]] void refuse_days() {
+[[noreturn]] void refuse_days(const Arguments& arguments) {
     bad_usage(
-        "--date and --year: only a panorama shows the sun; pass -o with a name that "
-        "ends in svg, png");
+        fmt::format("--date and --year: only a panorama shows the {}; pass -o with a name that "
+                    "ends in svg, png",
+                    name_of(arguments.light.body)));
 }
 
-/// The day or the year whose sun a panorama shows.
+/// The day or the year whose sun a panorama shows, or the day whose moon.
 std::optional<DaysArguments::Days> asked_of(const Arguments& arguments) {
     if (!arguments.days.given()) return std::nullopt;
     const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
+    if (!asked.single && arguments.light.body == sun::Body::Moon)
+        bad_usage("--from, --to and --year: a panorama shows one day of the moon; pass --date");
     if (!asked.single && !arguments.days.year)
         bad_usage(
             "--from and --to: a panorama shows one day or one year; pass --date or "
             "--year");
-    if (!arguments.output.is_drawing()) refuse_days();
+    if (!arguments.output.is_drawing()) refuse_days(arguments);
     return asked;
 }
 
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
-    if (arguments.days.given()) refuse_days();
+    if (arguments.days.given()) refuse_days(arguments);
     const auto points = arguments.points.read(files, arguments.output);
     const int directions = directions_of(arguments, "csv");
     const dem::Posts posts = arguments.terrain.load();
@@ -258,10 +262,12 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_sun_horizon(Verb sun_verb) {
+void add_horizon(Verb parent, sun::Body body) {
     const auto arguments = std::make_shared<Arguments>();
-    const Verb verb = sun_verb.add_verb(
-        "horizon", "Terrain horizon of a point; as a panorama also with the sun's paths");
+    arguments->light.body = body;
+    const Verb verb = parent.add_verb(
+        "horizon", fmt::format("Terrain horizon of a point; as a panorama also with the {}",
+                               body == sun::Body::Sun ? "sun's paths" : "moon's path"));
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);

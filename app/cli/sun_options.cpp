@@ -106,7 +106,9 @@ double step_s_of(const std::string& step, double least_s, double most_s) {
 
 void LightArguments::add_to(Verb verb) {
     refraction.add_to(verb);
-    verb.add_option("--limb", limb, "Part of the solar disc that counts: upper, center, lower")
+    verb.add_option("--limb", limb,
+                    fmt::format("Part of the {} disc that counts: upper, center, lower",
+                                body == sun::Body::Sun ? "solar" : "lunar"))
         .check(one_of({"upper", "center", "lower"}));
 }
 
@@ -128,16 +130,19 @@ sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
 
 sun::RiseRule LightArguments::rule(const geo::Geodetic& place,
                                    const std::optional<double>& eye_height_m) const {
-    if (!limb && !refraction.given() && !eye_height_m && !dip_deg) return {};
+    if (!limb && !refraction.given() && !eye_height_m && !dip_deg)
+        return sun::RiseRule::almanac(body);
     if (dip_deg && eye_height_m) bad_usage("--dip and --eye-height exclude each other; use one");
     const sun::Limb part = limb_of(limb, sun::Limb::Upper);
-    if (dip_deg) return sun::RiseRule::seen_over_dip(part, refraction.at(place), radians(*dip_deg));
-    return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0));
+    if (dip_deg)
+        return sun::RiseRule::seen_over_dip(part, refraction.at(place), radians(*dip_deg), body);
+    return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0), body);
 }
 
 light::LightOptions LightArguments::light(const geo::Geodetic& place,
                                           const std::optional<double>& eye_height_m) const {
     light::LightOptions options;
+    options.body = body;
     options.limb = limb_of(limb, sun::Limb::Center);
     options.refraction = refraction.at(place);
     options.flat.rule = rule(place, eye_height_m);
@@ -201,10 +206,10 @@ std::string sector_text(const light::Sector& sector) {
                        to_deg, compass_point(to_deg));
 }
 
-const char* matters_text(light::Matters matters) {
-    switch (matters) {
+std::string matters_text(const light::Doubt& doubt) {
+    switch (doubt.matters) {
         case light::Matters::Sun:
-            return "hide the sun";
+            return fmt::format("hide the {}", name_of(doubt.body));
         case light::Matters::Alignment:
             return "hide the summit or the sun";
         default:
@@ -227,7 +232,7 @@ void warn_of_the_edge(const light::Doubt& doubt) {
     log::warning(
         fmt::format("mountains of up to {:.0f} m outside the DEM could {}: {}; use a larger DEM, "
                     "or bound them with --highest",
-                    doubt.highest_m, matters_text(doubt.matters), fmt::join(parts, ", and ")));
+                    doubt.highest_m, matters_text(doubt), fmt::join(parts, ", and ")));
 }
 
 void warn_of_holes(const light::Doubt& doubt) {
@@ -235,7 +240,8 @@ void warn_of_holes(const light::Doubt& doubt) {
     log::warning(fmt::format(
         "the DEM has voids {}: {}; use a DEM without voids", sectors_text(doubt.holes),
         doubt.matters == light::Matters::Sun
-            ? fmt::format("of the direct sun {} is not known, as ground in them could hide it",
+            ? fmt::format("of the direct {} {} is not known, as ground in them could hide it",
+                          doubt.body == sun::Body::Sun ? "sun" : "moonlight",
                           hours_text(std::max(1.0, doubt.not_known_s)))
             : "ground in them could raise the horizon"));
 }
@@ -245,10 +251,11 @@ void say_that_more_is_lit(const light::Doubt& doubt) {
     constexpr double kUsual_rad = radians(0.5);
     if (!doubt.lowest_sun || doubt.lowest_sun->elevation_rad > -kUsual_rad) return;
     const double azimuth_deg = degrees(doubt.lowest_sun->azimuth_rad);
-    log::info(fmt::format(
-        "more sun than over a level horizon: it shines from {:.1f} degrees below "
-        "at azimuth {:.0f} ({}), over lower ground",
-        -degrees(doubt.lowest_sun->elevation_rad), azimuth_deg, compass_point(azimuth_deg)));
+    log::info(
+        fmt::format("more {} than over a level horizon: it shines from {:.1f} degrees below "
+                    "at azimuth {:.0f} ({}), over lower ground",
+                    name_of(doubt.body), -degrees(doubt.lowest_sun->elevation_rad), azimuth_deg,
+                    compass_point(azimuth_deg)));
 }
 
 }  // namespace

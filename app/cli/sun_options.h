@@ -19,7 +19,7 @@
 #include "light/point/horizon.h"
 #include "sun/events.h"
 
-/// What the verbs under `relevo sun` share.
+/// What the verbs under `relevo sun` and `relevo moon` share.
 namespace relevo::cli {
 
 /// --at, --name and --eye-height.
@@ -61,6 +61,7 @@ double step_s_of(const std::string& step, double least_s, double most_s);
 
 /// --limb, --refraction, --dip: what rising and shining mean.
 struct LightArguments {
+    sun::Body body = sun::Body::Sun;  ///< what rises and shines; set before add_to()
     RefractionArguments refraction;
     std::optional<std::string> limb;
     std::optional<double> dip_deg;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +14,7 @@
 #include "geo/format.h"
 #include "geo/geodetic.h"
 #include "sun/event_time.h"
+#include "sun/moon.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
@@ -20,6 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
+    sun::Body body = sun::Body::Sun;
     std::string at;
     PointsArguments points;
     TimeArguments time;
@@ -27,69 +31,141 @@ struct Arguments {
     OutputArguments output;
 };
 
+/// A figure of a position: its key in JSON and CSV, and how CSV writes it.
+struct Figure {
+    const char* key;
+    double value;
+    const char* csv;
+};
+
 struct Result {
+    sun::Body body;
     geo::Geodetic place;
     sun::ParsedTime when;
-    sun::Position position;
+    sun::SkyPosition sky;
     sun::Refraction air;
     double apparent_deg = 0;
+    std::vector<Figure> more;  ///< what only this body has
+    std::string phase;         ///< of the moon
 };
+
+std::vector<Figure> figures_of(const sun::MoonPosition& moon, sun::Instant utc) {
+    return {{"illuminated_fraction", moon.illuminated_fraction, "{:.6f}"},
+            {"phase_angle_deg", degrees(moon.phase_angle_rad), "{:.6f}"},
+            {"elongation_deg", degrees(moon.elongation_rad), "{:.6f}"},
+            {"bright_limb_deg", degrees(moon.bright_limb_rad), "{:.4f}"},
+            {"bright_limb_from_zenith_deg", degrees(moon.bright_limb_from_zenith_rad), "{:.4f}"},
+            {"phase_longitude_deg", degrees(moon.phase_longitude_rad), "{:.6f}"},
+            {"age_d", sun::moon_age_d(utc), "{:.4f}"}};
+}
 
 Result result_of(const Arguments& arguments, const geo::PlaceText& at,
                  const sun::ParsedTime& when) {
-    const sun::Position position = sun::position(when.utc, at.place);
-    const sun::Refraction air = arguments.refraction.at(at.place);
-    return {at.place, when, position, air, degrees(air.apparent_rad(position.elevation_rad))};
+    Result result{arguments.body, at.place, when, {}, arguments.refraction.at(at.place), 0, {}, {}};
+    if (arguments.body == sun::Body::Sun) {
+        const sun::Position sun = sun::position(when.utc, at.place);
+        result.sky = sun;
+        result.more = {{"equation_of_time_min", sun.equation_of_time_s / 60, "{:.5f}"}};
+    } else {
+        const sun::MoonPosition moon = sun::moon_position(when.utc, at.place);
+        result.sky = moon;
+        result.more = figures_of(moon, when.utc);
+        result.phase = sun::phase_name(moon.phase_longitude_rad);
+    }
+    result.apparent_deg = degrees(result.air.apparent_rad(result.sky.elevation_rad));
+    return result;
+}
+
+/// In the unit that the body's distance is usually given in.
+Figure distance_of(const Result& result) {
+    constexpr double kAu_km = 149'597'870.7;
+    if (result.body == sun::Body::Sun) return {"distance_au", result.sky.distance_au, "{:.9f}"};
+    return {"distance_km", result.sky.distance_au * kAu_km, "{:.3f}"};
 }
 
 ordered_json json_of(const Result& result) {
-    const sun::Position& position = result.position;
+    const sun::SkyPosition& sky = result.sky;
+    const Figure distance = distance_of(result);
     ordered_json json = {{"utc", sun::to_iso(result.when.utc, 3)},
-                         {"azimuth_deg", degrees(position.azimuth_rad)},
-                         {"elevation_deg", degrees(position.elevation_rad)},
+                         {"azimuth_deg", degrees(sky.azimuth_rad)},
+                         {"elevation_deg", degrees(sky.elevation_rad)},
                          {"apparent_elevation_deg", result.apparent_deg},
                          {"refraction", result.air.description()},
-                         {"distance_au", position.distance_au},
-                         {"declination_deg", degrees(position.declination_rad)},
-                         {"right_ascension_deg", degrees(position.right_ascension_rad)},
-                         {"semidiameter_deg", degrees(position.semidiameter_rad)},
-                         {"equation_of_time_min", position.equation_of_time_s / 60}};
+                         {distance.key, distance.value},
+                         {"declination_deg", degrees(sky.declination_rad)},
+                         {"right_ascension_deg", degrees(sky.right_ascension_rad)},
+                         {"semidiameter_deg", degrees(sky.semidiameter_rad)}};
+    for (const Figure& figure : result.more)
+        json[figure.key] = figure.value;
+    if (!result.phase.empty()) json["phase"] = result.phase;
     add_assumption(json, result.when.assumption);
     return json;
 }
 
-constexpr const char* kColumns =
-    "time,azimuth_deg,elevation_deg,apparent_elevation_deg,distance_au,declination_deg,"
-    "right_ascension_deg,semidiameter_deg,equation_of_time_min";
-constexpr const char* kDefinition =
-    "azimuth of the sun's centre clockwise from true north; elevation without air, apparent "
-    "elevation as seen";
+std::string columns_of(sun::Body body) {
+    constexpr const char* kColumns =
+        "time,azimuth_deg,elevation_deg,apparent_elevation_deg,{},declination_deg,"
+        "right_ascension_deg,semidiameter_deg,{}";
+    if (body == sun::Body::Sun) return fmt::format(kColumns, "distance_au", "equation_of_time_min");
+    return fmt::format(kColumns, "distance_km",
+                       "illuminated_fraction,phase_angle_deg,elongation_deg,bright_limb_deg,"
+                       "bright_limb_from_zenith_deg,phase_longitude_deg,age_d,phase");
+}
+
+std::string definition_of(sun::Body body) {
+    const std::string centre = fmt::format(
+        "azimuth of the {}'s centre clockwise from true north; elevation without air, apparent "
+        "elevation as seen",
+        name_of(body));
+    if (body == sun::Body::Sun) return centre;
+    return centre +
+           "; bright limb: direction of its middle, from celestial north through east, and from "
+           "the zenith to the left; libration is not modelled";
+}
 
 std::string row_of(const Result& result) {
-    const sun::Position& position = result.position;
-    return fmt::format("{},{:.6f},{:.6f},{:.6f},{:.9f},{:.6f},{:.6f},{:.6f},{:.5f}",
-                       sun::to_iso(result.when.utc, result.when.zone),
-                       degrees(position.azimuth_rad), degrees(position.elevation_rad),
-                       result.apparent_deg, position.distance_au, degrees(position.declination_rad),
-                       degrees(position.right_ascension_rad), degrees(position.semidiameter_rad),
-                       position.equation_of_time_s / 60);
+    const sun::SkyPosition& sky = result.sky;
+    const Figure distance = distance_of(result);
+    std::string row = fmt::format(
+        "{},{:.6f},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f}",
+        sun::to_iso(result.when.utc, result.when.zone), degrees(sky.azimuth_rad),
+        degrees(sky.elevation_rad), result.apparent_deg,
+        fmt::format(fmt::runtime(distance.csv), distance.value), degrees(sky.declination_rad),
+        degrees(sky.right_ascension_rad), degrees(sky.semidiameter_rad));
+    for (const Figure& figure : result.more)
+        row += "," + fmt::format(fmt::runtime(figure.csv), figure.value);
+    return result.phase.empty() ? row : row + "," + result.phase;
 }
 
 void print_text(const Result& result) {
-    const sun::Position& position = result.position;
-    const double azimuth_deg = degrees(position.azimuth_rad);
+    const sun::SkyPosition& sky = result.sky;
+    const double azimuth_deg = degrees(sky.azimuth_rad);
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
                result.place.height_m);
     fmt::print("time                {}  ({})\n", sun::to_iso(result.when.utc, result.when.zone),
                sun::to_iso(result.when.utc));
     fmt::print("azimuth             {:9.4f} deg  {}\n", azimuth_deg, compass_point(azimuth_deg));
     fmt::print("elevation           {:9.4f} deg  geometric, without air\n",
-               degrees(position.elevation_rad));
+               degrees(sky.elevation_rad));
     fmt::print("apparent elevation  {:9.4f} deg  {}\n", result.apparent_deg,
                result.air.description());
-    fmt::print("distance            {:9.6f} au\n", position.distance_au);
-    fmt::print("declination         {:9.4f} deg\n", degrees(position.declination_rad));
-    fmt::print("equation of time    {:9.3f} min\n", position.equation_of_time_s / 60);
+    if (result.body == sun::Body::Sun) {
+        fmt::print("distance            {:9.6f} au\n", sky.distance_au);
+        fmt::print("declination         {:9.4f} deg\n", degrees(sky.declination_rad));
+        fmt::print("equation of time    {:9.3f} min\n", result.more.front().value);
+        return;
+    }
+    const auto figure = [&](const char* key) {
+        return std::ranges::find_if(result.more,
+                                    [&](const Figure& f) { return std::string_view(f.key) == key; })
+            ->value;
+    };
+    fmt::print("distance            {:9.0f} km\n", distance_of(result).value);
+    fmt::print("declination         {:9.4f} deg\n", degrees(sky.declination_rad));
+    fmt::print("phase               {}, {:.1f} days old\n", result.phase, figure("age_d"));
+    fmt::print("illuminated         {:9.2f} %\n", 100 * figure("illuminated_fraction"));
+    fmt::print("bright limb         {:9.2f} deg  from the zenith to the left\n",
+               figure("bright_limb_from_zenith_deg"));
 }
 
 void check_height(const geo::PlaceText& at) {
@@ -103,15 +179,16 @@ void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file)
     session::needs_dem(spec);  // reports invalid words before any work
     const bool zone_by_place = sun::is_zone_by_place(spec.zone) && !sun::is_solar_zone(spec.zone) &&
                                (sun::is_event_time(spec.at) || sun::is_wall_time(spec.at));
-    const PointsJob job{
-        .columns = kColumns, .remarks = {kDefinition}, .forms = [&](const geo::PlaceText& at) {
-            check_height(at);
-            const auto result = std::make_shared<Result>(
-                result_of(arguments, at, session::parse_quietly(spec, {}, at)));
-            return PointForms{.rows = [=] { return std::vector{row_of(*result)}; },
-                              .json = [=] { return json_of(*result); },
-                              .doubt = {}};
-        }};
+    const PointsJob job{.columns = columns_of(arguments.body),
+                        .remarks = {definition_of(arguments.body)},
+                        .forms = [&](const geo::PlaceText& at) {
+                            check_height(at);
+                            const auto result = std::make_shared<Result>(
+                                result_of(arguments, at, session::parse_quietly(spec, {}, at)));
+                            return PointForms{.rows = [=] { return std::vector{row_of(*result)}; },
+                                              .json = [=] { return json_of(*result); },
+                                              .doubt = {}};
+                        }};
     deliver_points(arguments.points, points, job, arguments.output, file, zone_by_place);
 }
 
@@ -122,22 +199,26 @@ void run(const Arguments& arguments) {
     const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
     check_height(at);
     const Result result = result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
-    arguments.output.deliver({.drawing = {},
-                              .csv =
-                                  [&] {
-                                      return csv_remarks({kDefinition, result.air.description()}) +
-                                             kColumns + "\n" + row_of(result) + "\n";
-                                  },
-                              .json = [&] { return json_of(result); },
-                              .print = [&] { print_text(result); }},
-                             file);
+    arguments.output.deliver(
+        {.drawing = {},
+         .csv =
+             [&] {
+                 return csv_remarks({definition_of(result.body), result.air.description()}) +
+                        columns_of(result.body) + "\n" + row_of(result) + "\n";
+             },
+         .json = [&] { return json_of(result); },
+         .print = [&] { print_text(result); }},
+        file);
 }
 
 }  // namespace
 
-void add_sun_position(Verb sun_verb) {
+void add_position(Verb parent, sun::Body body) {
     const auto arguments = std::make_shared<Arguments>();
-    const Verb verb = sun_verb.add_verb("position", "Position of the sun");
+    arguments->body = body;
+    const Verb verb = parent.add_verb(
+        "position", body == sun::Body::Sun ? "Position of the sun"
+                                           : "Position of the moon, its phase and bright limb");
     verb.add_option("--at", arguments->at, "Place: LAT,LON[,H]");
     arguments->points.add_to(verb);
     arguments->time.add_to(verb);

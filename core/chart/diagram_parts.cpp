@@ -40,10 +40,20 @@ SunPaths::SunPaths(const geo::Geodetic& place, const sun::Refraction& refraction
              std::min(Instant::from_utc({{year + 1, 1, 2}}),
                       Instant::from_utc({{sun::kLastYear + 1, 1, 1}}) + 86400)) {}
 
+SunPaths::SunPaths(const geo::Geodetic& place, const sun::Refraction& refraction, Date moon_day,
+                   const sun::Zone& zone)
+    : observer_(place),
+      refraction_(refraction),
+      year_(moon_day.year),
+      zone_(zone),
+      standard_offset_s_(std::min(offset_on(zone, year_, 1), offset_on(zone, year_, 7))),
+      largest_offset_s_(std::max(offset_on(zone, year_, 1), offset_on(zone, year_, 7))),
+      table_(zone.day(moon_day).begin, zone.day(moon_day).end, sun::Body::Moon) {}
+
 PathPoint SunPaths::at(Instant utc) const {
     const Instant inside = std::clamp(utc, table_.from(), table_.to());
-    const glm::dvec3 sun = table_.vector_au(inside, observer_);
-    return {utc, sun::azimuth_of(sun), refraction_.apparent_rad(sun::elevation_of(sun))};
+    const glm::dvec3 body = table_.vector_au(inside, observer_);
+    return {utc, sun::azimuth_of(body), refraction_.apparent_rad(sun::elevation_of(body))};
 }
 
 std::vector<PathPoint> SunPaths::day(Date date, double step_s) const {
@@ -116,15 +126,19 @@ std::string place_text(const geo::Geodetic& place) {
     return fmt::format("{}, {:.0f} m", geo::degrees_text(place), place.height_m);
 }
 
-std::string light_text(const light::LightDay& day, const SunPaths& paths) {
+std::string light_text(const light::LightDay& day, const SunPaths& paths,
+                       const std::string& light) {
     std::string text;
     for (const light::LitInterval& lit : day.lit)
-        text += fmt::format("{}{} to {}", text.empty() ? "Direct sun " : ", ",
+        text += fmt::format("{}{} to {}", text.empty() ? light + " " : ", ",
                             lit.begin.midnight ? "midnight" : paths.clock(lit.begin.utc),
                             lit.end.midnight ? "midnight" : paths.clock(lit.end.utc));
     if (day.lit.size() == 1 && day.lit[0].begin.midnight && day.lit[0].end.midnight)
-        text = "Direct sun all day";
-    text += text.empty() ? "No direct sun" : " (" + duration_text(day.lit_s) + ")";
+        text = light + " all day";
+    if (text.empty())
+        text = "No d" + light.substr(1);
+    else
+        text += " (" + duration_text(day.lit_s) + ")";
     if (day.not_known_s > 0)
         text += fmt::format(", {} of it not known because of voids in the DEM",
                             day.not_known_s < 30 ? "seconds" : duration_text(day.not_known_s));

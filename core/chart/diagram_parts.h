@@ -26,17 +26,21 @@ inline constexpr Color kShadow{0x7d8b99};
 inline constexpr Color kHole{0xb3261e};
 inline constexpr const char* kHoleWords = "void of the DEM: the horizon may be higher";
 
-/// The sun at a moment.
+/// The sun or the moon at a moment.
 struct PathPoint {
     sun::Instant utc;
     double azimuth_rad = 0;
     double elevation_rad = 0;  ///< apparent
 };
 
-/// The sun's way over the sky of a place.
+/// The way of the sun, or the moon, over the sky of a place.
 class SunPaths {
   public:
     SunPaths(const geo::Geodetic& place, const sun::Refraction& refraction, int year,
+             const sun::Zone& zone);
+    /// The way of the moon: of a day alone, which are all that day(), full_hours() and at() may be
+    /// asked for.
+    SunPaths(const geo::Geodetic& place, const sun::Refraction& refraction, sun::Date moon_day,
              const sun::Zone& zone);
 
     int year() const { return year_; }
@@ -84,7 +88,9 @@ std::string duration_text(double seconds);
 std::string place_text(const geo::Geodetic& place);
 
 /// "Direct sun 08:33 to 16:55 (8 h 21 min); over a level horizon 10 h 03 min".
-std::string light_text(const light::LightDay& day, const SunPaths& paths);
+/// @param light  "Direct sun"
+std::string light_text(const light::LightDay& day, const SunPaths& paths,
+                       const std::string& light = "Direct sun");
 
 /// "The valley: paths of the sun, 2026"; without a name "Paths of the sun, 2026".
 std::string title_of(const std::string& place_name, const std::string& subject);

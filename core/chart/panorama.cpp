@@ -50,7 +50,10 @@ std::string distance_text(double distance_m) {
 class Panorama {
   public:
     explicit Panorama(const HorizonPanorama& of) : of_(of) {
-        if (of.year != 0) paths_.emplace(of.horizon->place(), of.refraction, of.year, of.zone);
+        if (moon() && of.day)
+            paths_.emplace(of.horizon->place(), of.refraction, of.day->date, of.zone);
+        else if (of.year != 0)
+            paths_.emplace(of.horizon->place(), of.refraction, of.year, of.zone);
         middle_rad_ = of.horizon->place().lat_rad < 0 ? 0 : kPi;
         if (of.panel)
             plot_ = {kPanelLeft, kPanelTop, of.panel->width - kPanelLeft - kPanelRight,
@@ -67,8 +70,8 @@ class Panorama {
             return drawing;
         }
         const double keys_y = plot_.y + plot_.height + 62;
-        Drawing drawing(
-            kWidth, keys_y + (paths_ ? 50 : 30) + foot_height(kWidth, kMargin, foot_) + kMargin);
+        Drawing drawing(kWidth, keys_y + (paths_ && !moon() ? 50 : 30) +
+                                    foot_height(kWidth, kMargin, foot_) + kMargin);
         drawing_ = &drawing;
         add_head();
         add_plot();
@@ -94,6 +97,7 @@ class Panorama {
         add_marks();
     }
 
+    bool moon() const { return of_.body == sun::Body::Moon; }
     double x(double azimuth_rad) const { return axes().at(azimuth_rad, 0).x; }
     double y(double elevation_rad) const { return axes().at(0, elevation_rad).y; }
     glm::dvec2 point(const PathPoint& p) const { return {x(p.azimuth_rad), y(p.elevation_rad)}; }
@@ -104,7 +108,10 @@ class Panorama {
             lowest = std::min(lowest, p.elevation_rad);
             highest = std::max(highest, p.elevation_rad);
         }
-        if (paths_)
+        if (moon() && of_.day)
+            for (const PathPoint& p : paths_->day(of_.day->date))
+                highest = std::max(highest, p.elevation_rad);
+        else if (paths_)
             for (int month = 1; month <= 12; ++month)
                 for (const PathPoint& p : paths_->day({of_.year, month, 21}))
                     highest = std::max(highest, p.elevation_rad);
@@ -119,24 +126,27 @@ class Panorama {
     void make_foot() {
         foot_.push_back("T" + of_.horizon->description().substr(1) + ".");
         if (paths_)
-            foot_.push_back(fmt::format("Paths: centre of the sun, {}. H{}.",
-                                        of_.refraction.description(),
+            foot_.push_back(fmt::format("{}: centre of the {}, {}. H{}.", moon() ? "Path" : "Paths",
+                                        name_of(of_.body), of_.refraction.description(),
                                         paths_->hours_text().substr(1)));
         if (of_.day)
-            foot_.push_back("D" + of_.light_definition.substr(1) + ". S" +
+            foot_.push_back("D" + of_.light_definition.substr(1) + ". " + (moon() ? "M" : "S") +
                             of_.day->flat.definition.substr(1) + ".");
     }
 
     void add_head() {
         std::string subject = "Horizon";
         if (of_.day)
-            subject += " and path of the sun, " + long_date(of_.day->date);
+            subject +=
+                fmt::format(" and path of the {}, {}", name_of(of_.body), long_date(of_.day->date));
         else if (paths_)
             subject += fmt::format(" and paths of the sun, {}", of_.year);
         std::string where = place_text(of_.horizon->place());
         if (of_.year != 0) where += ", " + of_.zone.name();
         std::vector<std::string> lines{where};
-        if (of_.day) lines.push_back(light_text(*of_.day, *paths_));
+        if (of_.day)
+            lines.push_back(
+                light_text(*of_.day, *paths_, moon() ? "Direct moonlight" : "Direct sun"));
         drawing_->describe(title_of(of_.place_name, subject), lines.back());
         add_title(*drawing_, kMargin, of_.place_name, subject, lines);
     }
@@ -178,6 +188,11 @@ class Panorama {
     }
 
     void add_paths() {
+        if (!moon()) add_paths_of_year();
+        if (of_.day) path(paths_->day(of_.day->date, 120), {.stroke = kDay, .width = 3.2});
+    }
+
+    void add_paths_of_year() {
         for (int hour = 0; hour < 24; ++hour) {
             const std::vector<PathPoint> line = paths_->hour_line(hour);
             const auto half = line.begin() + static_cast<std::ptrdiff_t>(line.size() / 2);
@@ -188,7 +203,6 @@ class Panorama {
             path(paths_->day({of_.year, season.month, 21}, 120),
                  {.stroke = Color{season.color.rgb, of_.day ? 0.75 : 1.0},
                   .width = season.month % 3 == 0 ? 2.0 : 1.2});
-        if (of_.day) path(paths_->day(of_.day->date, 120), {.stroke = kDay, .width = 3.2});
     }
 
     /// Ridges before ridges: what stands within growing distances, the farthest first.
@@ -336,15 +350,17 @@ class Panorama {
                            {.size = 12, .color = kInk, .bold = true}, 10);
             }
             for (const sun::Event& event : of_.day->flat.events) {
-                const bool rises = event.kind == sun::EventKind::Sunrise;
-                if (!rises && event.kind != sun::EventKind::Sunset) continue;
+                const bool rises =
+                    event.kind == sun::EventKind::Sunrise || event.kind == sun::EventKind::Moonrise;
+                if (!rises && event.kind != sun::EventKind::Sunset &&
+                    event.kind != sun::EventKind::Moonset)
+                    continue;
                 const glm::dvec2 at(x(event.azimuth_rad), y(0));
                 drawing_->circle(at, 3.4, {.fill = kPaper, .stroke = kInk, .width = 1.2});
-                labels.add(
-                    at,
-                    fmt::format("{} {}", rises ? "sunrise" : "sunset", paths_->clock(event.utc)),
-                    {.size = 11.5, .color = kPaper, .halo = Color{kRidge.rgb, 0.8}}, 7,
-                    LabelPlacer::Side::Below);
+                labels.add(at,
+                           fmt::format("{} {}", sun::name_of(event.kind), paths_->clock(event.utc)),
+                           {.size = 11.5, .color = kPaper, .halo = Color{kRidge.rgb, 0.8}}, 7,
+                           LabelPlacer::Side::Below);
             }
         } else if (paths_) {
             for (int hour = 0; hour < 24; ++hour) {
@@ -409,12 +425,12 @@ class Panorama {
         if (of_.day)
             at =
                 add_key(*drawing_, at, y, {.stroke = kDay, .width = 3.2}, long_date(of_.day->date));
-        if (paths_)
+        if (paths_ && !moon())
             for (const SeasonPath& season : season_paths())
                 at = add_key(*drawing_, at, y,
                              {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
                              season.label);
-        if (paths_) {
+        if (paths_ && !moon()) {
             at = add_key(*drawing_, at, y, {.stroke = kFaint, .width = 0.9},
                          fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
                                      sun::offset_text(paths_->standard_offset_s())));

@@ -22,6 +22,8 @@ struct HorizonPanorama {
     /// The day to be drawn strongly, with its direct light.
     std::optional<light::LightDay> day;
     std::string light_definition;
+    /// Whose day it is; with the moon's there are no paths of the sun.
+    sun::Body body = sun::Body::Sun;
 
     std::optional<PanelSize> panel;  ///< none: a sheet
 

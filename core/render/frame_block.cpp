@@ -235,7 +235,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
-    block.seconds = static_cast<float>(inputs.seconds);
+    block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;
     const glm::dvec2 sides_m =

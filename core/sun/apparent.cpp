@@ -1,5 +1,7 @@
 #include "sun/apparent.h"
 
+#include <cmath>
+
 #include <erfa.h>
 #include <erfam.h>
 
@@ -52,9 +54,23 @@ glm::dvec3 SolarEphemeris::apparent_au(const glm::dvec3& from_geocenter_m,
     return distance * glm::dvec3(cirs[0], cirs[1], cirs[2]);
 }
 
+double SolarEphemeris::right_ascension_rad(const glm::dvec3& cirs) const {
+    return eraAnp(std::atan2(cirs.y, cirs.x) - equation_of_origins_rad_);
+}
+
+double declination_rad(const glm::dvec3& cirs) {
+    return std::atan2(cirs.z, std::hypot(cirs.x, cirs.y));
+}
+
 glm::dvec3 SolarEphemeris::icrs(const glm::dvec3& cirs) const {
     double in[3] = {cirs.x, cirs.y, cirs.z}, out[3];
     eraTrxp(const_cast<double(*)[3]>(to_cirs_), in, out);
+    return {out[0], out[1], out[2]};
+}
+
+glm::dvec3 SolarEphemeris::cirs(const glm::dvec3& icrs) const {
+    double in[3] = {icrs.x, icrs.y, icrs.z}, out[3];
+    eraRxp(const_cast<double(*)[3]>(to_cirs_), in, out);
     return {out[0], out[1], out[2]};
 }
 

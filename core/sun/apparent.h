@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "geo/geodetic.h"
+#include "sun/observer.h"
 #include "sun/position.h"
 
 namespace relevo::sun {
@@ -24,9 +25,12 @@ class SolarEphemeris {
     /// Right ascension of the CIRS origin counted from the true equinox, with the sign of the
     /// equation of the origins: equinox right ascension = CIRS right ascension - this.
     double equation_of_origins_rad() const { return equation_of_origins_rad_; }
+    /// From the true equinox of date [0, 2 pi), of a vector in CIRS.
+    double right_ascension_rad(const glm::dvec3& cirs) const;
 
     /// CIRS to the axes of star catalogues (GCRS, which for directions is ICRS), of a vector.
     glm::dvec3 icrs(const glm::dvec3& cirs) const;
+    glm::dvec3 cirs(const glm::dvec3& icrs) const;  ///< and back
     /// Of the Earth's centre about that of the solar system, ICRS.
     glm::dvec3 earth_velocity_m_s() const;
 
@@ -37,6 +41,8 @@ class SolarEphemeris {
     double equation_of_origins_rad_;
     double tt_jd_[2];
 };
+
+double declination_rad(const glm::dvec3& cirs);
 
 /// The Earth as it is turned at a moment, and where that takes its places.
 class TurnedEarth {
@@ -59,5 +65,9 @@ class TurnedEarth {
     double angle_rad_, pole_x_rad_, pole_y_rad_, sp_rad_;
     double to_itrs_[3][3];
 };
+
+/// Where a vector from an observer to a body points [au, CIRS] in that observer's sky.
+SkyPosition sky_position(const glm::dvec3& cirs_au, Body body, const Observer& observer,
+                         const TurnedEarth& earth, const SolarEphemeris& axes);
 
 }  // namespace relevo::sun

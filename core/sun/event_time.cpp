@@ -190,6 +190,8 @@ ParsedTime resolve(const EventTime& time, const std::optional<Date>& given,
                     return day.astronomical;
                 case EventKind::Transit:
                 case EventKind::LowerTransit:
+                case EventKind::Moonrise:
+                case EventKind::Moonset:
                     break;
             }
             return Crossing::Crosses;

@@ -24,6 +24,8 @@ enum class EventKind {
     NauticalDusk,
     AstronomicalDusk,
     LowerTransit,  ///< the meridian on the side of midnight
+    Moonrise,      ///< by the moon's RiseRule
+    Moonset,
 };
 
 /// "sunrise", "civil_dawn", "lower_transit", ...

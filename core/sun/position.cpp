@@ -17,7 +17,6 @@ namespace relevo::sun {
 namespace {
 
 constexpr double kUnixEpoch_jd = 2440587.5;
-constexpr double kSunRadius_m = 695'700'000;  // IAU 2015 resolution B3, nominal
 
 /// The Julian date of the instant plus seconds, in two parts: midnight, and the fraction of a day.
 void set_julian_date(Instant instant, double plus_s, double jd[2]) {
@@ -28,14 +27,6 @@ void set_julian_date(Instant instant, double plus_s, double jd[2]) {
     jd[1] = (static_cast<double>(us - day * kDay_us) * 1e-6 + plus_s) / kDay_s;
 }
 
-double right_ascension_rad(const glm::dvec3& cirs, const SolarEphemeris& ephemeris) {
-    return eraAnp(std::atan2(cirs.y, cirs.x) - ephemeris.equation_of_origins_rad());
-}
-
-double declination_rad(const glm::dvec3& v) {
-    return std::atan2(v.z, std::hypot(v.x, v.y));
-}
-
 Geocentric geocentric(const Epoch& epoch, const SolarEphemeris& ephemeris) {
     const glm::dvec3 sun = ephemeris.apparent_au();
     const double turned_rad = eraEra00(epoch.ut1_jd[0], epoch.ut1_jd[1]);
@@ -44,7 +35,7 @@ Geocentric geocentric(const Epoch& epoch, const SolarEphemeris& ephemeris) {
     const double mean_rad =
         2 * kPi * (std::fmod(epoch.ut1_jd[0], 1.0) + std::fmod(epoch.ut1_jd[1], 1.0));
     Geocentric result;
-    result.right_ascension_rad = right_ascension_rad(sun, ephemeris);
+    result.right_ascension_rad = ephemeris.right_ascension_rad(sun);
     result.declination_rad = declination_rad(sun);
     result.distance_au = glm::length(sun);
     const double ra = result.right_ascension_rad, dec = result.declination_rad;
@@ -113,8 +104,24 @@ double elevation_of(const glm::dvec3& direction) {
     return angle_above(direction.z, direction.x, direction.y);
 }
 
-double semidiameter_rad(double distance_au) {
-    return std::asin(kSunRadius_m / (distance_au * ERFA_DAU));
+double semidiameter_rad(double distance_au, Body body) {
+    const double radius_m = body == Body::Sun ? kSunRadius_m : kMoonRadius_m;
+    return std::asin(radius_m / (distance_au * ERFA_DAU));
+}
+
+SkyPosition sky_position(const glm::dvec3& cirs_au, Body body, const Observer& observer,
+                         const TurnedEarth& earth, const SolarEphemeris& axes) {
+    SkyPosition sky;
+    sky.direction = glm::normalize(observer.enu(earth.itrs(cirs_au)));
+    sky.azimuth_rad = azimuth_of(sky.direction);
+    sky.elevation_rad = elevation_of(sky.direction);
+    sky.distance_au = glm::length(cirs_au);
+    sky.right_ascension_rad = axes.right_ascension_rad(cirs_au);
+    sky.declination_rad = declination_rad(cirs_au);
+    sky.hour_angle_rad =
+        eraAnpm(earth.angle_rad() + observer.place().lon_rad - std::atan2(cirs_au.y, cirs_au.x));
+    sky.semidiameter_rad = semidiameter_rad(sky.distance_au, body);
+    return sky;
 }
 
 Position position(const Epoch& epoch, const geo::Geodetic& place) {
@@ -123,16 +130,7 @@ Position position(const Epoch& epoch, const geo::Geodetic& place) {
     const TurnedEarth earth(epoch);
     const TurnedEarth::Motion motion = earth.motion(place);
     const glm::dvec3 cirs = ephemeris.apparent_au(motion.position_m, motion.velocity_m_s);
-
-    Position result;
-    result.direction = glm::normalize(observer.enu(earth.itrs(cirs)));
-    result.azimuth_rad = azimuth_of(result.direction);
-    result.elevation_rad = elevation_of(result.direction);
-    result.distance_au = glm::length(cirs);
-    result.right_ascension_rad = right_ascension_rad(cirs, ephemeris);
-    result.declination_rad = declination_rad(cirs);
-    result.hour_angle_rad = eraAnpm(earth.angle_rad() + place.lon_rad - std::atan2(cirs.y, cirs.x));
-    result.semidiameter_rad = semidiameter_rad(result.distance_au);
+    Position result{sky_position(cirs, Body::Sun, observer, earth, ephemeris)};
     result.equation_of_time_s = geocentric(epoch, ephemeris).equation_of_time_s;
     return result;
 }

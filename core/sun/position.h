@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include "geo/geodetic.h"
+#include "sun/body.h"
 #include "sun/earth_rotation.h"
 #include "sun/time.h"
 
@@ -40,17 +41,21 @@ struct Geocentric {
     double equation_of_time_s = 0;
 };
 
-/// The sun as seen from a place, without an atmosphere.
-struct Position {
-    double azimuth_rad = 0;    ///< of the sun's centre, clockwise from true north [0, 2 pi)
+/// The sun or the moon seen from a place, without an atmosphere.
+struct SkyPosition {
+    double azimuth_rad = 0;    ///< of the disc's centre, clockwise from true north [0, 2 pi)
     double elevation_rad = 0;  ///< of the centre above the ellipsoid's tangent plane; no refraction
     double distance_au = 0;    ///< from the place, when the light left
     double right_ascension_rad = 0;  ///< topocentric, true equator and equinox of date [0, 2 pi)
     double declination_rad = 0;      ///< likewise
     double hour_angle_rad = 0;       ///< local, topocentric, west positive [-pi, pi]
     double semidiameter_rad = 0;     ///< half the disc's width
-    double equation_of_time_s = 0;   ///< as in Geocentric
     glm::dvec3 direction{0};         ///< unit vector to the centre: x east, y north, z up
+};
+
+/// The sun as seen from a place, without an atmosphere.
+struct Position : SkyPosition {
+    double equation_of_time_s = 0;  ///< as in Geocentric
 };
 
 /// Throws the layer's own error unless the instant lies in 1900-2100, give or take two days so that
@@ -76,7 +81,10 @@ Position position(Instant utc, const geo::Geodetic& place);
 double azimuth_of(const glm::dvec3& direction);
 double elevation_of(const glm::dvec3& direction);
 
-/// Half the width of the sun's disc at a distance: IAU 2015 resolution B3, 695700 km.
-double semidiameter_rad(double distance_au);
+inline constexpr double kSunRadius_m = 695'700'000;  ///< IAU 2015 resolution B3, nominal
+inline constexpr double kMoonRadius_m = 1'737'400;   ///< mean; IAU working group 2015
+
+/// Half the width of a body's disc at a distance.
+double semidiameter_rad(double distance_au, Body body = Body::Sun);
 
 }  // namespace relevo::sun

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <erfam.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
@@ -9,6 +10,7 @@
 #include "base/units.h"
 #include "sun/apparent.h"
 #include "sun/interpolate.h"
+#include "sun/moon_ephemeris.h"
 #include "sun/position.h"
 
 namespace relevo::sun {
@@ -18,17 +20,29 @@ namespace {
 constexpr std::int64_t kDay_us = 86'400'000'000;
 constexpr double kUnixEpoch_jd = 2440587.5;
 constexpr double kJ2000_days = 10957.5;  // since 1970-01-01T00
-constexpr int kNodesBefore = 3;          // of the first day: TT may be behind UTC (1900)
+constexpr int kMoonNodesPerDay = 4;
+// A table reaches a node more than its interpolation needs.
+constexpr int kNodesBefore = 3, kNodesAfter = 4;
 
 std::int64_t day_of(Instant instant) {
     const std::int64_t us = instant.unix_us();
     return (us >= 0 ? us : us - (kDay_us - 1)) / kDay_us;
 }
 
+glm::dvec3 geocentric_au(Body body, double jd1, double jd2) {
+    const SolarEphemeris ephemeris(jd1, jd2);
+    if (body == Body::Sun) return ephemeris.apparent_au();
+    return apparent_moon_m(jd1, jd2, ephemeris) / ERFA_DAU;
+}
+
 }  // namespace
 
-PositionTable::PositionTable(Instant from, Instant to, const EarthRotation& rotation)
-    : from_(from), to_(to), first_day_(day_of(from)) {
+PositionTable::PositionTable(Instant from, Instant to, const EarthRotation& rotation, Body body)
+    : from_(from),
+      to_(to),
+      body_(body),
+      first_day_(day_of(from)),
+      nodes_per_day_(body == Body::Sun ? 1 : kMoonNodesPerDay) {
     if (to < from)
         bad_input(
             fmt::format("sun: from {} to {}: ends before it begins", to_iso(from), to_iso(to)));
@@ -45,8 +59,17 @@ PositionTable::PositionTable(Instant from, Instant to, const EarthRotation& rota
                          (end.ut1_minus_utc_s - begin.ut1_minus_utc_s) / kAlmostADay_s,
                          begin.pole_x_rad, begin.pole_y_rad});
     }
-    for (std::int64_t day = first_day_ - kNodesBefore; day <= last_day + 5; ++day)
-        nodes_.push_back(SolarEphemeris(kUnixEpoch_jd + static_cast<double>(day), 0).apparent_au());
+    const auto node_of = [&](Instant utc, double tt_minus_utc_s) {
+        const double s = (utc - Instant::from_unix_us(first_day_ * kDay_us)) + tt_minus_utc_s;
+        return static_cast<std::int64_t>(std::floor(s / kDay_s * nodes_per_day_));
+    };
+    first_node_ = node_of(from, days_.front().tt_minus_utc_s) - kNodesBefore;
+    const std::int64_t last_node = node_of(to, days_.back().tt_minus_utc_s) + kNodesAfter;
+    for (std::int64_t node = first_node_; node <= last_node; ++node) {
+        const double day = std::floor(static_cast<double>(node) / nodes_per_day_);
+        nodes_.push_back(geocentric_au(body, kUnixEpoch_jd + static_cast<double>(first_day_) + day,
+                                       static_cast<double>(node) / nodes_per_day_ - day));
+    }
 }
 
 glm::dvec3 PositionTable::vector_au(Instant utc, const Observer& observer) const {
@@ -61,10 +84,11 @@ glm::dvec3 PositionTable::vector_au(Instant utc, const Observer& observer) const
 
     // TT is at most 3 s behind UTC (1900) and two minutes ahead of it (2100).
     const double tt_days = static_cast<double>(index) + (of_day_s + day.tt_minus_utc_s) / kDay_s;
-    const double node = std::floor(tt_days);
-    const QuinticWeights weights(tt_days - node);
+    const double at = tt_days * nodes_per_day_;
+    const double node = std::floor(at);
+    const QuinticWeights weights(at - node);
     const glm::dvec3* n =
-        &nodes_[static_cast<std::size_t>(static_cast<std::int64_t>(node) + kNodesBefore)];
+        &nodes_[static_cast<std::size_t>(static_cast<std::int64_t>(node) - first_node_)];
     const glm::dvec3 cirs = weights.w[0] * n[-2] + weights.w[1] * n[-1] + weights.w[2] * n[0] +
                             weights.w[3] * n[1] + weights.w[4] * n[2] + weights.w[5] * n[3];
 

@@ -5,31 +5,37 @@
 
 #include <glm/vec3.hpp>
 
+#include "sun/body.h"
 #include "sun/earth_rotation.h"
 #include "sun/observer.h"
 #include "sun/time.h"
 
 namespace relevo::sun {
 
-/// The fast way to many positions: the sun's geocentric apparent place at one node a day, in axes
-/// that do not turn with the Earth, so that they change smoothly and interpolate well; the rest
-/// (rotation, parallax, diurnal aberration, pole) is computed exactly for each call. Read by many
-/// threads at once.
+/// The fast way to many positions. The geocentric apparent place of the sun at one node a day, of
+/// the moon at four, in axes that do not turn with the Earth, so that they change smoothly and
+/// interpolate well; the rest (rotation, parallax, diurnal aberration, pole) is computed exactly
+/// for each call. Read by many threads at once.
 ///
-/// Accuracy: 0.0006 arcsec median, 0.004 worst against sun::position, 1900-2100
-/// (tests/sun/test_position_table.cpp). Speed, one thread of a 2020s server: a year is made in 38
-/// ms; 6 million directions a second (tests/bench/bench_sun.cpp).
+/// Accuracy: sun 0.0006 arcsec median, 0.004 worst against sun::position, 1900-2100; moon 0.012
+/// worst against sun::moon (tests/sun/test_position_table.cpp). Speed, one thread of a 2020s
+/// server: a year of the sun is made in 38 ms, of the moon in 2 s; 6 million directions a second
+/// (tests/bench/bench_sun.cpp).
 class PositionTable {
   public:
     /// For instants from `from` to `to`.
     /// @throws Error (BadInput) outside 1900-2100, or if `to` is before `from`
     PositionTable(Instant from, Instant to,
-                  const EarthRotation& rotation = EarthRotation::built_in());
+                  const EarthRotation& rotation = EarthRotation::built_in(), Body body = Body::Sun);
+    PositionTable(Instant from, Instant to, Body body)
+        : PositionTable(from, to, EarthRotation::built_in(), body) {}
 
     Instant from() const { return from_; }
     Instant to() const { return to_; }
 
-    /// From the observer to the sun's centre, local ENU [au]; no refraction. Its length is the
+    Body body() const { return body_; }
+
+    /// From the observer to the body's centre, local ENU [au]; no refraction. Its length is the
     /// distance.
     /// @throws Error (Failed) outside from() to to()
     glm::dvec3 vector_au(Instant utc, const Observer& observer) const;
@@ -45,9 +51,12 @@ class PositionTable {
     };
 
     Instant from_, to_;
+    Body body_;
     std::int64_t first_day_ = 0;  // days since 1970 of days_[0]
     std::vector<Day> days_;
-    std::vector<glm::dvec3> nodes_;  // CIRS [au]; the fourth lies at first_day_, 0 h TT
+    int nodes_per_day_;
+    std::int64_t first_node_ = 0;    // node 0 lies at first_day_, 0 h TT
+    std::vector<glm::dvec3> nodes_;  // from first_node_ on; CIRS [au]
 };
 
 }  // namespace relevo::sun

@@ -10,6 +10,7 @@
 uniform vec3 block_side = vec3(0.34, 0.31, 0.28); //@ colour label("Sides") description("Reflectance of the cut sides")
 uniform float block_sun = 0.45; //@ range(0, 2) label("Sun on the sides") description("Factor on the sunlight on the cut sides: below 1 the ground stays brighter")
 uniform float block_sky = 1.8; //@ range(0, 10) label("Ambient light") description("Ambient light on the sides, relative to the light of the sky")
+uniform vec3 block_water = vec3(0.03, 0.12, 0.20); //@ colour label("Water") description("Reflectance of the cut water of a sea whose floor the DEM has, or of a flood")
 uniform vec3 block_above = vec3(0.60, 0.62, 0.64); //@ colour label("Backdrop above") description("Colour at the upper edge of the picture, by day")
 uniform vec3 block_below = vec3(0.43, 0.43, 0.42); //@ colour label("Backdrop below") description("Colour at the lower edge of the picture, by day")
 uniform vec3 block_space = vec3(0.012, 0.014, 0.018); //@ colour label("Behind a globe") description("Backdrop of a DEM of the whole Earth")
@@ -31,7 +32,9 @@ vec3 block_on_side(in Surface s, in float down) {
     vec3 sun = sun_light(s.up, to_sun) * max(dot(s.normal, to_sun), 0.0);
     vec3 sky = block_sky * vec3(block_luminance(frame.sky_irradiance.rgb)) * (0.75 + 0.25 * dot(s.normal, s.up));
     // Near the floor less of the surroundings is seen.
-    return block_side * (block_sun * sun + sky) * (1.0 - 0.35 * down * down);
+    float edge_m = 0.7 * fwidth(s.above_ground_m);
+    vec3 cut = mix(block_side, block_water, smoothstep(-edge_m, edge_m, s.above_ground_m - edge_m));
+    return cut * (block_sun * sun + sky) * (1.0 - 0.35 * down * down);
 }
 
 vec3 block_on_backdrop(in vec3 direction, in vec2 at) {

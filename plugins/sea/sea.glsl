@@ -150,7 +150,7 @@ sea_Waves sea_waves(in vec2 anchored_m, in vec2 dx_m, in vec2 dy_m, in float ope
     float mean_m = sqrt(length(dx_m) * length(dy_m));
     float finest_m = share > 0.0 ? mean_m / sea_unresolved : 1e9;
     vec2 downwind = -vec2(sin(radians(sea_wind_deg)), cos(radians(sea_wind_deg)));
-    float now_s = mod(frame.seconds, sea_period_s);
+    float now_s = mod(frame.still_seconds, sea_period_s);
     float wander = 0.0;
     for (int i = 0; i < sea_trains; ++i) {
         if (length_m < finest_m) break;

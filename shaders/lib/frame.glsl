@@ -65,5 +65,6 @@ layout(std140, binding = 0) uniform Frame {
     vec4 map_y;               // the DEM; x: a column, y: a row, z: of (0, 0); and y. All 0 of other pictures
     float instance_shadow_px;     // side of a shadow map of instances
     float instance_shadow_weight; // 1 where there are such maps, else 0
+    float still_seconds;      // as seconds: a window does not draw on for effects that read only this [s]
     float sea_floor_share;    // of the DEM's posts that are below a sea and have the height of its floor, 0..1
 } frame;

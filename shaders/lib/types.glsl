@@ -47,6 +47,7 @@ struct Surface {
     vec2 post;                // column and row of the DEM, with fractions
     float pixel_posts;        // posts along a side of the pixel on the ground
     vec2 anchored_m;          // ground_m.xy from a point near the eye, exact there: for lib/repeats.glsl [m]
+    float above_ground_m;     // of a cut side: above the DEM's ground, in water that effects have raised it by; else 0 or below
 };
 
 /// A pixel of the picture, whatever it shows.

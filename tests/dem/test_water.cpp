@@ -48,6 +48,7 @@ TEST(Water, SeaIsWhatReachesTheEdgeAtZero) {
     EXPECT_EQ(water.kind.at(49, 7), WaterKind::Sea);
     EXPECT_EQ(water.kind.at(50, 7), WaterKind::None);
     EXPECT_TRUE(water.assumptions.empty());
+    EXPECT_EQ(water.sea_floor_share(), 0) << "its surface";
 }
 
 TEST(Water, AFloorBelowZeroIsSeaWithAFloor) {
@@ -55,6 +56,7 @@ TEST(Water, AFloorBelowZeroIsSeaWithAFloor) {
     const Water water = find_water(h, alps(h));
     EXPECT_EQ(water.sea_posts, 81 * 100 - 0);
     EXPECT_EQ(water.kind.at(10, 7), WaterKind::SeaFloor);
+    EXPECT_DOUBLE_EQ(water.sea_floor_share(), 81.0 / 200);
     // It may be a depression that nobody has told of: that is said.
     ASSERT_EQ(water.assumptions.size(), 1u);
     EXPECT_TRUE(

@@ -7,6 +7,7 @@
 
 #include "base/paths.h"
 #include "base/units.h"
+#include "dem/fixture.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
@@ -239,6 +240,45 @@ TEST(Frame, WallsAreLitFromTheSunsSideAndDarkerAtTheirFoot) {
     EXPECT_GT(south_top, 1.1 * north_top);
     EXPECT_LT(south_foot, 0.97 * south_top);
     EXPECT_LT(north_foot, 0.97 * north_top);
+}
+
+TEST(Frame, WallsAreOfWaterBetweenASeaAndItsFloor) {
+    SKIP_WITHOUT_BLOCK;
+    test::Raster raster;
+    raster.columns = raster.rows = 100;
+    raster.geotransform = {{500000, 100, 0, 5200000, 0, -100}};
+    raster.value = [](int column, int, int) { return 12.0 * column - 900 - 30 * (column % 7); };
+    scene::Scene scene = scene_of(
+        test::write_raster(test::scratch_dir("shelf") / "shelf.tif", raster), {"block", "sea"});
+    scene.effects.settings = {{"block.side", "1,0,0"}, {"block.water", "0,0,1"}};
+    scene.view.orbit = {180, 15, 1};
+    FilesInUse files;
+    Session session(scene, {.device = test::gl_device()}, files);
+    session.draw();
+    const image::Image8 picture = session.picture();
+    std::vector<float> depths;
+    session.read_depths(depths);
+    const SeenGround seen(session.camera(), picture.width, picture.height, depths);
+    int counts[2] = {}, wrong = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const auto point = seen.point(x, y);
+            if (!point) continue;
+            const geo::Geodetic at = session.ground().frame.to_geodetic(*point);
+            const glm::dvec2 post = session.dem()->field.grid.post(at);
+            if (post.y < 98.7) continue;  // not in the wall to the south
+            const double ground_m =
+                session.dem()->field.height_at(std::clamp(post.x, 0.0, 99.0), 99);
+            const double near_m = 1.5 / seen.px_per_m(seen.depth_m(x, y));
+            if (at.height_m > std::max(ground_m, 0.0) - near_m) continue;
+            if (std::abs(at.height_m - ground_m) < near_m) continue;
+            const bool water = picture.at(x, y, 2) > picture.at(x, y, 0);
+            ++counts[water];
+            wrong += water != (at.height_m > ground_m);
+        }
+    EXPECT_GT(counts[0], 2000) << "ground, of " << wrong << " wrong";
+    EXPECT_GT(counts[1], 500) << "water";
+    EXPECT_LE(wrong, 20);
 }
 
 TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {

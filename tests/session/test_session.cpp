@@ -317,6 +317,17 @@ TEST(Session, DrawsADemThatAnotherHasRead) {
     EXPECT_EQ(session.picture().values, first.values);
 }
 
+TEST(Session, AWindowDrawsOnForSnowAndNotForWaves) {
+    const auto is_animated = [](const std::string& effect) {
+        scene::Scene scene = bundled_scene();
+        scene.effects.switches.only = std::vector<std::string>{effect, "layering", "sky"};
+        FilesInUse files;
+        return Session(scene, {.device = test::gl_device()}, files).is_animated();
+    };
+    EXPECT_TRUE(is_animated("snowfall"));
+    EXPECT_FALSE(is_animated("sea"));
+}
+
 TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
     scene::Scene scene = bundled_scene();
     scene.dem.nodata = 500;  // some hundred posts, here and there

@@ -83,7 +83,8 @@ std::optional<std::vector<std::string>> listed(const std::string& type) {
 /// Of two options of one name: --from is a day of `sun`, a file elsewhere.
 bool is_a_day(const std::string& command, const std::string& name) {
     return name == "--from" &&
-           (command.starts_with("relevo sun") || command.starts_with("relevo plan sun"));
+           (command.starts_with("relevo sun") || command.starts_with("relevo moon") ||
+            command.starts_with("relevo plan sun"));
 }
 
 bool complete(Option& option, const std::string& type, const std::string& command) {

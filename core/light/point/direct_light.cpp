@@ -9,6 +9,7 @@
 
 #include "base/sign_change.h"
 #include "base/units.h"
+#include "sun/moon_events.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 
@@ -85,7 +86,7 @@ class LightSearch {
         const glm::dvec3 sun = table_.vector_au(begin_ + t_s, light_.observer_);
         const double true_rad = sun::elevation_of(sun);
         return {t_s, sun::azimuth_of(sun), true_rad, light_.refraction_.apparent_rad(true_rad),
-                sun::semidiameter_rad(glm::length(sun))};
+                sun::semidiameter_rad(glm::length(sun), table_.body())};
     }
 
     bool in_hole(const Moment& m) const {
@@ -198,6 +199,27 @@ std::vector<double> elevations_of(const std::vector<HorizonPoint>& profile) {
 
 }  // namespace
 
+namespace {
+
+std::vector<sun::Day> flat_moon_days(sun::Date first, sun::Date last, const sun::Zone& zone,
+                                     const geo::Geodetic& place, const sun::RiseRule& rule,
+                                     const sun::EarthRotation& rotation) {
+    std::vector<sun::Day> days;
+    for (const sun::MoonDay& moon : sun::moon_days(first, last, zone, place, rule, rotation)) {
+        sun::Day& day = days.emplace_back();
+        day.date = moon.date;
+        day.span = moon.span;
+        day.events = moon.events;
+        day.sun = moon.moon;
+        day.sun_up = moon.moon_up;
+        day.day_length_s = moon.moon_up_s;
+        day.definition = rule.description();
+    }
+    return days;
+}
+
+}  // namespace
+
 double LitInterval::not_known_s() const {
     double sum_s = 0;
     for (const sun::TimeSpan& span : not_known)
@@ -221,9 +243,11 @@ DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& opti
             holes_.push_back(point.hole);
             hole_rad_.push_back(point.hole ? point.hole_rad : -kPi / 2);
         }
-    const char* part = options.limb == sun::Limb::Upper   ? "any part of the sun's disc"
-                       : options.limb == sun::Limb::Lower ? "all of the sun's disc"
-                                                          : "centre of the sun";
+    const char* body = name_of(options.body);
+    const std::string part =
+        options.limb == sun::Limb::Upper   ? fmt::format("any part of the {}'s disc", body)
+        : options.limb == sun::Limb::Lower ? fmt::format("all of the {}'s disc", body)
+                                           : fmt::format("centre of the {}", body);
     definition_ = fmt::format("direct light: {} over the terrain horizon, {}", part,
                               refraction_.description());
 }
@@ -235,7 +259,7 @@ LightDay DirectLight::day(sun::Date date, const sun::Zone& zone,
 }
 
 std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span) const {
-    return lit_within(span, sun::PositionTable(span.begin, span.end));
+    return lit_within(span, sun::PositionTable(span.begin, span.end, options_.body));
 }
 
 std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
@@ -249,10 +273,13 @@ std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
 std::vector<LightDay> DirectLight::days(sun::Date first, sun::Date last, const sun::Zone& zone,
                                         const sun::EarthRotation& rotation) const {
     std::vector<sun::Day> flat =
-        sun::day_events(first, last, zone, horizon_.place(), options_.flat, rotation);
+        options_.body == sun::Body::Sun
+            ? sun::day_events(first, last, zone, horizon_.place(), options_.flat, rotation)
+            : flat_moon_days(first, last, zone, horizon_.place(), options_.flat.rule, rotation);
     std::vector<LightDay> days;
     if (flat.empty()) return days;
-    const sun::PositionTable table(flat.front().span.begin, flat.back().span.end, rotation);
+    const sun::PositionTable table(flat.front().span.begin, flat.back().span.end, rotation,
+                                   options_.body);
     for (sun::Day& of_day : flat) {
         LightDay day;
         day.date = of_day.date;

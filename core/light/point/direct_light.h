@@ -16,10 +16,12 @@ class PositionTable;
 namespace relevo::light {
 
 struct LightOptions {
-    /// What of the sun must stand over the terrain: its centre; with Upper any part of the disc
+    /// Whose light it is: of the moon's, with its own path, disc and days.
+    sun::Body body = sun::Body::Sun;
+    /// What of the disc must stand over the terrain: its centre; with Upper any part of the disc
     /// (first and last ray, wherever on the slope of a ridge it comes); with Lower all of it.
     sun::Limb limb = sun::Limb::Center;
-    /// Of the sun; none: integrated through the standard atmosphere over the place.
+    /// Of its light; none: integrated through the standard atmosphere over the place.
     std::optional<sun::Refraction> refraction = {};
     /// Rising and setting over a flat horizon, to compare with.
     sun::DayOptions flat = {};
@@ -51,10 +53,11 @@ struct LightDay {
     std::vector<LitInterval> lit;  ///< in order; empty: the sun does not reach the point
     double lit_s = 0;              ///< together
     double not_known_s = 0;        ///< of it, for voids of the DEM
-    sun::Day flat;                 ///< the same day over a flat horizon
+    /// The same day over a flat horizon; of the moon: its events, and when it is up.
+    sun::Day flat;
 };
 
-/// When the sun shines on a point, over its own horizon.
+/// When the sun, or the moon, shines on a point, over its own horizon.
 ///
 /// Every stretch is found that is wider than 0.02 degrees of azimuth (5 s), and shadows likewise:
 /// the horizon is tabulated that finely to find them, and computed exactly for their edges
@@ -87,6 +90,7 @@ class DirectLight {
     const sun::Observer& observer() const { return observer_; }
     const sun::Refraction& refraction() const { return refraction_; }
     sun::Limb limb() const { return options_.limb; }
+    sun::Body body() const { return options_.body; }
 
     /// "direct light: centre of the sun over the terrain, integrated atmosphere, ...".
     const std::string& definition() const { return definition_; }

@@ -39,12 +39,13 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
                const std::vector<HorizonPoint>& profile, const std::optional<double>& highest_m) {
     Doubt doubt;
     doubt.matters = Matters::Sun;
+    doubt.body = light.body();
     doubt.highest_m = highest_beyond_m(light.horizon().posts(), highest_m);
     const auto n = profile.size();
     std::vector<double> lowest_rad(n, kInfinity);
     std::vector<bool> holes(n, false);
     if (days.empty()) return doubt;
-    const sun::PositionTable table(days.front().span.begin, days.back().span.end);
+    const sun::PositionTable table(days.front().span.begin, days.back().span.end, light.body());
     // Every direction from one moment to the next, at the lower of the two elevations.
     const auto walk = [&](const sun::Instant& from, const sun::Instant& to, const auto& visit) {
         const double length_s = to - from;

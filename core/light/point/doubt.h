@@ -13,7 +13,7 @@ namespace relevo::light {
 /// What more terrain than the DEM has would do to matter.
 enum class Matters {
     Horizon,    ///< stand over it
-    Sun,        ///< hide the sun while it shines
+    Sun,        ///< hide the sun, or the moon, while it shines
     Alignment,  ///< hide a summit, or the sun over it
 };
 
@@ -25,9 +25,10 @@ struct Doubt {
     std::vector<Sector> holes;
     double not_known_s = 0;  ///< of the direct light, for the voids
     double highest_m = 0;    ///< what was assumed of the terrain beyond
-    /// The lowest sun that shines, where that is below the level horizon.
+    /// The lowest sun or moon that shines, where that is below the level horizon.
     std::optional<LightEdge> lowest_sun{};
     Matters matters = Matters::Horizon;
+    sun::Body body = sun::Body::Sun;
 };
 
 /// How high terrain beyond a DEM is taken to be: as given, or as the DEM's highest post, at most

@@ -176,7 +176,7 @@ TEST(Sea, WavesRunBeforeTheWindAndRepeat) {
         test::GpuSnippet gpu("sea");
         gpu.values().set("sea.wind_deg", wind_deg);
         gpu.values().set("sea.wind_m_s", "10");
-        gpu.frame().seconds = static_cast<float>(seconds);
+        gpu.frame().still_seconds = static_cast<float>(seconds);
         return gpu.run(
             fmt::format("result = vec4(sea_waves(vec2(float(x) + {:f}, float(y)), vec2(4.0, 0.0), "
                         "vec2(0.0, 4.0), 1.0, 1.0).slope, 0.0, 0.0);",

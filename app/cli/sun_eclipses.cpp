@@ -1,0 +1,322 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/sun.h"
+#include "cli/sun_options.h"
+#include "cli/sun_points.h"
+#include "geo/format.h"
+#include "sun/eclipse.h"
+#include "sun/position_table.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kDefinition =
+    "contacts of circular limbs: the moon's radius is 0.2725076 of the Earth's equatorial one for "
+    "first and last contact, 0.2722810 for second and third; magnitude: fraction of the sun's "
+    "diameter that is covered, obscuration: of its area, limb darkening not counted; elevations "
+    "of the sun's centre without refraction";
+
+struct Arguments {
+    TerrainArguments terrain;
+    PlaceArguments place;
+    PointsArguments points;
+    DaysArguments days;
+    LightArguments light;
+    OutputArguments output;
+};
+
+/// An eclipse, and when its sun is seen.
+struct SeenEclipse {
+    sun::SolarEclipse eclipse;
+    std::vector<sun::TimeSpan> up;   ///< over the level horizon
+    std::vector<sun::TimeSpan> lit;  ///< over the terrain, where there is a DEM
+    std::optional<sun::EclipseMoment> greatest_seen;
+};
+
+struct Result {
+    geo::Geodetic place;
+    DaysArguments::Days asked;
+    std::string definition, light_definition, horizon_definition;
+    bool terrain = false;
+    std::vector<SeenEclipse> eclipses;
+    light::Doubt doubt;
+};
+
+/// The contacts that an eclipse has, in order.
+std::vector<std::pair<const char*, sun::EclipseMoment>> contacts_of(
+    const sun::SolarEclipse& eclipse) {
+    std::vector<std::pair<const char*, sun::EclipseMoment>> contacts{
+        {"first_contact", eclipse.first}};
+    if (eclipse.second) contacts.emplace_back("second_contact", *eclipse.second);
+    contacts.emplace_back("greatest", eclipse.greatest);
+    if (eclipse.third) contacts.emplace_back("third_contact", *eclipse.third);
+    contacts.emplace_back("last_contact", eclipse.last);
+    return contacts;
+}
+
+bool within(const std::vector<sun::TimeSpan>& spans, sun::Instant utc) {
+    return std::ranges::any_of(
+        spans, [utc](const sun::TimeSpan& span) { return utc >= span.begin && utc <= span.end; });
+}
+
+/// "up", "down" or "behind terrain".
+const char* sun_is(const Result& result, const SeenEclipse& seen, sun::Instant utc) {
+    const bool lit = within(result.terrain ? seen.lit : seen.up, utc);
+    if (lit) return "up";
+    return result.terrain && within(seen.up, utc) ? "behind terrain" : "down";
+}
+
+double central_s(const sun::SolarEclipse& eclipse) {
+    return eclipse.second && eclipse.third ? eclipse.third->utc - eclipse.second->utc : 0;
+}
+
+ordered_json moment_json(const Result& result, const SeenEclipse& seen,
+                         const sun::EclipseMoment& moment) {
+    return {{"utc", utc_json(moment.utc)},
+            {"local", sun::to_iso(moment.utc, result.asked.zone)},
+            {"azimuth_deg", angle_deg(moment.azimuth_rad)},
+            {"elevation_deg", angle_deg(moment.elevation_rad)},
+            {"magnitude", moment.magnitude},
+            {"obscuration", moment.obscuration},
+            {"sun", sun_is(result, seen, moment.utc)}};
+}
+
+ordered_json eclipse_json(const Result& result, const SeenEclipse& seen) {
+    ordered_json json;
+    const sun::SolarEclipse& eclipse = seen.eclipse;
+    json["date"] = sun::to_string(result.asked.zone.local(eclipse.greatest.utc).wall.date);
+    json["kind"] = sun::name_of(eclipse.kind);
+    json["magnitude"] = eclipse.greatest.magnitude;
+    json["obscuration"] = eclipse.greatest.obscuration;
+    json["central_s"] = central_s(eclipse);
+    for (const auto& [name, moment] : contacts_of(eclipse))
+        json[name] = moment_json(result, seen, moment);
+    json["greatest_seen"] =
+        seen.greatest_seen ? moment_json(result, seen, *seen.greatest_seen) : ordered_json();
+    if (result.terrain) json["direct_sun"] = spans_json(seen.lit);
+    return json;
+}
+
+ordered_json json_of(const Result& result) {
+    ordered_json json;
+    json["place"] = place_json(result.place);
+    json["zone"] = result.asked.zone.name();
+    add_assumption(json, result.asked.assumption);
+    json["definition"] = kDefinition;
+    json["sun_definition"] = result.definition;
+    if (result.terrain) {
+        json["light_definition"] = result.light_definition;
+        json["horizon_definition"] = result.horizon_definition;
+        if (!result.doubt.holes.empty()) json["hole_sectors"] = sectors_json(result.doubt.holes);
+    }
+    ordered_json& eclipses = json["eclipses"] = ordered_json::array();
+    for (const SeenEclipse& seen : result.eclipses)
+        eclipses.push_back(eclipse_json(result, seen));
+    return json;
+}
+
+constexpr const char* kColumns =
+    "date,kind,magnitude,obscuration,central_s,first_contact,second_contact,greatest,"
+    "third_contact,last_contact,first_sun,greatest_sun,last_sun,greatest_elevation_deg,"
+    "obscuration_seen";
+
+std::vector<std::string> rows_of(const Result& result) {
+    std::vector<std::string> rows;
+    const sun::Zone& zone = result.asked.zone;
+    for (const SeenEclipse& seen : result.eclipses) {
+        const sun::SolarEclipse& eclipse = seen.eclipse;
+        const auto time = [&](const std::optional<sun::EclipseMoment>& moment) {
+            return moment ? sun::to_iso(moment->utc, zone) : "";
+        };
+        rows.push_back(fmt::format(
+            "{},{},{:.4f},{:.4f},{:.1f},{},{},{},{},{},{},{},{},{:.4f},{}",
+            sun::to_string(zone.local(eclipse.greatest.utc).wall.date), sun::name_of(eclipse.kind),
+            eclipse.greatest.magnitude, eclipse.greatest.obscuration, central_s(eclipse),
+            time(eclipse.first), time(eclipse.second), time(eclipse.greatest), time(eclipse.third),
+            time(eclipse.last), sun_is(result, seen, eclipse.first.utc),
+            sun_is(result, seen, eclipse.greatest.utc), sun_is(result, seen, eclipse.last.utc),
+            degrees(eclipse.greatest.elevation_rad),
+            seen.greatest_seen ? fmt::format("{:.4f}", seen.greatest_seen->obscuration) : ""));
+    }
+    return rows;
+}
+
+std::string csv_of(const Result& result) {
+    std::vector<std::string> remarks{kDefinition, result.definition};
+    if (result.terrain) {
+        remarks.push_back(result.light_definition);
+        remarks.push_back(result.horizon_definition);
+    }
+    std::string text = csv_remarks(remarks) + kColumns + "\n";
+    for (const std::string& row : rows_of(result))
+        text += row + "\n";
+    return text;
+}
+
+void print_moment(const Result& result, const SeenEclipse& seen, std::string name,
+                  const sun::EclipseMoment& moment) {
+    std::ranges::replace(name, '_', ' ');
+    const std::string state = sun_is(result, seen, moment.utc);
+    const double azimuth_deg = degrees(moment.azimuth_rad);
+    fmt::print("  {:<18}{}  azimuth {:6.2f} {:<4} elevation {:6.2f}{}\n", name,
+               sun::to_iso(moment.utc, result.asked.zone), azimuth_deg, compass_point(azimuth_deg),
+               degrees(moment.elevation_rad),
+               state == "up"     ? ""
+               : state == "down" ? "  below the horizon"
+                                 : "  behind terrain");
+}
+
+void print_text(const Result& result) {
+    fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
+               result.place.height_m);
+    fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
+               sun::to_string(result.asked.last), result.asked.zone.name());
+    if (result.eclipses.empty()) fmt::print("\nno eclipse of the sun is seen there then\n");
+    for (const SeenEclipse& seen : result.eclipses) {
+        const sun::SolarEclipse& eclipse = seen.eclipse;
+        fmt::print("\n{}  {}, magnitude {:.3f}, {:.1f} % of the disc covered",
+                   sun::to_string(result.asked.zone.local(eclipse.greatest.utc).wall.date),
+                   sun::name_of(eclipse.kind), eclipse.greatest.magnitude,
+                   100 * eclipse.greatest.obscuration);
+        if (eclipse.second)
+            fmt::print(", {} {}", hours_text(central_s(eclipse)), sun::name_of(eclipse.kind));
+        fmt::print("\n");
+        for (const auto& [name, moment] : contacts_of(eclipse))
+            print_moment(result, seen, name, moment);
+        if (!seen.greatest_seen)
+            fmt::print("  not seen          the sun stays behind terrain\n");
+        else if (seen.greatest_seen->utc != eclipse.greatest.utc)
+            fmt::print("  most that is seen {}  {:.1f} % of the disc covered\n",
+                       sun::to_iso(seen.greatest_seen->utc, result.asked.zone),
+                       100 * seen.greatest_seen->obscuration);
+    }
+    fmt::print("\n{}\n{}\n", kDefinition, result.definition);
+    if (result.terrain) fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
+}
+
+/// When the sun is up over a level horizon while an eclipse lasts.
+std::vector<sun::TimeSpan> up_during(const sun::SolarEclipse& eclipse, const geo::Geodetic& place,
+                                     const sun::RiseRule& rule) {
+    // A day's events need a stretch of hours to be found in.
+    const sun::TimeSpan around{eclipse.first.utc - 3600, eclipse.last.utc + 3600};
+    const sun::PositionTable table(around.begin, around.end);
+    return sun::day_events(table, around, sun::Observer(place), {rule}).sun_up;
+}
+
+/// The light of an eclipse over the terrain, as light::doubt_of() takes that of a day.
+light::LightDay light_of(const sun::SolarEclipse& eclipse, const light::DirectLight& direct) {
+    light::LightDay day;
+    day.span = eclipse.span();
+    day.lit = direct.lit_within(day.span);
+    for (const light::LitInterval& interval : day.lit)
+        day.not_known_s += interval.not_known_s();
+    return day;
+}
+
+/// @param direct  null without a DEM
+Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
+                 const geo::Geodetic& place, const light::DirectLight* direct) {
+    Result result;
+    result.place = place;
+    result.asked = asked;
+    result.terrain = direct != nullptr;
+    const sun::RiseRule rule = arguments.light.rule(place, arguments.place.eye_height_m);
+    result.definition = rule.description();
+    std::vector<light::LightDay> light;
+    for (const sun::SolarEclipse& eclipse : sun::solar_eclipses(
+             asked.zone.day(asked.first).begin, asked.zone.day(asked.last).end, place)) {
+        SeenEclipse seen{eclipse, up_during(eclipse, place, rule), {}, {}};
+        if (direct) {
+            light.push_back(light_of(eclipse, *direct));
+            for (const light::LitInterval& interval : light.back().lit)
+                seen.lit.push_back({interval.begin.utc, interval.end.utc});
+        }
+        const bool over_level = sun::greatest_within(eclipse, seen.up, place).has_value();
+        seen.greatest_seen = sun::greatest_within(eclipse, direct ? seen.lit : seen.up, place);
+        if (over_level || seen.greatest_seen) result.eclipses.push_back(std::move(seen));
+    }
+    if (direct) {
+        result.light_definition = direct->definition();
+        result.horizon_definition = direct->horizon().description();
+        result.doubt = light::doubt_of(*direct, light, direct->horizon().profile(kDoubtDirections),
+                                       arguments.terrain.highest_m);
+    }
+    return result;
+}
+
+Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
+                 const geo::PlaceText& at, const dem::Posts* posts) {
+    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
+    if (!posts) {
+        if (at.above_ground)
+            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+        return result_of(arguments, asked, at.place, nullptr);
+    }
+    const light::TerrainHorizon horizon(*posts, at.place,
+                                        arguments.terrain.horizon(at, eye_height_m));
+    const light::DirectLight direct(horizon, arguments.light.light(horizon.place(), eye_height_m));
+    return result_of(arguments, asked, horizon.place(), &direct);
+}
+
+void run(const Arguments& arguments) {
+    const OutputArguments& output = arguments.output;
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
+    std::optional<dem::Posts> posts;
+    const auto load = [&] {
+        if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
+        return posts ? &*posts : nullptr;
+    };
+    if (arguments.points.given()) {
+        arguments.days.parse({}, false);  // what is wrong with them is said before any work
+        const auto points = arguments.points.read(files, output);
+        const dem::Posts* const ground = load();
+        const auto forms = [&, ground](const geo::PlaceText& at) {
+            const auto result = std::make_shared<Result>(
+                result_at(arguments, arguments.days.parse(at.place, false), at, ground));
+            return PointForms{.rows = [=] { return rows_of(*result); },
+                              .json = [=] { return json_of(*result); },
+                              .doubt = result->doubt};
+        };
+        return deliver_points(arguments.points, points, {kColumns, {kDefinition}, forms}, output,
+                              file, sun::is_zone_by_place(arguments.days.zone));
+    }
+    const geo::PlaceText at = arguments.place.parse();
+    const DaysArguments::Days asked = arguments.days.parse(at.place);
+    const Result result = result_at(arguments, asked, at, load());
+    warn_of(result.doubt);
+    output.deliver({.drawing = {},
+                    .csv = [&] { return csv_of(result); },
+                    .json = [&] { return json_of(result); },
+                    .print = [&] { print_text(result); }},
+                   file);
+}
+
+}  // namespace
+
+void add_sun_eclipses(Verb sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    const Verb verb = sun_verb.add_verb(
+        "eclipses",
+        "Eclipses of the sun seen from a place: contacts, magnitude; with a DEM also "
+        "whether terrain hides them");
+    arguments->terrain.add_to(verb);
+    verb.option("DEM").required(false);
+    arguments->place.add_to(verb);
+    arguments->points.add_to(verb);
+    arguments->days.add_to(verb);
+    arguments->light.add_to(verb);
+    arguments->light.add_dip_to(verb);
+    arguments->output.add_to(verb, {"csv", "json"});
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli
