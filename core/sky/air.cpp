@@ -1,6 +1,61 @@
 #include "sky/air.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace relevo::sky {
+namespace {
+
+/// Vertical optical depth of the air at sea level.
+double rayleigh_depth(double um) {
+    const double per_um2 = 1 / (um * um);
+    return 0.008569 * per_um2 * per_um2 * (1 + per_um2 * (0.0113 + 0.00013 * per_um2));
+}
+
+/// Layers of constant lapse rate, by geopotential height.
+struct Layer {
+    double base_km, temperature_k, lapse_k_per_km;
+};
+constexpr std::array<Layer, 7> kLayers{
+    Layer{0, 288.15, -6.5}, Layer{11, 216.65, 0},    Layer{20, 216.65, 1}, Layer{32, 228.65, 2.8},
+    Layer{47, 270.65, 0},   Layer{51, 270.65, -2.8}, Layer{71, 214.65, -2}};
+
+/// Logarithms of the density relative to sea level, every kilometre up to the top of the air.
+constexpr int kDensities = 101;
+std::array<double, kDensities> log_densities() {
+    constexpr double kEarth_km = 6356.766, kGravity_k_per_km = 34.163195;  // g M / R
+    constexpr double kHighest_km = 84.852;  // 86 km; above, the temperature is taken as constant
+    std::array<double, kDensities> logs{};
+    for (int km = 0; km < kDensities; ++km) {
+        const double height = kEarth_km * km / (kEarth_km + km);  // geopotential
+        double log_pressure = 0, temperature = kLayers[0].temperature_k;
+        for (std::size_t i = 0; i < kLayers.size(); ++i) {
+            const auto& [base, at_base, lapse] = kLayers[i];
+            if (height <= base) break;
+            const double end = i + 1 < kLayers.size() ? kLayers[i + 1].base_km : kHighest_km;
+            const double rise = std::min(height, end) - base;
+            temperature = at_base + lapse * rise;
+            log_pressure -= kGravity_k_per_km *
+                            (lapse == 0 ? rise / at_base : std::log(temperature / at_base) / lapse);
+        }
+        if (height > kHighest_km)
+            log_pressure -= kGravity_k_per_km * (height - kHighest_km) / temperature;
+        logs[static_cast<std::size_t>(km)] =
+            log_pressure - std::log(temperature / kLayers[0].temperature_k);
+    }
+    return logs;
+}
+
+}  // namespace
+
+double rayleigh_density(double height_m) {
+    static const std::array<double, kDensities> kLogs = log_densities();
+    const double km = 1e-3 * height_m;
+    const auto i = std::min(static_cast<std::size_t>(std::max(km, 0.0)),
+                            static_cast<std::size_t>(kDensities - 2));
+    return std::exp(kLogs[i] + (km - static_cast<double>(i)) * (kLogs[i + 1] - kLogs[i]));
+}
 
 double aerosol_depth(const Air& air, double um) {
     return air.angstrom_beta * std::pow(um, -air.angstrom_alpha);
@@ -14,7 +69,7 @@ Extinction extinction(const Air& air) {
     for (int i = 0; i < kWavelengths; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double um = wavelength_um(i);
-        result.rayleigh[k] = 1.24062e-6 * std::pow(um, -4);
+        result.rayleigh[k] = rayleigh_depth(um) / kRayleighColumn_m;
         result.aerosol[k] = aerosol_depth(air, um) / kAerosolScaleHeight_m;
         result.ozone[k] = ozone_per_m3 * ozone_cross_section()[k];
     }

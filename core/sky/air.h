@@ -12,7 +12,7 @@ namespace relevo::sky {
 /// Radius of the spherical Earth, at sea level [m].
 inline constexpr double kEarthRadius_m = 6371000;
 
-/// Height above which the air scatters nothing worth following [m]: 4e-6 of its column is above.
+/// Height above which the air scatters nothing worth following [m]: 4e-7 of its column is above.
 inline constexpr double kTopOfAir_m = 100000;
 
 /// Parameters of the atmosphere. The defaults are a clean continental one.
@@ -35,9 +35,9 @@ struct Extinction {
     Spectrum aerosol{};   ///< at sea level; kAerosolAlbedo of it scatters
     Spectrum ozone{};     ///< at 25 km; absorption alone
 };
-/// Sources: Rayleigh scattering 1.24062e-6 wavelength_um^-4 and the ozone layer: E. Bruneton, A
-/// Qualitative and Quantitative Evaluation of 8 Clear Sky Models, 2016, and the code of it
-/// (Precomputed Atmospheric Scattering, 2017, demo.cc); cross section of ozone: spectrum.h; aerosol
+/// Sources: Rayleigh scattering: J. E. Hansen and L. D. Travis, Space Sci. Rev. 16 (1974), 527, eq.
+/// 2.30, as core/sun/daylight.h has it; the ozone layer: E. Bruneton, A Qualitative and
+/// Quantitative Evaluation of 8 Clear Sky Models, 2016; cross section of ozone: spectrum.h; aerosol
 /// optical depth: A. Angstrom, Techniques of Determining the Turbidity of the Atmosphere, Tellus
 /// 13(2), 1961, in an exponential atmosphere.
 Extinction extinction(const Air& air);
@@ -49,7 +49,8 @@ double white_extinction(const Air& air);
 /// @param um  wavelength [um]
 double aerosol_depth(const Air& air, double um);
 
-inline constexpr double kRayleighScaleHeight_m = 8000;
+/// Length of the air's column, were it all as dense as at sea level.
+inline constexpr double kRayleighColumn_m = 8452;
 inline constexpr double kAerosolScaleHeight_m = 1200;
 /// Single-scattering albedo of the aerosol.
 inline constexpr double kAerosolAlbedo = 0.93;
@@ -57,9 +58,9 @@ inline constexpr double kAerosolAlbedo = 0.93;
 inline constexpr double kAerosolAsymmetry = 0.8;
 
 /// Densities relative to the densest. @param height_m above sea level, not negative
-inline double rayleigh_density(double height_m) {
-    return std::exp(-height_m / kRayleighScaleHeight_m);
-}
+/// The air's: U.S. Standard Atmosphere, 1976. An exponential of one scale height has twice as much
+/// air from 40 to 80 km, which dusk is as much too bright by.
+double rayleigh_density(double height_m);
 inline double aerosol_density(double height_m) {
     return std::exp(-height_m / kAerosolScaleHeight_m);
 }

@@ -44,7 +44,7 @@ float agx_tone(in float light) {
 vec3 agx_tones(in vec3 colour) {
     vec3 mixed = agx_mixed * (exp2(agx_exposure) * max(colour, 0.0));
     vec3 tone = vec3(agx_tone(mixed.r), agx_tone(mixed.g), agx_tone(mixed.b));
-    tone = pow(tone, vec3(agx_contrast));
+    tone = pow(max(tone, 0.0), vec3(agx_contrast));
     tone = mix(vec3(dot(tone, vec3(0.2126, 0.7152, 0.0722))), tone, agx_saturation);
     tone = inverse(agx_mixed) * tone;
     return pow(clamp(tone, 0.0, 1.0), vec3(agx_display));

@@ -1,7 +1,7 @@
 //! provides  materials: natural ground by climate, height, date and shape
-//! hook      albedo
+//! hook      albedo, normal
 //! reads     the climate's tables, height [m], slope and aspect, ground coordinates [m]
-//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess
+//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess, normal
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
@@ -59,7 +59,7 @@ struct cover_Shares {
     float rock, forest, ice, snow;
 };
 
-/// What lies around a point and hangs on no climate.
+/// What is around a point, whatever the climate.
 struct cover_Shape {
     float steep;   // tangent of the slope, as if posts were 10 m apart
     float sunny;   // how far the slope leans towards the noon sun, -1..1

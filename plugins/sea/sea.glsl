@@ -30,7 +30,7 @@ const vec3 sea_scattered = vec3(0.004, 0.026, 0.036);     // albedo of deep wate
 const vec3 sea_sand = vec3(0.30, 0.28, 0.21);  // of a floor whose colour nobody knows, chosen by eye
 const float sea_tide_m = 2.0;  // added to its depth: charts count from low water
 // And so much for each metre between posts: shelves slope by a hundredth or less, so that a shallow post says nothing
-// of the water half-way to the next one, and bright plates with the grid's corners would tell of the grid.
+// of the water half-way to the next one, and bright plates would show the grid's corners.
 const float sea_shelf = 0.01;
 
 /// How much of a flood a point is: all of it up to the level, none from 0.3 m above on.
@@ -77,7 +77,7 @@ vec3 sea_map_albedo(in float depth_m) {
 /// @param normal  of the floor, unit
 /// @param steeper  factor on its slope
 float sea_shade(in vec3 normal, in vec3 up, in vec3 to_sun, in float steeper) {
-    float sine = max(dot(to_sun, up), sea_least_sine);
+    float sine = clamp(dot(to_sun, up), sea_least_sine, 1.0);
     vec3 level = to_sun - dot(to_sun, up) * up;
     vec3 light = level * (sqrt(1.0 - sine * sine) / max(length(level), 1e-4)) + sine * up;
     vec3 steep = normalize(normal + (1.0 / max(steeper, 1e-3) - 1.0) * dot(normal, up) * up);
@@ -263,7 +263,7 @@ void sea_on_material(inout Surface s) {
     sea_rough = waves.roughness;
     sea_normal = normalize(s.up - vec3(waves.slope, 0.0));
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m, waves.roughness);
-    // Who asks for the surface gets that of the water, not how far the drawn floor is off.
+    // The surface of this pixel is that of the water, not the drawn floor's.
     s.height_m = mix(s.height_m, height_m, water.share);
     s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
     s.normal = normalize(mix(s.normal, sea_normal, water.share));

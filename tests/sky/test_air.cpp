@@ -48,12 +48,27 @@ TEST(Air, OpticalDepthsAreThoseOfItsParameters) {
         // 1 Dobson unit is 10 um of pure gas at 0 degrees C and 1 atm, Loschmidt's 2.687e25 / m3.
         const double ozone = 350 * 1e-5 * 2.687e25 * ozone_cross_section()[k];
         EXPECT_NEAR(e.ozone[k] * column_m(ozone_density), ozone, 1e-4 * ozone);
-        EXPECT_NEAR(e.rayleigh[k] * column_m(rayleigh_density), 0.009925 * std::pow(um, -4), 1e-4);
+        // Hansen and Travis 1974: 0.0973 at 550 nm.
+        const double rayleigh = e.rayleigh[k] * column_m(rayleigh_density);
+        EXPECT_NEAR(rayleigh, 0.0973 * std::pow(um / 0.55, -4.08), 0.02 * rayleigh);
     }
 }
 
+/// U.S. Standard Atmosphere, 1976, table 1: 1.2250 kg/m3 at sea level.
+TEST(Air, HasTheDensitiesOfTheStandardAtmosphere) {
+    struct Row {
+        double km, kg_m3;
+    };
+    for (const Row& row : {Row{0, 1.2250}, Row{5, 0.73643}, Row{10, 0.41351}, Row{20, 0.088910},
+                           Row{30, 0.018410}, Row{40, 3.9957e-3}, Row{50, 1.0269e-3},
+                           Row{60, 3.0968e-4}, Row{70, 8.2829e-5}, Row{80, 1.8458e-5}})
+        EXPECT_NEAR(1.2250 * rayleigh_density(1e3 * row.km) / row.kg_m3, 1, 2e-3) << row.km;
+    EXPECT_NEAR(column_m(rayleigh_density), kRayleighColumn_m, 10);
+    EXPECT_LT(rayleigh_density(200000), 1e-8);
+}
+
 TEST(Air, LittleOfItsColumnIsAboveTheTop) {
-    EXPECT_LT(rayleigh_density(kTopOfAir_m), 4e-6);
+    EXPECT_LT(rayleigh_density(kTopOfAir_m), 1e-6);
     EXPECT_EQ(ozone_density(kTopOfAir_m), 0);
 }
 

@@ -343,7 +343,7 @@ TEST(MeasuredLight, IlluminanceOfDusk) {
         "Explanatory Supplement's\n",
         largest);
     EXPECT_GT(largest, 1);
-    EXPECT_LT(largest, 2.1);
+    EXPECT_LT(largest, 1.4);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(PathIntegral, FirstOrderIsTheQuadratureAlongTheLineOfSight) {
         const PathIntegral integral(medium, radians(sun_deg), 0);
         for (const Sight& sight : {Sight{0, radians(4), radians(20)},
                                    Sight{0, radians(30), radians(120)}, Sight{0, radians(90), 0}}) {
-            const Batches batches = integral.radiance(sight, {.paths = 100, .orders = 1});
+            const Batches batches = integral.radiance(sight, {.paths = 200, .orders = 1});
             for (const std::size_t k : {std::size_t{1}, std::size_t{12}})
                 expect_within(figure(batches, at(k)),
                               single_scattering(medium, radians(sun_deg), sight, k),
