@@ -32,7 +32,7 @@ vec3 block_on_side(in Surface s, in float down) {
     vec3 sun = sun_light(s.up, to_sun) * max(dot(s.normal, to_sun), 0.0);
     vec3 sky = block_sky * vec3(block_luminance(frame.sky_irradiance.rgb)) * (0.75 + 0.25 * dot(s.normal, s.up));
     // Near the floor less of the surroundings is seen.
-    float edge_m = max(0.7 * fwidth(s.above_ground_m), 1e-6);
+    float edge_m = 0.7 * length(frame.pixel_ray_dy.xyz) * max(s.distance_m, 1e-3);
     vec3 cut = mix(block_side, block_water, smoothstep(-edge_m, edge_m, s.above_ground_m - edge_m));
     return cut * (block_sun * sun + sky) * (1.0 - 0.35 * down * down);
 }
