@@ -4,6 +4,8 @@
 //! writes    factor, irradiance, radiance, transmittance
 //! source    extinction along the sun's ray exp(-tau / sin el): Bouguer and Lambert; light below: light.glsl
 
+//@ include lib/air.glsl
+
 uniform float clouds_visibility = 180.0; //@ range(0.1, 1000) unit(km) label("Visibility") description("How far the air before the clouds lets one see, at sea level: 3.912 / extinction")
 
 uniform sampler2D clouds_below;
@@ -157,13 +159,26 @@ void clouds_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmitta
 #if !HAS_outside
     vec4 seen = clouds_is_ground ? clouds_around(direction) : clouds_of_pixel(0.0);
     vec3 air = clouds_air(radiance);
-    radiance = clouds_laid(seen, direction, air, clouds_is_ground ? air : radiance);
+    // The sky beyond the decks keeps its light. Below the horizon is plain ground, which is lit as the air is.
+    float sine = dot(direction, frame.eye_up.xyz);
+    bool below = sine < frame.eye_up.w;
+    vec3 behind = clouds_is_ground || below ? air : radiance;
+    if (below) {
+        float distance_m = max(frame.eye_m.w, 0.0) / max(-sine, 1e-3);
+        transmittance *= clouds_air(vec3(1.0)) * (1.0 - clouds_hazed(sine, distance_m));
+    }
+    radiance = clouds_laid(seen, direction, air, behind);
     transmittance *= seen.z;
 #endif
 }
 
 void clouds_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
+#if HAS_haze
+    // Haze has put the light of a clear sky before the ground: below the decks there is less.
+    vec3 kept = min(exp(-air_between_eye_and(view, s.distance_m).depth), 1.0 - clouds_hazed(dot(view, frame.eye_up.xyz), s.distance_m));
+    radiance = mix(clouds_air(radiance), radiance, kept);
+#endif
     vec4 seen = clouds_of_pixel(1.0 / s.distance_m);
     if (seen.z < 1.0) radiance = clouds_laid(seen, view, background_radiance(view, false), radiance);
 #endif

@@ -31,7 +31,7 @@ uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") d
 uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness relative to the true one; 0: no stars")
 
 uniform bool sky_earth = true; //@ static label("Earth") description("On: plain ground below the horizon, lit as the terrain and seen through its air. Off: the colour of the horizon, as in the paper")
-uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
+uniform vec3 sky_earth_albedo = vec3(0.13, 0.14, 0.10); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
 uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Vertical optical depth of the air over the ground outside the DEM")
 
 uniform bool sky_slopes = true; //@ static label("Light by direction") description("On: a slope receives light from the part of the sky that it faces and from the ground around it. Off: the same light everywhere")
