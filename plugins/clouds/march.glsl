@@ -3,7 +3,7 @@
 
 //@ include lib/screen.glsl
 
-uniform int clouds_steps = 24; //@ range(4, 64) static label("Steps") description("Samples along a ray through a deck")
+uniform int clouds_steps = 24; //@ range(4, 64) label("Steps") description("Samples along a ray through a deck")
 
 uniform sampler2D clouds_depths; //@ from(core.ground_depth)
 uniform sampler2D clouds_near;

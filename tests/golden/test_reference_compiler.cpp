@@ -144,6 +144,12 @@ class Shipped {
         return result;
     }
 
+    /// With all others on, both need more than the 32 textures of a device: an error says so.
+    static bool too_many_textures(const Ids& ids, const std::string& id) {
+        return (id == "clouds" && contains(ids, std::string("drape"))) ||
+               (id == "drape" && contains(ids, std::string("clouds")));
+    }
+
     /// As many effects as may be on at once, in every way: with each the others that no word of it
     /// excludes.
     std::set<Ids> everything() const {
@@ -153,7 +159,7 @@ class Shipped {
             std::vector<std::string> taken = first.manifest.exclusive;
             for (const effect::Effect& effect : registry.effects()) {
                 const std::vector<std::string>& words = effect.manifest.exclusive;
-                if (contains(ids, effect.id()) ||
+                if (contains(ids, effect.id()) || too_many_textures(ids, effect.id()) ||
                     std::ranges::any_of(words, [&](const auto& w) { return contains(taken, w); }))
                     continue;
                 ids.push_back(effect.id());
