@@ -57,8 +57,7 @@ struct Discs {
 /// Sun and moon over a place, around a conjunction.
 class EclipseSky {
   public:
-    EclipseSky(Instant middle, const geo::Geodetic& place,
-               const EarthRotation& rotation = EarthRotation::built_in())
+    EclipseSky(Instant middle, const geo::Geodetic& place, const EarthRotation& rotation)
         : begin_(middle - kReach_s),
           observer_(place),
           sun_(begin_, middle + kReach_s, rotation),
@@ -219,16 +218,27 @@ std::vector<SolarEclipse> solar_eclipses(Instant from, Instant to, const geo::Ge
 
 std::optional<EclipseMoment> greatest_within(const SolarEclipse& eclipse,
                                              const std::vector<TimeSpan>& spans,
-                                             const geo::Geodetic& place) {
-    std::optional<EclipseMoment> best;
+                                             const geo::Geodetic& place,
+                                             const EarthRotation& rotation) {
+    // The magnitude grows until the greatest eclipse and falls after it.
+    std::optional<Instant> before, after;
     for (const TimeSpan& span : spans) {
         const Instant begin = std::max(span.begin, eclipse.first.utc);
         const Instant end = std::min(span.end, eclipse.last.utc);
         if (begin >= end) continue;
-        // The magnitude grows until the greatest eclipse and falls after it.
         const Instant nearest = std::clamp(eclipse.greatest.utc, begin, end);
-        const EclipseMoment here = EclipseSky(eclipse.greatest.utc, place)
-                                       .moment(nearest - (eclipse.greatest.utc - kReach_s));
+        if (nearest == eclipse.greatest.utc) return eclipse.greatest;
+        if (nearest < eclipse.greatest.utc)
+            before = std::max(before.value_or(nearest), nearest);
+        else
+            after = std::min(after.value_or(nearest), nearest);
+    }
+    if (!before && !after) return std::nullopt;
+    const EclipseSky sky(eclipse.greatest.utc, place, rotation);
+    std::optional<EclipseMoment> best;
+    for (const auto& utc : {before, after}) {
+        if (!utc) continue;
+        const EclipseMoment here = sky.moment(*utc - (eclipse.greatest.utc - kReach_s));
         if (!best || here.magnitude > best->magnitude) best = here;
     }
     return best;
