@@ -172,8 +172,9 @@ TEST(SunEclipsesVerb, SaysWhatTerrainHides) {
 
     // A void nearer by may hide first contact, but the wall stands behind it all the same.
     raster.nodata = -9999;
-    raster.value = [](int column, int, int) {
-        return column < 2 ? 1250.0 : column >= 20 && column < 30 ? -9999.0 : 900.0;
+    raster.value = [](int column, int row, int) {
+        const bool in_void = column >= 20 && column < 30 && row >= 30 && row < 70;
+        return column < 2 ? 1250.0 : in_void ? -9999.0 : 900.0;
     };
     const std::string holed = write_raster(scratch_dir("wall") / "holed.tif", raster);
     const std::vector<std::string> asked{"sun",         "eclipses", holed, "--at",
@@ -200,9 +201,10 @@ TEST(SunEclipsesVerb, SaysWhatTerrainHides) {
 TEST(SunEclipsesVerb, TakesTheDaysOfAnyZone) {
     const auto dates = [](const std::string& at, const std::string& zone, const std::string& from,
                           const std::string& to) {
+        const json answer =
+            json_of({"sun", "eclipses", "--at", at, "--tz", zone, "--from", from, "--to", to});
         std::string found;
-        for (const json& eclipse : json_of({"sun", "eclipses", "--at", at, "--tz", zone, "--from",
-                                            from, "--to", to})["eclipses"])
+        for (const json& eclipse : answer["eclipses"])
             found += eclipse["date"].get<std::string>() + " ";
         return found;
     };
