@@ -91,11 +91,13 @@ std::string not_known_text(const light::Doubt& doubt, const char* light) {
         light, sectors_text(doubt.holes));
 }
 
+double printed_azimuth_deg(double azimuth_rad) {
+    return std::fmod(std::round(degrees(azimuth_rad) * 100) / 100, 360.0);
+}
+
 void print_events(const std::vector<sun::Event>& events, const sun::Zone& zone) {
     for (const sun::Event& event : events) {
-        // 359.996 is 0.00 to two decimals.
-        const double azimuth_deg =
-            std::fmod(std::round(degrees(event.azimuth_rad) * 100) / 100, 360.0);
+        const double azimuth_deg = printed_azimuth_deg(event.azimuth_rad);
         fmt::print("{:<20}{}  azimuth {:6.2f} {:<4}", word_of(event.kind),
                    sun::to_iso(event.utc, zone), azimuth_deg, compass_point(azimuth_deg));
         if (event.kind == sun::EventKind::Transit || event.kind == sun::EventKind::LowerTransit)
@@ -109,7 +111,8 @@ void print_lit(const light::LightDay& day, const char* light, const sun::Zone& z
         fmt::print("{:<20}{} to {}  azimuth {:6.2f} to {:6.2f}{}\n", light,
                    lit.begin.midnight ? "midnight" : clock_text(lit.begin.utc, zone),
                    lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
-                   degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad),
+                   printed_azimuth_deg(lit.begin.azimuth_rad),
+                   printed_azimuth_deg(lit.end.azimuth_rad),
                    lit.not_known.empty() ? ""
                    : lit.all_unknown()   ? "  not known: a void of the DEM"
                                          : fmt::format("  not known {}: a void of the DEM",

@@ -31,6 +31,8 @@ std::string not_known_text(const light::LightDay& day);
 /// @param light  "direct sun"
 std::string not_known_text(const light::Doubt& doubt, const char* light);
 
+/// An azimuth in degrees as two decimals show it: 359.996 is 0.00.
+double printed_azimuth_deg(double azimuth_rad);
 /// A line for each event.
 void print_events(const std::vector<sun::Event>& events, const sun::Zone& zone);
 /// A line for each interval, and their sum.

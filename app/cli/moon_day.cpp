@@ -20,8 +20,8 @@ using sun::EventKind;
 constexpr EventKind kKinds[] = {EventKind::Moonrise, EventKind::Transit, EventKind::Moonset,
                                 EventKind::LowerTransit};
 constexpr const char* kPhases =
-    "phases: apparent geocentric ecliptic longitude of the moon 0, 90, 180, 270 degrees ahead of "
-    "the sun's; illuminated fraction in the middle of the local day";
+    "phases: the moon's apparent geocentric ecliptic longitude is 0, 90, 180 or 270 degrees more "
+    "than the sun's; illuminated fraction: at the middle of the local day";
 
 struct Arguments {
     TerrainArguments terrain;
@@ -32,7 +32,7 @@ struct Arguments {
     OutputArguments output;
 };
 
-/// Everything that the verb says, before it is text.
+/// All figures of the verb, before they are written as text, CSV or JSON.
 struct Result {
     geo::Geodetic place;
     DaysArguments::Days asked;
@@ -190,8 +190,8 @@ void print_days(const Result& result) {
     const bool lit = !result.light.empty();
     fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
                sun::to_string(result.asked.last), zone.name());
-    fmt::print("\n{:<12}{:<10}{:<10}{:<10}{:>10}{:>8}  {:<18}{}\n", "date", "moonrise", "transit",
-               "moonset", "up", "lit", "phase", lit ? "moonlight" : "");
+    fmt::print("\n{:<12}{:<10}{:<10}{:<10}{:>10}{:>8}  {:<24}{}\n", "date", "moonrise", "transit",
+               "moonset", "up", "disc", "phase", lit ? "moonlight" : "");
     for (std::size_t i = 0; i < result.days.size(); ++i) {
         const sun::MoonDay& day = result.days[i];
         fmt::print("{:<12}", sun::to_string(day.date));
@@ -236,7 +236,7 @@ Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
         result.light = direct.days(asked.first, asked.last, asked.zone);
         result.doubt = light::doubt_of(direct, result.light, horizon.profile(kDoubtDirections),
                                        arguments.terrain.highest_m);
-        result.light_definition = direct.definition();
+        result.light_definition = direct.definition() + "; at any phase, and by day too";
         result.horizon_definition = horizon.description();
     }
     const sun::RiseRule rule = arguments.light.rule(result.place, eye_height_m);

@@ -125,8 +125,13 @@ bool TimeArguments::given() const {
     return !time.empty();
 }
 
-void RefractionArguments::add_to(Verb verb) {
+void RefractionArguments::add_to(Verb verb, sun::Body body) {
     model.add_to(verb, scene::option("--refraction"));
+    if (body == sun::Body::Moon)
+        verb.option("--refraction")
+            .description(
+                "Refraction of the moon: standard (integrated ICAO atmosphere), saemundsson (as "
+                "JPL Horizons), none (standard)");
     verb.add_flag("--no-refraction", off, "Same as --refraction none");
 }
 

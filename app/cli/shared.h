@@ -67,7 +67,8 @@ struct RefractionArguments {
     OptionArguments model;
     bool off = false;
 
-    void add_to(Verb verb);
+    /// @param body  whose light it is, as --help says
+    void add_to(Verb verb, sun::Body body = sun::Body::Sun);
     bool given() const { return off || model.has("--refraction"); }
     /// As scene::Scene has it.
     std::string name() const;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/day_parts.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "cli/sun_points.h"
@@ -20,9 +21,13 @@ using nlohmann::ordered_json;
 
 constexpr const char* kDefinition =
     "contacts of circular limbs: the moon's radius is 0.2725076 of the Earth's equatorial one for "
-    "first and last contact, 0.2722810 for second and third; magnitude: fraction of the sun's "
-    "diameter that is covered, obscuration: of its area, limb darkening not counted; elevations "
-    "of the sun's centre without refraction";
+    "first and last contact, 0.2722810 for second and third; magnitude: from the sun's limb "
+    "nearest "
+    "the moon's centre to the moon's far limb, over the sun's diameter; obscuration: fraction of "
+    "the "
+    "sun's area that is covered, limb darkening not counted; elevations of the sun's centre "
+    "without "
+    "refraction";
 
 struct Arguments {
     TerrainArguments terrain;
@@ -36,9 +41,11 @@ struct Arguments {
 /// An eclipse, and when its sun is seen.
 struct SeenEclipse {
     sun::SolarEclipse eclipse;
-    std::vector<sun::TimeSpan> up;   ///< over the level horizon
-    std::vector<sun::TimeSpan> lit;  ///< over the terrain, where there is a DEM
+    std::vector<sun::TimeSpan> up;         ///< over the level horizon
+    std::vector<sun::TimeSpan> lit;        ///< over the terrain, where there is a DEM
+    std::vector<sun::TimeSpan> not_known;  ///< of lit, for voids of the DEM
     std::optional<sun::EclipseMoment> greatest_seen;
+    sun::Date date;  ///< local, of the greatest that is seen, or that only terrain hides
 };
 
 struct Result {
@@ -67,11 +74,19 @@ bool within(const std::vector<sun::TimeSpan>& spans, sun::Instant utc) {
         spans, [utc](const sun::TimeSpan& span) { return utc >= span.begin && utc <= span.end; });
 }
 
-/// "up", "down" or "behind terrain".
-const char* sun_is(const Result& result, const SeenEclipse& seen, sun::Instant utc) {
+/// "up", "down", "behind terrain" or, in a void of the DEM, "not known".
+std::string sun_is(const Result& result, const SeenEclipse& seen, sun::Instant utc) {
+    if (within(seen.not_known, utc)) return "not known";
     const bool lit = within(result.terrain ? seen.lit : seen.up, utc);
     if (lit) return "up";
     return result.terrain && within(seen.up, utc) ? "behind terrain" : "down";
+}
+
+double length_s(const std::vector<sun::TimeSpan>& spans) {
+    double sum_s = 0;
+    for (const sun::TimeSpan& span : spans)
+        sum_s += span.length_s();
+    return sum_s;
 }
 
 double central_s(const sun::SolarEclipse& eclipse) {
@@ -92,7 +107,7 @@ ordered_json moment_json(const Result& result, const SeenEclipse& seen,
 ordered_json eclipse_json(const Result& result, const SeenEclipse& seen) {
     ordered_json json;
     const sun::SolarEclipse& eclipse = seen.eclipse;
-    json["date"] = sun::to_string(result.asked.zone.local(eclipse.greatest.utc).wall.date);
+    json["date"] = sun::to_string(seen.date);
     json["kind"] = sun::name_of(eclipse.kind);
     json["magnitude"] = eclipse.greatest.magnitude;
     json["obscuration"] = eclipse.greatest.obscuration;
@@ -102,6 +117,10 @@ ordered_json eclipse_json(const Result& result, const SeenEclipse& seen) {
     json["greatest_seen"] =
         seen.greatest_seen ? moment_json(result, seen, *seen.greatest_seen) : ordered_json();
     if (result.terrain) json["direct_sun"] = spans_json(seen.lit);
+    if (!result.doubt.holes.empty()) {
+        json["not_known"] = spans_json(seen.not_known);
+        json["not_known_h"] = length_s(seen.not_known) / 3600;
+    }
     return json;
 }
 
@@ -128,7 +147,12 @@ constexpr const char* kColumns =
     "third_contact,last_contact,first_sun,greatest_sun,last_sun,greatest_elevation_deg,"
     "obscuration_seen";
 
-std::vector<std::string> rows_of(const Result& result) {
+/// @param holes  what is not known for holes
+std::string columns_of(bool holes) {
+    return std::string(kColumns) + (holes ? ",not_known,not_known_h" : "");
+}
+
+std::vector<std::string> rows_of(const Result& result, bool holes) {
     std::vector<std::string> rows;
     const sun::Zone& zone = result.asked.zone;
     for (const SeenEclipse& seen : result.eclipses) {
@@ -138,25 +162,35 @@ std::vector<std::string> rows_of(const Result& result) {
         };
         rows.push_back(fmt::format(
             "{},{},{:.4f},{:.4f},{:.1f},{},{},{},{},{},{},{},{},{:.4f},{}",
-            sun::to_string(zone.local(eclipse.greatest.utc).wall.date), sun::name_of(eclipse.kind),
-            eclipse.greatest.magnitude, eclipse.greatest.obscuration, central_s(eclipse),
-            time(eclipse.first), time(eclipse.second), time(eclipse.greatest), time(eclipse.third),
-            time(eclipse.last), sun_is(result, seen, eclipse.first.utc),
-            sun_is(result, seen, eclipse.greatest.utc), sun_is(result, seen, eclipse.last.utc),
-            degrees(eclipse.greatest.elevation_rad),
+            sun::to_string(seen.date), sun::name_of(eclipse.kind), eclipse.greatest.magnitude,
+            eclipse.greatest.obscuration, central_s(eclipse), time(eclipse.first),
+            time(eclipse.second), time(eclipse.greatest), time(eclipse.third), time(eclipse.last),
+            sun_is(result, seen, eclipse.first.utc), sun_is(result, seen, eclipse.greatest.utc),
+            sun_is(result, seen, eclipse.last.utc), degrees(eclipse.greatest.elevation_rad),
             seen.greatest_seen ? fmt::format("{:.4f}", seen.greatest_seen->obscuration) : ""));
+        if (holes)
+            rows.back() += fmt::format(",{},{:.4f}", spans_of(seen.not_known, zone),
+                                       length_s(seen.not_known) / 3600);
     }
     return rows;
 }
 
-std::string csv_of(const Result& result) {
-    std::vector<std::string> remarks{kDefinition, result.definition};
+/// What the figures mean.
+std::vector<std::string> definitions_of(const Result& result) {
+    std::vector<std::string> definitions{kDefinition, result.definition};
     if (result.terrain) {
-        remarks.push_back(result.light_definition);
-        remarks.push_back(result.horizon_definition);
+        definitions.push_back(result.light_definition);
+        definitions.push_back(result.horizon_definition);
     }
-    std::string text = csv_remarks(remarks) + kColumns + "\n";
-    for (const std::string& row : rows_of(result))
+    if (!result.doubt.holes.empty())
+        definitions.push_back(not_known_text(result.doubt, "direct sun"));
+    return definitions;
+}
+
+std::string csv_of(const Result& result) {
+    const bool holes = !result.doubt.holes.empty();
+    std::string text = csv_remarks(definitions_of(result)) + columns_of(holes) + "\n";
+    for (const std::string& row : rows_of(result, holes))
         text += row + "\n";
     return text;
 }
@@ -165,13 +199,14 @@ void print_moment(const Result& result, const SeenEclipse& seen, std::string nam
                   const sun::EclipseMoment& moment) {
     std::ranges::replace(name, '_', ' ');
     const std::string state = sun_is(result, seen, moment.utc);
-    const double azimuth_deg = degrees(moment.azimuth_rad);
+    const double azimuth_deg = printed_azimuth_deg(moment.azimuth_rad);
     fmt::print("  {:<18}{}  azimuth {:6.2f} {:<4} elevation {:6.2f}{}\n", name,
                sun::to_iso(moment.utc, result.asked.zone), azimuth_deg, compass_point(azimuth_deg),
                degrees(moment.elevation_rad),
-               state == "up"     ? ""
-               : state == "down" ? "  below the horizon"
-                                 : "  behind terrain");
+               state == "up"               ? ""
+               : state == "down"           ? "  below the horizon"
+               : state == "behind terrain" ? "  behind terrain"
+                                           : "  not known: a void of the DEM");
 }
 
 void print_text(const Result& result) {
@@ -183,9 +218,8 @@ void print_text(const Result& result) {
     for (const SeenEclipse& seen : result.eclipses) {
         const sun::SolarEclipse& eclipse = seen.eclipse;
         fmt::print("\n{}  {}, magnitude {:.3f}, {:.1f} % of the disc covered",
-                   sun::to_string(result.asked.zone.local(eclipse.greatest.utc).wall.date),
-                   sun::name_of(eclipse.kind), eclipse.greatest.magnitude,
-                   100 * eclipse.greatest.obscuration);
+                   sun::to_string(seen.date), sun::name_of(eclipse.kind),
+                   eclipse.greatest.magnitude, 100 * eclipse.greatest.obscuration);
         if (eclipse.second)
             fmt::print(", {} {}", hours_text(central_s(eclipse)), sun::name_of(eclipse.kind));
         fmt::print("\n");
@@ -194,12 +228,19 @@ void print_text(const Result& result) {
         if (!seen.greatest_seen)
             fmt::print("  not seen          the sun stays behind terrain\n");
         else if (seen.greatest_seen->utc != eclipse.greatest.utc)
-            fmt::print("  most that is seen {}  {:.1f} % of the disc covered\n",
+            fmt::print("  most that is seen {}  {:.1f} % of the disc covered{}\n",
                        sun::to_iso(seen.greatest_seen->utc, result.asked.zone),
-                       100 * seen.greatest_seen->obscuration);
+                       100 * seen.greatest_seen->obscuration,
+                       within(seen.not_known, seen.greatest_seen->utc)
+                           ? "  not known: a void of the DEM"
+                           : "");
+        if (!seen.not_known.empty())
+            fmt::print("  not known         {}: a void of the DEM\n",
+                       spans_text(seen.not_known, result.asked.zone));
     }
-    fmt::print("\n{}\n{}\n", kDefinition, result.definition);
-    if (result.terrain) fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
+    fmt::print("\n");
+    for (const std::string& definition : definitions_of(result))
+        fmt::print("{}\n", definition);
 }
 
 /// When the sun is up over a level horizon while an eclipse lasts.
@@ -221,6 +262,17 @@ light::LightDay light_of(const sun::SolarEclipse& eclipse, const light::DirectLi
     return day;
 }
 
+/// From the first day of a range to the last, but for days that the zone skipped.
+std::optional<sun::TimeSpan> span_of(const DaysArguments::Days& asked) {
+    sun::Date first = asked.first, last = asked.last;
+    while (first <= last && !asked.zone.find_day(first))
+        first = sun::add_days(first, 1);
+    while (first <= last && !asked.zone.find_day(last))
+        last = sun::add_days(last, -1);
+    if (last < first) return std::nullopt;
+    return sun::TimeSpan{asked.zone.day(first).begin, asked.zone.day(last).end};
+}
+
 /// @param direct  null without a DEM
 Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
                  const geo::Geodetic& place, const light::DirectLight* direct) {
@@ -231,17 +283,23 @@ Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
     const sun::RiseRule rule = arguments.light.rule(place, arguments.place.eye_height_m);
     result.definition = rule.description();
     std::vector<light::LightDay> light;
-    for (const sun::SolarEclipse& eclipse : sun::solar_eclipses(
-             asked.zone.day(asked.first).begin, asked.zone.day(asked.last).end, place)) {
-        SeenEclipse seen{eclipse, up_during(eclipse, place, rule), {}, {}};
-        if (direct) {
-            light.push_back(light_of(eclipse, *direct));
-            for (const light::LitInterval& interval : light.back().lit)
-                seen.lit.push_back({interval.begin.utc, interval.end.utc});
-        }
-        const bool over_level = sun::greatest_within(eclipse, seen.up, place).has_value();
-        seen.greatest_seen = sun::greatest_within(eclipse, direct ? seen.lit : seen.up, place);
-        if (over_level || seen.greatest_seen) result.eclipses.push_back(std::move(seen));
+    const auto span = span_of(asked);
+    std::vector<sun::SolarEclipse> eclipses;
+    if (span) eclipses = sun::solar_eclipses(span->begin, span->end, place);
+    for (const sun::SolarEclipse& eclipse : eclipses) {
+        SeenEclipse seen{eclipse, up_during(eclipse, place, rule), {}, {}, {}, {}};
+        const light::LightDay of_terrain = direct ? light_of(eclipse, *direct) : light::LightDay();
+        for (const light::LitInterval& interval : of_terrain.lit)
+            seen.lit.push_back({interval.begin.utc, interval.end.utc});
+        seen.not_known = not_known_of(of_terrain.lit);
+        const auto over_level = sun::greatest_within(eclipse, seen.up, place);
+        seen.greatest_seen = direct ? sun::greatest_within(eclipse, seen.lit, place) : over_level;
+        const auto& greatest = seen.greatest_seen ? seen.greatest_seen : over_level;
+        // One that lasts over midnight is listed for one of the two days.
+        if (!greatest || greatest->utc < span->begin || greatest->utc >= span->end) continue;
+        seen.date = asked.zone.local(greatest->utc).wall.date;
+        if (direct) light.push_back(of_terrain);
+        result.eclipses.push_back(std::move(seen));
     }
     if (direct) {
         result.light_definition = direct->definition();
@@ -282,12 +340,12 @@ void run(const Arguments& arguments) {
         const auto forms = [&, ground](const geo::PlaceText& at) {
             const auto result = std::make_shared<Result>(
                 result_at(arguments, arguments.days.parse(at.place, false), at, ground));
-            return PointForms{.rows = [=] { return rows_of(*result); },
+            return PointForms{.rows = [=] { return rows_of(*result, ground != nullptr); },
                               .json = [=] { return json_of(*result); },
                               .doubt = result->doubt};
         };
-        return deliver_points(arguments.points, points, {kColumns, {kDefinition}, forms}, output,
-                              file, sun::is_zone_by_place(arguments.days.zone));
+        return deliver_points(arguments.points, points, {columns_of(ground), {kDefinition}, forms},
+                              output, file, sun::is_zone_by_place(arguments.days.zone));
     }
     const geo::PlaceText at = arguments.place.parse();
     const DaysArguments::Days asked = arguments.days.parse(at.place);

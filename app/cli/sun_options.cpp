@@ -105,7 +105,7 @@ double step_s_of(const std::string& step, double least_s, double most_s) {
 }
 
 void LightArguments::add_to(Verb verb) {
-    refraction.add_to(verb);
+    refraction.add_to(verb, body);
     verb.add_option("--limb", limb,
                     fmt::format("Part of the {} disc that counts: upper, center, lower",
                                 body == sun::Body::Sun ? "solar" : "lunar"))

@@ -223,7 +223,7 @@ void add_position(Verb parent, sun::Body body) {
     arguments->points.add_to(verb);
     arguments->time.add_to(verb);
     verb.option("--time").required();
-    arguments->refraction.add_to(verb);
+    arguments->refraction.add_to(verb, body);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }

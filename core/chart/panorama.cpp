@@ -126,9 +126,9 @@ class Panorama {
     void make_foot() {
         foot_.push_back("T" + of_.horizon->description().substr(1) + ".");
         if (paths_)
-            foot_.push_back(fmt::format("{}: centre of the {}, {}. H{}.", moon() ? "Path" : "Paths",
+            foot_.push_back(fmt::format("{}: centre of the {}, {}.{}", moon() ? "Path" : "Paths",
                                         name_of(of_.body), of_.refraction.description(),
-                                        paths_->hours_text().substr(1)));
+                                        moon() ? "" : " H" + paths_->hours_text().substr(1) + "."));
         if (of_.day)
             foot_.push_back("D" + of_.light_definition.substr(1) + ". " + (moon() ? "M" : "S") +
                             of_.day->flat.definition.substr(1) + ".");

@@ -32,8 +32,12 @@ struct EclipseMoment {
     Instant utc;
     double azimuth_rad = 0;    ///< of the sun's centre, clockwise from true north
     double elevation_rad = 0;  ///< of the centre, true
-    double magnitude = 0;    ///< fraction of the sun's diameter that is covered; above 1: all of it
-    double obscuration = 0;  ///< fraction of its area that is covered
+    /// From the sun's limb nearest the moon's centre to the moon's far limb, over the sun's
+    /// diameter: in a partial phase the fraction of it that is covered, above 1 where all is. By
+    /// the moon's larger radius, so that near the limit of totality a partial eclipse may have a
+    /// magnitude just above 1.
+    double magnitude = 0;
+    double obscuration = 0;  ///< fraction of the sun's area that is covered
 };
 
 /// An eclipse as it is at a place, whether the sun is up or not.
@@ -62,8 +66,9 @@ std::vector<SolarEclipse> solar_eclipses(Instant from, Instant to, const geo::Ge
 
 /// The largest magnitude of an eclipse within spans of time, such as those in which the sun is up.
 /// Nothing if it is within none of them.
-std::optional<EclipseMoment> greatest_within(const SolarEclipse& eclipse,
-                                             const std::vector<TimeSpan>& spans,
-                                             const geo::Geodetic& place);
+/// @param rotation  that the eclipse was computed with
+std::optional<EclipseMoment> greatest_within(
+    const SolarEclipse& eclipse, const std::vector<TimeSpan>& spans, const geo::Geodetic& place,
+    const EarthRotation& rotation = EarthRotation::built_in());
 
 }  // namespace relevo::sun

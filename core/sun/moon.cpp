@@ -1,5 +1,6 @@
 #include "sun/moon.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -35,8 +36,13 @@ double phase_longitude_rad(const Epoch& epoch, const SolarEphemeris& axes) {
                   longitude_rad(axes.apparent_au(), epoch, axes));
 }
 
+/// Also outside of 1900-2100, by the month that moon_age_d() looks back.
 double phase_longitude_rad(Instant utc) {
-    const Epoch epoch = Epoch::at(utc);
+    constexpr double kUnixEpoch_jd = 2440587.5;
+    const double utc_s = utc - Instant{};
+    Epoch epoch;
+    epoch.tt_jd[0] = kUnixEpoch_jd;
+    epoch.tt_jd[1] = (utc_s + EarthRotation::built_in().at(utc).tt_minus_utc_s) / kDay_s;
     return phase_longitude_rad(epoch, SolarEphemeris(epoch.tt_jd[0], epoch.tt_jd[1]));
 }
 
@@ -108,6 +114,8 @@ std::string_view phase_name(double phase_longitude_rad) {
 }
 
 std::vector<PhaseTime> moon_phases(Instant from, Instant to) {
+    check_year(from);
+    check_year(to);
     std::vector<PhaseTime> found;
     constexpr double kQuarter_s = kSynodicMonth_d * kDay_s / 4;
     const double begin_rad = phase_longitude_rad(from);
@@ -125,6 +133,7 @@ std::vector<PhaseTime> moon_phases(Instant from, Instant to) {
 }
 
 double moon_age_d(Instant utc) {
+    check_year(utc);
     const double since_rad = phase_longitude_rad(utc);
     Instant last = when_phase_is(0, utc - since_rad / kPhaseRate_rad_s);
     if (last > utc) last = when_phase_is(0, last - kSynodicMonth_d * kDay_s);

@@ -37,8 +37,8 @@ enum class Phase { NewMoon, FirstQuarter, FullMoon, LastQuarter };
 /// "new moon", "first quarter", ...
 std::string_view name_of(Phase phase);
 
-/// The phase that a phase longitude is called by: the four of Phase within 6 degrees (half a day),
-/// "waxing crescent", "waxing gibbous", "waning gibbous" or "waning crescent" between.
+/// Name of the phase at a phase longitude: one of the four of Phase within 6 degrees (half a day)
+/// of it, otherwise "waxing crescent", "waxing gibbous", "waning gibbous" or "waning crescent".
 std::string_view phase_name(double phase_longitude_rad);
 
 struct PhaseTime {
@@ -54,6 +54,7 @@ struct PhaseTime {
 std::vector<PhaseTime> moon_phases(Instant from, Instant to);
 
 /// Days since the last new moon.
+/// @throws Error (BadInput) outside 1900-2100
 double moon_age_d(Instant utc);
 
 }  // namespace relevo::sun

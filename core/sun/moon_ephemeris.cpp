@@ -24,8 +24,8 @@ glm::dvec3 series_m(double tt_jd) {
     return glm::dvec3(km.X, km.Y, km.Z) * 1000.0;
 }
 
-/// What ELP/MPP02's mean longitude is more than that of ELP 2000-82B, which was fitted to DE200
-/// with its weaker tides: the constants DW1(0), DW1(1), DW1(2) for lunar laser ranging, and the
+/// Difference of the mean longitudes, ELP/MPP02 minus ELP 2000-82B, which was fitted to DE200 with
+/// its weaker tides: the constants DW1(0), DW1(1), DW1(2) for lunar laser ranging, and the
 /// difference of the two theories' secular acceleration, -6.8084 to -5.8883.
 double longitude_correction_rad(double centuries) {
     constexpr double kAcceleration = -6.8084 - -5.8883 - 0.03794;

@@ -43,7 +43,8 @@ class SkyPath {
     const TimeSpan& span_;
     const Observer& observer_;
     std::vector<Sample> samples_, extremes_;
-    std::vector<Sample> at_ends_;  // extremes that only a threshold between them and the end needs
+    std::vector<Sample>
+        at_ends_;  // extremes in the first or last step; crossings() takes them as it needs
 };
 
 }  // namespace relevo::sun

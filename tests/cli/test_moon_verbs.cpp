@@ -105,6 +105,15 @@ TEST(MoonHorizonVerb, DrawsThePathOfItsDay) {
                               "Moonrise and moonset: upper limb"})
         EXPECT_NE(svg.str().find(words), std::string::npos) << words;
     EXPECT_EQ(svg.str().find("of the sun"), std::string::npos);
+    // Its times are those of the clock, in summer too.
+    EXPECT_EQ(relevo({"moon", "horizon", dem(), "--at", kValley, "--date", "2026-07-25", "-o",
+                      picture, "--overwrite"})
+                  .status,
+              0);
+    std::stringstream summer;
+    summer << std::ifstream(picture).rdbuf();
+    EXPECT_NE(summer.str().find("path of the moon, 25 July 2026"), std::string::npos);
+    EXPECT_EQ(summer.str().find("summer time"), std::string::npos);
     EXPECT_EQ(relevo({"moon", "horizon", dem(), "--at", kValley, "--year", "2026", "-o", picture,
                       "--overwrite"})
                   .err,
@@ -159,6 +168,54 @@ TEST(SunEclipsesVerb, SaysWhatTerrainHides) {
     const Result csv =
         relevo({"sun", "eclipses", wall, "--at", "42.34,-3.70", "--year", "2026", "--csv"});
     EXPECT_NE(csv.out.find(",up,behind terrain,down,"), std::string::npos) << csv.out;
+    EXPECT_EQ(csv.out.find("not_known"), std::string::npos) << csv.out;
+
+    // A void nearer by may hide first contact, but the wall stands behind it all the same.
+    raster.nodata = -9999;
+    raster.value = [](int column, int row, int) {
+        const bool in_void = column >= 20 && column < 30 && row >= 30 && row < 70;
+        return column < 2 ? 1250.0 : in_void ? -9999.0 : 900.0;
+    };
+    const std::string holed = write_raster(scratch_dir("wall") / "holed.tif", raster);
+    const std::vector<std::string> asked{"sun",         "eclipses", holed, "--at",
+                                         "42.34,-3.70", "--year",   "2026"};
+    const json unsure = json_of(asked);
+    ASSERT_EQ(unsure["eclipses"].size(), 1U);
+    EXPECT_EQ(unsure["eclipses"][0]["first_contact"]["sun"], "not known");
+    EXPECT_EQ(unsure["eclipses"][0]["second_contact"]["sun"], "behind terrain");
+    EXPECT_EQ(unsure["eclipses"][0]["not_known"].size(), 1U);
+    EXPECT_GT(unsure["eclipses"][0]["not_known_h"], 0.1);
+    EXPECT_TRUE(unsure.contains("hole_sectors"));
+    const std::string said = relevo(asked).out;
+    EXPECT_NE(said.find("elevation  18.41  not known: a void of the DEM\n"), std::string::npos)
+        << said;
+    EXPECT_NE(said.find("\nnot known: direct sun through voids of the DEM"), std::string::npos)
+        << said;
+    std::vector<std::string> as_csv = asked;
+    as_csv.emplace_back("--csv");
+    const std::string rows = relevo(as_csv).out;
+    EXPECT_NE(rows.find(",obscuration_seen,not_known,not_known_h\n"), std::string::npos) << rows;
+    EXPECT_NE(rows.find(",not known,behind terrain,down,"), std::string::npos) << rows;
+}
+
+TEST(SunEclipsesVerb, TakesTheDaysOfAnyZone) {
+    const auto dates = [](const std::string& at, const std::string& zone, const std::string& from,
+                          const std::string& to) {
+        const json answer =
+            json_of({"sun", "eclipses", "--at", at, "--tz", zone, "--from", from, "--to", to});
+        std::string found;
+        for (const json& eclipse : answer["eclipses"])
+            found += eclipse["date"].get<std::string>() + " ";
+        return found;
+    };
+    // Samoa went from 29 to 31 December 2011.
+    EXPECT_EQ(dates("-13.8,-172.1", "Pacific/Apia", "2011-12-30", "2012-01-31"), "");
+    EXPECT_EQ(dates("-13.8,-172.1", "Pacific/Apia", "2011-12-30", "2011-12-30"), "");
+    EXPECT_EQ(dates("-13.8,-172.1", "Pacific/Apia", "2009-07-01", "2011-12-30"),
+              "2009-07-21 2010-07-11 ");
+    // By a clock that shows midnight 42 s after the greatest eclipse, of one of the two days.
+    EXPECT_EQ(dates("42.34,-3.70", "+05:30", "2026-08-12", "2026-08-12"), "2026-08-12 ");
+    EXPECT_EQ(dates("42.34,-3.70", "+05:30", "2026-08-13", "2026-08-13"), "");
 }
 
 }  // namespace

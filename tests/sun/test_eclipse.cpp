@@ -96,6 +96,17 @@ TEST(Eclipse, HasThoseOfNasasCatalogue) {
     }
 }
 
+TEST(Eclipse, HasAMagnitudeToTheMoonsFarLimb) {
+    // Annular on 2023-10-14 near its place of greatest eclipse: the moon's diameter is 0.952 of the
+    // sun's (NASA), and the discs are concentric but for some arc-seconds. So much is covered
+    // from the near limb of the sun to the far one of the moon: (1 + 0.952) / 2.
+    const auto eclipse = eclipse_on(instant_of("2023-10-14T17:59:29"), place_of(11.4, -83.1));
+    ASSERT_TRUE(eclipse);
+    EXPECT_EQ(eclipse->kind, EclipseKind::Annular);
+    EXPECT_NEAR(eclipse->greatest.magnitude, (1 + 0.952) / 2, 0.002);
+    EXPECT_NEAR(eclipse->greatest.obscuration, 0.952 * 0.952, 0.002);
+}
+
 TEST(Eclipse, AreAsManyAsAPlaceHas) {
     // Munich saw totality once in the 20th century, 1999-08-11. Those of 1990 to 2009 with the
     // sun up at the beginning or the end:
@@ -162,6 +173,15 @@ TEST(Eclipse, IsGreatestWhereTheSunIsUp) {
     EXPECT_EQ(late->utc, greatest + 1800);
     EXPECT_LT(late->magnitude, 0.7);
     EXPECT_FALSE(greatest_within(*eclipse, {{greatest + 9000, greatest + 90000}}, place));
+    // The nearer of two, by the rotation of the caller: with another the shadow comes elsewhere.
+    const auto nearer = greatest_within(
+        *eclipse, {{greatest - 6000, greatest - 900}, {greatest + 1800, greatest + 6000}}, place);
+    ASSERT_TRUE(nearer);
+    EXPECT_EQ(nearer->utc, greatest - 900);
+    const auto turned = greatest_within(*eclipse, {{greatest + 1800, greatest + 90000}}, place,
+                                        EarthRotation::fixed({69.2, 600, 0, 0}));
+    ASSERT_TRUE(turned);
+    EXPECT_GT(std::abs(turned->magnitude - late->magnitude), 0.001);
 }
 
 }  // namespace

@@ -150,6 +150,9 @@ TEST(Moon, IsLitFromTheSunsSide) {
 TEST(Moon, HasAnAgeAndAName) {
     EXPECT_NEAR(moon_age_d(instant_of("2026-03-19T01:24")), 0, 0.01);
     EXPECT_NEAR(moon_age_d(instant_of("2026-03-25T19:18")), 6.745, 0.01);
+    // At both ends; the new moon before 1900 was on 3 December 1899, 0:48 UT.
+    EXPECT_NEAR(moon_age_d(instant_of("1900-01-01T00:00")), 28.967, 0.01);
+    EXPECT_NEAR(moon_age_d(instant_of("2100-12-31T23:59")), 1.0, 0.01);
     EXPECT_EQ(phase_name(0), "new moon");
     EXPECT_EQ(phase_name(radians(359)), "new moon");
     EXPECT_EQ(phase_name(radians(40)), "waxing crescent");

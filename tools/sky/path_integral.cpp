@@ -157,8 +157,8 @@ double PathIntegral::brightness(double height_m, double sun_sine) const {
     return sky + brightness_[static_cast<std::size_t>(row * kSuns + column)];
 }
 
-/// What a path expects along its line: the light scattered in each cell and by the ground, at the
-/// wavelengths that count.
+/// The expected light along the next straight line of a path: scattered in each cell and by the
+/// ground, at the wavelengths in kDrawn.
 PathIntegral::Expected PathIntegral::expect(const Path& path, const Chord& chord) const {
     const auto& ends = chord.ends();
     const double sun_along = glm::dot(path.sun, path.direction),

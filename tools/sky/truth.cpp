@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -57,11 +60,19 @@ Batches with_error(const Run& run, double wanted) {
         const Figure y = figure(batches, luminance_of);
         if (round > 0 && y.standard_error <= wanted * y.value) break;
         const double more = std::pow(1.1 * y.standard_error / (wanted * y.value), 2);
-        effort.paths = std::clamp(static_cast<int>(more * effort.paths), 100, 30000);
+        effort.paths = static_cast<int>(std::clamp(more * effort.paths, 100.0, 30000.0));
         ++effort.seed;
         batches = run(effort);
     }
     return batches;
+}
+
+/// Says on standard output that a row misses the error that was wanted of it.
+void tell_if_missed(const Batches& batches, double wanted, const std::string& row) {
+    const Figure y = figure(batches, luminance_of);
+    if (y.standard_error > wanted * y.value)
+        fmt::print("{}: standard error {:.2f} %, wanted {:.0f} %\n", row,
+                   100 * y.standard_error / y.value, 100 * wanted);
 }
 
 /// Columns of light: luminance, colour, chromaticity, standard errors.
@@ -101,15 +112,18 @@ void make(const std::filesystem::path& folder) {
                     const Batches batches = with_error(
                         [&](const auto& effort) { return integral.radiance(sight, effort); },
                         wanted);
-                    rows << fmt::format("{},{},{},{},{},{}\n", place.air, place.height_m, sun_deg,
-                                        elevation_deg, azimuth_deg, columns_of(batches));
+                    const std::string row = fmt::format("{},{},{},{},{}", place.air, place.height_m,
+                                                        sun_deg, elevation_deg, azimuth_deg);
+                    rows << row << ',' << columns_of(batches) << '\n';
+                    tell_if_missed(batches, wanted, row);
                 }
             if (place.height_m <= 11000) {
                 const Batches batches = with_error(
                     [&](const auto& effort) { return integral.irradiance(place.height_m, effort); },
                     wanted);
-                level << fmt::format("{},{},{},{}\n", place.air, place.height_m, sun_deg,
-                                     columns_of(batches));
+                const std::string row = fmt::format("{},{},{}", place.air, place.height_m, sun_deg);
+                level << row << ',' << columns_of(batches) << '\n';
+                tell_if_missed(batches, wanted, row);
             }
             rows.flush();
             level.flush();
@@ -126,7 +140,7 @@ void make(const std::filesystem::path& folder) {
 int main(int argc, char** argv) {
     using namespace relevo;
     try {
-        if (argc != 2)
+        if (argc != 2 || std::string(argv[1]).starts_with('-'))
             bad_usage(
                 "usage: relevo_sky_truth FOLDER\nMakes sky_truth.csv and "
                 "sky_truth_level.csv in FOLDER, in about ten minutes.\n");

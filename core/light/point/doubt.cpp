@@ -17,6 +17,28 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The sun turns by 0.0042 degrees a second, faster only where it stands high.
 constexpr double kStep_s = 30;
 
+/// Where the sun or the moon stands on days that are in order: those that follow each other without
+/// a gap, as the days of a year do and eclipses do not, have one table.
+class Tables {
+  public:
+    Tables(const std::vector<LightDay>& days, sun::Body body) : days_(days), body_(body) {}
+
+    const sun::PositionTable& of(std::size_t day) {
+        if (!table_ || days_[day].span.end > table_->to()) {
+            std::size_t last = day;
+            while (last + 1 < days_.size() && days_[last + 1].span.begin <= days_[last].span.end)
+                ++last;
+            table_.emplace(days_[day].span.begin, days_[last].span.end, body_);
+        }
+        return *table_;
+    }
+
+  private:
+    const std::vector<LightDay>& days_;
+    sun::Body body_;
+    std::optional<sun::PositionTable> table_;
+};
+
 }  // namespace
 
 double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& given_m) {
@@ -44,10 +66,10 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
     const auto n = profile.size();
     std::vector<double> lowest_rad(n, kInfinity);
     std::vector<bool> holes(n, false);
-    if (days.empty()) return doubt;
-    const sun::PositionTable table(days.front().span.begin, days.back().span.end, light.body());
+    Tables tables(days, light.body());
     // Every direction from one moment to the next, at the lower of the two elevations.
-    const auto walk = [&](const sun::Instant& from, const sun::Instant& to, const auto& visit) {
+    const auto walk = [&](const sun::PositionTable& table, const sun::Instant& from,
+                          const sun::Instant& to, const auto& visit) {
         const double length_s = to - from;
         const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kStep_s)));
         double before_index = 0, before_rad = 0;
@@ -68,17 +90,20 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
             before_rad = elevation_rad;
         }
     };
-    for (const LightDay& day : days) {
+    for (std::size_t i = 0; i < days.size(); ++i) {
+        const LightDay& day = days[i];
         doubt.not_known_s += day.not_known_s;
         for (const LitInterval& lit : day.lit) {
             for (const LightEdge& edge : {lit.begin, lit.end})
                 if (edge.elevation_rad < (doubt.lowest_sun ? doubt.lowest_sun->elevation_rad : 0))
                     doubt.lowest_sun = edge;
-            walk(lit.begin.utc, lit.end.utc, [&](std::size_t k, double elevation_rad) {
-                lowest_rad[k] = std::min(lowest_rad[k], elevation_rad);
-            });
+            walk(tables.of(i), lit.begin.utc, lit.end.utc,
+                 [&](std::size_t k, double elevation_rad) {
+                     lowest_rad[k] = std::min(lowest_rad[k], elevation_rad);
+                 });
             for (const sun::TimeSpan& span : lit.not_known)
-                walk(span.begin, span.end, [&](std::size_t k, double) { holes[k] = true; });
+                walk(tables.of(i), span.begin, span.end,
+                     [&](std::size_t k, double) { holes[k] = true; });
         }
     }
     doubt.open = open_sectors(light.horizon(), profile, doubt.highest_m, lowest_rad);
