@@ -437,12 +437,12 @@ TEST(SelectionError, ACircleNamesItsSides) {
 TEST(SelectionError, TwoProvidersOfAnExclusiveHookAndTheMend) {
     const Plugins plugins;
     plugins.add("filmic", "", "void filmic_on_tonemap(inout vec3 c) {}");
-    plugins.add("neutral", "", "void neutral_on_tonemap(inout vec3 c) {}");
+    plugins.add("plain", "", "void plain_on_tonemap(inout vec3 c) {}");
     const Registry registry = plugins.load();
     EXPECT_EQ(error_of([&] { select(registry, {}, {}); }),
               "exit 3: effects: tonemap: expected one provider of this exclusive hook but "
-              "got filmic and neutral; add --disable filmic or --disable neutral");
-    EXPECT_THAT(ids(select(registry, {}, {.disable = {"neutral"}})), ElementsAre("filmic"));
+              "got filmic and plain; add --disable filmic or --disable plain");
+    EXPECT_THAT(ids(select(registry, {}, {.disable = {"plain"}})), ElementsAre("filmic"));
 }
 
 TEST(SelectionError, TwoProvidersOfAService) {

@@ -190,12 +190,21 @@ TEST(Audit, MeansOfManyPostsAreComparedWithTheirOwnPixels) {
 
 TEST(Audit, AtNightThereIsNothingToCompare) {
     scene::Scene scene = morning("shadows");
-    scene.time.at = "2026-06-21T05:00Z";
+    scene.time.at = "2026-06-15T05:00Z";  // new moon
     const ShadowAudit audit = audit_of(scene);
     EXPECT_EQ(audit.pixels(), 0);
     EXPECT_EQ(audit.text(),
               "audit: no pixel shows a post of the DEM that faces the sun; nothing to compare");
     EXPECT_NE(audit.json_text().find("\"agreement\":null"), std::string::npos);
+}
+
+TEST(Audit, ShadowsOfTheMoonAreThoseOfItsSweep) {
+    scene::Scene scene = morning("shadows");
+    scene.time.at = "2026-06-21T05:00Z";
+    const ShadowAudit audit = audit_of(scene);
+    fmt::print("[ accuracy ] moonlight: {}\n", audit.text());
+    EXPECT_GT(audit.pixels(), 1000);
+    EXPECT_GT(audit.agreement(), 0.995);
 }
 
 TEST(Audit, LeavesThePictureAsItIs) {
