@@ -200,9 +200,10 @@ TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
 TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture({"captur"}, 2, "captur: no such command; did you mean capture?");
     expect_no_picture({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
-    expect_no_picture({"sun"}, 2,
-                      "sun: no command given; there are position, day, horizon, carpet, when, "
-                      "shadow, hours, sky-view, horizons, along; each has --help");
+    expect_no_picture(
+        {"sun"}, 2,
+        "sun: no command given; there are position, day, horizon, eclipses, carpet, when, "
+        "shadow, hours, sky-view, horizons, along; each has --help");
     expect_no_picture({"plugins", "x"}, 2,
                       "x: no such command; there are list, info, new, check, test");
     expect_no_picture(
