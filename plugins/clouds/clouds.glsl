@@ -176,8 +176,11 @@ void clouds_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
 #if HAS_haze
     // Haze has put the light of a clear sky before the ground: below the decks there is less.
-    vec3 kept = min(exp(-air_between_eye_and(view, s.distance_m).depth), 1.0 - clouds_hazed(dot(view, frame.eye_up.xyz), s.distance_m));
-    radiance = mix(clouds_air(radiance), radiance, kept);
+    AirBetween air = air_between_eye_and(view, s.distance_m);
+    float haze = -log(1.0 - min(clouds_hazed(dot(view, frame.eye_up.xyz), s.distance_m), 0.999));
+    vec3 depth = air.depth + max(haze - air.depth.g, 0.0) * vec3(0.8, 1.0, 1.57);  // as haze, with its default colour
+    vec3 clear = min(air.radiance * (1.0 - exp(-depth)), radiance);
+    radiance += clouds_air(clear) - clear;
 #endif
     vec4 seen = clouds_of_pixel(1.0 / s.distance_m);
     if (seen.z < 1.0) radiance = clouds_laid(seen, view, background_radiance(view, false), radiance);
