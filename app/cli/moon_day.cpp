@@ -5,9 +5,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/day_parts.h"
+#include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "cli/sun_options.h"
-#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "sun/moon_events.h"
 
@@ -23,22 +22,13 @@ constexpr const char* kPhases =
     "phases: the moon's apparent geocentric ecliptic longitude is 0, 90, 180 or 270 degrees more "
     "than the sun's; illuminated fraction: at the middle of the local day";
 
-struct Arguments {
-    TerrainArguments terrain;
-    PlaceArguments place;
-    PointsArguments points;
-    DaysArguments days;
-    LightArguments light;
-    OutputArguments output;
-};
-
 /// All figures of the verb, before they are written as text, CSV or JSON.
 struct Result {
     geo::Geodetic place;
     DaysArguments::Days asked;
     std::string definition;
     std::vector<sun::MoonDay> days;
-    std::vector<light::LightDay> light;  ///< beside days, where there is a DEM
+    std::vector<light::LightDay> light;  ///< of the same days; empty without a DEM
     std::string light_definition, horizon_definition;
     light::Doubt doubt;
 };
@@ -220,11 +210,10 @@ void print_text(const Result& result) {
 }
 
 /// @param posts  null without a DEM
-Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
+Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
                  const geo::PlaceText& at, const dem::Posts* posts) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
-    if (!posts && at.above_ground)
-        bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+    if (!posts) check_has_ground(at);
     Result result;
     result.asked = asked;
     result.place = at.place;
@@ -245,56 +234,29 @@ Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
     return result;
 }
 
-void run(const Arguments& arguments) {
-    const OutputArguments& output = arguments.output;
-    FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    std::optional<dem::Posts> posts;
-    const auto load = [&] {
-        if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
-        return posts ? &*posts : nullptr;
+void run(const DayArguments& arguments) {
+    const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
+                           const dem::Posts* posts) {
+        const auto result = std::make_shared<const Result>(result_at(arguments, asked, at, posts));
+        return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
+                                  .json = [=] { return json_of(*result); },
+                                  .doubt = result->doubt},
+                        .csv = [=] { return csv_of(*result); },
+                        .print = [=] { print_text(*result); }};
     };
-    if (arguments.points.given()) {
-        arguments.days.parse({}, false);  // what is wrong with them is said before any work
-        const auto points = arguments.points.read(files, output);
-        const dem::Posts* const ground = load();
-        const auto forms = [&, ground](const geo::PlaceText& at) {
-            const auto result = std::make_shared<Result>(
-                result_at(arguments, arguments.days.parse(at.place, false), at, ground));
-            return PointForms{.rows = [=] { return rows_of(*result, ground != nullptr); },
-                              .json = [=] { return json_of(*result); },
-                              .doubt = result->doubt};
-        };
-        return deliver_points(arguments.points, points,
-                              {columns_of(ground, ground), {kPhases}, forms}, output, file,
-                              sun::is_zone_by_place(arguments.days.zone));
-    }
-    const geo::PlaceText at = arguments.place.parse();
-    const DaysArguments::Days asked = arguments.days.parse(at.place);
-    const Result result = result_at(arguments, asked, at, load());
-    warn_of(result.doubt);
-    output.deliver({.drawing = {},
-                    .csv = [&] { return csv_of(result); },
-                    .json = [&] { return json_of(result); },
-                    .print = [&] { print_text(result); }},
-                   file);
+    run_days(arguments, {.columns = [](bool terrain) { return columns_of(terrain, terrain); },
+                         .remarks = {kPhases},
+                         .forms = forms});
 }
 
 }  // namespace
 
 void add_moon_day(Verb moon_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<DayArguments>();
     arguments->light.body = sun::Body::Moon;
     const Verb verb = moon_verb.add_verb(
         "day", "Moonrise, transit, moonset, phase; with a DEM also direct moonlight");
-    arguments->terrain.add_to(verb);
-    verb.option("DEM").required(false);
-    arguments->place.add_to(verb);
-    arguments->points.add_to(verb);
-    arguments->days.add_to(verb);
-    arguments->light.add_to(verb);
-    arguments->light.add_dip_to(verb);
-    arguments->output.add_to(verb, {"csv", "json"});
+    arguments->add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }
 

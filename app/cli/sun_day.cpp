@@ -9,9 +9,8 @@
 #include "base/units.h"
 #include "chart/sun_path_diagram.h"
 #include "cli/day_parts.h"
+#include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "cli/sun_options.h"
-#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "sun/position.h"
 #include "sun/seasons.h"
@@ -32,22 +31,13 @@ constexpr const char* kTwilights =
     "level horizon; golden hour: centre from 4 below to 6 above; blue hour: from 6 to 4 below; all "
     "without refraction";
 
-struct Arguments {
-    TerrainArguments terrain;
-    PlaceArguments place;
-    PointsArguments points;
-    DaysArguments days;
-    LightArguments light;
-    OutputArguments output;
-};
-
-/// Everything that the verb says, before it is text.
+/// All figures of the verb, before they are written as text, CSV or JSON.
 struct Result {
     geo::Geodetic place;
     DaysArguments::Days asked;
     std::string definition;
     std::vector<sun::Day> days;
-    std::vector<light::LightDay> light;  ///< beside days, where there is a DEM
+    std::vector<light::LightDay> light;  ///< of the same days; empty without a DEM
     std::string light_definition, horizon_definition;
     light::Doubt doubt;
 };
@@ -255,9 +245,8 @@ void print_days(const Result& result) {
 }
 
 /// The days of a place without terrain.
-void add_days(const Arguments& arguments, const geo::PlaceText& at, Result& result) {
-    if (at.above_ground)
-        bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+void add_days(const DayArguments& arguments, const geo::PlaceText& at, Result& result) {
+    check_has_ground(at);
     result.place = at.place;
     sun::DayOptions options;
     options.rule = arguments.light.rule(at.place, arguments.place.eye_height_m);
@@ -267,7 +256,7 @@ void add_days(const Arguments& arguments, const geo::PlaceText& at, Result& resu
 }
 
 /// Those of a place with a horizon. @returns what its diagram is drawn from
-light::DirectLight add_lit_days(const Arguments& arguments, const light::TerrainHorizon& horizon,
+light::DirectLight add_lit_days(const DayArguments& arguments, const light::TerrainHorizon& horizon,
                                 Result& result) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     result.place = horizon.place();
@@ -283,87 +272,74 @@ light::DirectLight add_lit_days(const Arguments& arguments, const light::Terrain
     return direct;
 }
 
-void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
-    arguments.days.parse({}, false);  // what is wrong with them is said before any work
-    const auto points = arguments.points.read(files, arguments.output);
-    std::optional<dem::Posts> posts;
-    if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
-    const auto forms = [&](const geo::PlaceText& at) {
-        const auto result = std::make_shared<Result>();
-        result->asked = arguments.days.parse(at.place, false);
-        if (posts)
-            add_lit_days(
-                arguments,
-                light::TerrainHorizon(*posts, at.place,
-                                      arguments.terrain.horizon(at, arguments.place.eye_height_m)),
-                *result);
-        else
-            add_days(arguments, at, *result);
-        return PointForms{
-            .rows = [=, terrain = posts.has_value()] { return rows_of(*result, terrain); },
-            .json = [=] { return json_of(*result); },
-            .doubt = result->doubt};
-    };
-    deliver_points(arguments.points, points,
-                   {columns_of(posts.has_value(), posts.has_value()), {kTwilights}, forms},
-                   arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
+/// @param direct  null without a DEM
+chart::Drawing draw(const DayArguments& arguments, const Result& result,
+                    const light::DirectLight* direct) {
+    chart::SunPathDiagram diagram;
+    diagram.place = result.place;
+    diagram.place_name = arguments.place.name;
+    diagram.zone = result.asked.zone;
+    diagram.year = result.asked.first.year;
+    diagram.refraction = arguments.light.refraction.at(result.place);
+    if (result.asked.single) diagram.day = result.days.front();
+    if (direct) {
+        diagram.terrain = &direct->skyline();
+        diagram.terrain_definition = result.horizon_definition;
+        diagram.holes = direct->holes();
+        if (result.asked.single) diagram.light = result.light.front();
+        diagram.light_definition = result.light_definition;
+    }
+    return diagram.draw();
 }
 
-void run(const Arguments& arguments) {
-    const OutputArguments& output = arguments.output;
-    FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    if (arguments.points.given()) return run_points(arguments, files, file);
+/// A place's days, and what its diagram is drawn from.
+struct PlaceDays {
     Result result;
-    result.asked = arguments.days.parse(arguments.place.parse().place);
-    std::unique_ptr<TerrainView> view;
-    std::optional<light::DirectLight> direct;
-    if (arguments.terrain.given()) {
-        view = arguments.terrain.view_from(arguments.place);
-        direct.emplace(add_lit_days(arguments, view->horizon, result));
-        warn_of(result.doubt);
-    } else {
-        add_days(arguments, arguments.place.parse(), result);
-    }
+    std::optional<light::TerrainHorizon> horizon;
+    std::optional<light::DirectLight> direct;  // refers to horizon
+};
 
-    const auto draw = [&] {
-        chart::SunPathDiagram diagram;
-        diagram.place = result.place;
-        diagram.place_name = arguments.place.name;
-        diagram.zone = result.asked.zone;
-        diagram.year = result.asked.first.year;
-        diagram.refraction = arguments.light.refraction.at(result.place);
-        if (result.asked.single) diagram.day = result.days.front();
-        if (direct) {
-            diagram.terrain = &direct->skyline();
-            diagram.terrain_definition = result.horizon_definition;
-            diagram.holes = direct->holes();
-            if (result.asked.single) diagram.light = result.light.front();
-            diagram.light_definition = result.light_definition;
-        }
-        return diagram.draw();
-    };
-    output.deliver({.drawing = draw,
-                    .csv = [&] { return csv_of(result); },
-                    .json = [&] { return json_of(result); },
-                    .print = [&] { result.asked.single ? print_day(result) : print_days(result); }},
-                   file);
+DayForms forms_of(const DayArguments& arguments, const DaysArguments::Days& asked,
+                  const geo::PlaceText& at, const dem::Posts* posts) {
+    const auto days = std::make_shared<PlaceDays>();
+    Result& result = days->result;
+    result.asked = asked;
+    if (posts) {
+        days->horizon.emplace(*posts, at.place,
+                              arguments.terrain.horizon(at, arguments.place.eye_height_m));
+        days->direct.emplace(add_lit_days(arguments, *days->horizon, result));
+    } else {
+        add_days(arguments, at, result);
+    }
+    return {
+        .point = {.rows = [=] { return rows_of(days->result, posts != nullptr); },
+                  .json = [=] { return json_of(days->result); },
+                  .doubt = result.doubt},
+        .csv = [=] { return csv_of(days->result); },
+        .print =
+            [=] { days->result.asked.single ? print_day(days->result) : print_days(days->result); },
+        .drawing =
+            [=, &arguments] {
+                return draw(arguments, days->result, days->direct ? &*days->direct : nullptr);
+            }};
+}
+
+void run(const DayArguments& arguments) {
+    run_days(
+        arguments,
+        {.columns = [](bool terrain) { return columns_of(terrain, terrain); },
+         .remarks = {kTwilights},
+         .forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
+                      const dem::Posts* posts) { return forms_of(arguments, asked, at, posts); }});
 }
 
 }  // namespace
 
 void add_sun_day(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<DayArguments>();
     const Verb verb = sun_verb.add_verb(
         "day", "Sunrise, twilights, transit, day length; with a DEM also direct sun");
-    arguments->terrain.add_to(verb);
-    verb.option("DEM").required(false);
-    arguments->place.add_to(verb);
-    arguments->points.add_to(verb);
-    arguments->days.add_to(verb);
-    arguments->light.add_to(verb);
-    arguments->light.add_dip_to(verb);
-    arguments->output.add_to(verb, {"svg", "png", "csv", "json"});
+    arguments->add_to(verb, {"svg", "png", "csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }
 

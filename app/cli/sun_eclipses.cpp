@@ -7,9 +7,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/day_parts.h"
+#include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "cli/sun_options.h"
-#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "sun/eclipse.h"
 #include "sun/position_table.h"
@@ -28,15 +27,6 @@ constexpr const char* kDefinition =
     "sun's area that is covered, limb darkening not counted; elevations of the sun's centre "
     "without "
     "refraction";
-
-struct Arguments {
-    TerrainArguments terrain;
-    PlaceArguments place;
-    PointsArguments points;
-    DaysArguments days;
-    LightArguments light;
-    OutputArguments output;
-};
 
 /// An eclipse, and when its sun is seen.
 struct SeenEclipse {
@@ -262,19 +252,8 @@ light::LightDay light_of(const sun::SolarEclipse& eclipse, const light::DirectLi
     return day;
 }
 
-/// From the first day of a range to the last, but for days that the zone skipped.
-std::optional<sun::TimeSpan> span_of(const DaysArguments::Days& asked) {
-    sun::Date first = asked.first, last = asked.last;
-    while (first <= last && !asked.zone.find_day(first))
-        first = sun::add_days(first, 1);
-    while (first <= last && !asked.zone.find_day(last))
-        last = sun::add_days(last, -1);
-    if (last < first) return std::nullopt;
-    return sun::TimeSpan{asked.zone.day(first).begin, asked.zone.day(last).end};
-}
-
 /// @param direct  null without a DEM
-Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
+Result result_of(const DayArguments& arguments, const DaysArguments::Days& asked,
                  const geo::Geodetic& place, const light::DirectLight* direct) {
     Result result;
     result.place = place;
@@ -283,10 +262,10 @@ Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
     const sun::RiseRule rule = arguments.light.rule(place, arguments.place.eye_height_m);
     result.definition = rule.description();
     std::vector<light::LightDay> light;
-    const auto span = span_of(asked);
-    std::vector<sun::SolarEclipse> eclipses;
-    if (span) eclipses = sun::solar_eclipses(span->begin, span->end, place);
-    for (const sun::SolarEclipse& eclipse : eclipses) {
+    const std::vector<sun::LocalDay> days = sun::local_days(asked.first, asked.last, asked.zone);
+    if (days.empty()) return result;
+    const sun::Instant begin = days.front().span.begin, end = days.back().span.end;
+    for (const sun::SolarEclipse& eclipse : sun::solar_eclipses(begin, end, place)) {
         SeenEclipse seen{eclipse, up_during(eclipse, place, rule), {}, {}, {}, {}};
         const light::LightDay of_terrain = direct ? light_of(eclipse, *direct) : light::LightDay();
         for (const light::LitInterval& interval : of_terrain.lit)
@@ -296,7 +275,7 @@ Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
         seen.greatest_seen = direct ? sun::greatest_within(eclipse, seen.lit, place) : over_level;
         const auto& greatest = seen.greatest_seen ? seen.greatest_seen : over_level;
         // One that lasts over midnight is listed for one of the two days.
-        if (!greatest || greatest->utc < span->begin || greatest->utc >= span->end) continue;
+        if (!greatest || greatest->utc < begin || greatest->utc >= end) continue;
         seen.date = asked.zone.local(greatest->utc).wall.date;
         if (direct) light.push_back(of_terrain);
         result.eclipses.push_back(std::move(seen));
@@ -310,12 +289,11 @@ Result result_of(const Arguments& arguments, const DaysArguments::Days& asked,
     return result;
 }
 
-Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
+Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
                  const geo::PlaceText& at, const dem::Posts* posts) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     if (!posts) {
-        if (at.above_ground)
-            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+        check_has_ground(at);
         return result_of(arguments, asked, at.place, nullptr);
     }
     const light::TerrainHorizon horizon(*posts, at.place,
@@ -324,56 +302,28 @@ Result result_at(const Arguments& arguments, const DaysArguments::Days& asked,
     return result_of(arguments, asked, horizon.place(), &direct);
 }
 
-void run(const Arguments& arguments) {
-    const OutputArguments& output = arguments.output;
-    FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    std::optional<dem::Posts> posts;
-    const auto load = [&] {
-        if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
-        return posts ? &*posts : nullptr;
+void run(const DayArguments& arguments) {
+    const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
+                           const dem::Posts* posts) {
+        const auto result = std::make_shared<const Result>(result_at(arguments, asked, at, posts));
+        return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
+                                  .json = [=] { return json_of(*result); },
+                                  .doubt = result->doubt},
+                        .csv = [=] { return csv_of(*result); },
+                        .print = [=] { print_text(*result); }};
     };
-    if (arguments.points.given()) {
-        arguments.days.parse({}, false);  // what is wrong with them is said before any work
-        const auto points = arguments.points.read(files, output);
-        const dem::Posts* const ground = load();
-        const auto forms = [&, ground](const geo::PlaceText& at) {
-            const auto result = std::make_shared<Result>(
-                result_at(arguments, arguments.days.parse(at.place, false), at, ground));
-            return PointForms{.rows = [=] { return rows_of(*result, ground != nullptr); },
-                              .json = [=] { return json_of(*result); },
-                              .doubt = result->doubt};
-        };
-        return deliver_points(arguments.points, points, {columns_of(ground), {kDefinition}, forms},
-                              output, file, sun::is_zone_by_place(arguments.days.zone));
-    }
-    const geo::PlaceText at = arguments.place.parse();
-    const DaysArguments::Days asked = arguments.days.parse(at.place);
-    const Result result = result_at(arguments, asked, at, load());
-    warn_of(result.doubt);
-    output.deliver({.drawing = {},
-                    .csv = [&] { return csv_of(result); },
-                    .json = [&] { return json_of(result); },
-                    .print = [&] { print_text(result); }},
-                   file);
+    run_days(arguments, {.columns = columns_of, .remarks = {kDefinition}, .forms = forms});
 }
 
 }  // namespace
 
 void add_sun_eclipses(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<DayArguments>();
     const Verb verb = sun_verb.add_verb(
         "eclipses",
         "Eclipses of the sun seen from a place: contacts, magnitude; with a DEM also "
         "whether terrain hides them");
-    arguments->terrain.add_to(verb);
-    verb.option("DEM").required(false);
-    arguments->place.add_to(verb);
-    arguments->points.add_to(verb);
-    arguments->days.add_to(verb);
-    arguments->light.add_to(verb);
-    arguments->light.add_dip_to(verb);
-    arguments->output.add_to(verb, {"csv", "json"});
+    arguments->add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }
 

@@ -7,9 +7,8 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "chart/panorama.h"
+#include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "cli/sun_options.h"
-#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "output/horizon_files.h"
 
@@ -18,13 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
-    TerrainArguments terrain;
-    PlaceArguments place;
-    PointsArguments points;
-    DaysArguments days;
-    LightArguments light;
-    OutputArguments output;
+struct Arguments : DayArguments {
     std::string format;
     std::optional<double> step_deg;
 };

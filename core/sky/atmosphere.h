@@ -44,7 +44,7 @@ class Atmosphere {
     };
     /// Radiance without the sun's disc, up to the top of the air or to the ground, which is seen.
     Spectrum radiance(const View& view) const;
-    /// The same, up to a distance: what the air between adds to what is there.
+    /// The same for air up to a distance: the light that it adds to that of an object there.
     Spectrum scattered_in(const View& view, double distance_m) const;
     /// Share of light that passes along a ray up to a distance, or to the ray's end.
     Spectrum transmittance(double height_m, double sine, double distance_m) const;

@@ -99,24 +99,14 @@ Day day_events(Date date, const Zone& zone, const geo::Geodetic& place, const Da
 
 std::vector<Day> day_events(Date first, Date last, const Zone& zone, const geo::Geodetic& place,
                             const DayOptions& options, const EarthRotation& rotation) {
-    if (last < first)
-        bad_input(fmt::format("sun: from {} to {}: ends before it begins", to_string(first),
-                              to_string(last)));
-    const Observer observer(place);
+    const std::vector<LocalDay> local = local_days(first, last, zone);
     std::vector<Day> days;
-    for (Date date = first; date <= last; date = add_days(date, 1)) {
-        if (const auto span = zone.find_day(date)) {
-            days.emplace_back();
-            days.back().date = date;
-            days.back().span = *span;
-        }
-    }
-    if (days.empty()) return days;
-    const PositionTable table(days.front().span.begin, days.back().span.end, rotation);
-    for (Day& day : days) {
-        const Date date = day.date;
-        day = day_events(table, day.span, observer, options);
-        day.date = date;
+    if (local.empty()) return days;
+    const Observer observer(place);
+    const PositionTable table(local.front().span.begin, local.back().span.end, rotation);
+    for (const LocalDay& day : local) {
+        days.push_back(day_events(table, day.span, observer, options));
+        days.back().date = day.date;
     }
     return days;
 }

@@ -82,7 +82,7 @@ Day day_events(Date date, const Zone& zone, const geo::Geodetic& place,
                const DayOptions& options = {},
                const EarthRotation& rotation = EarthRotation::built_in());
 
-/// The events of all local days from `first` to `last`; days that the zone skipped are left out. A
+/// The events of all local days from `first` to `last`, without those that the zone skipped. A
 /// year takes 16 ms and the PositionTable's 25 (tests/bench/bench_sun.cpp).
 std::vector<Day> day_events(Date first, Date last, const Zone& zone, const geo::Geodetic& place,
                             const DayOptions& options = {},

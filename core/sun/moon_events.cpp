@@ -29,23 +29,17 @@ void add_events(const PositionTable& table, const Observer& observer, const Rise
 
 std::vector<MoonDay> moon_days(Date first, Date last, const Zone& zone, const geo::Geodetic& place,
                                const RiseRule& rule, const EarthRotation& rotation) {
-    if (last < first)
-        bad_input(fmt::format("moon: from {} to {}: ends before it begins", to_string(first),
-                              to_string(last)));
-    const Observer observer(place);
+    const std::vector<LocalDay> local = local_days(first, last, zone);
     std::vector<MoonDay> days;
-    for (Date date = first; date <= last; date = add_days(date, 1)) {
-        if (const auto span = zone.find_day(date)) {
-            days.emplace_back();
-            days.back().date = date;
-            days.back().span = *span;
-        }
-    }
-    if (days.empty()) return days;
-    const Instant begin = days.front().span.begin, end = days.back().span.end;
+    if (local.empty()) return days;
+    const Observer observer(place);
+    const Instant begin = local.front().span.begin, end = local.back().span.end;
     const PositionTable table(begin, end, rotation, Body::Moon);
     const std::vector<PhaseTime> phases = moon_phases(begin, end);
-    for (MoonDay& day : days) {
+    for (const LocalDay& of : local) {
+        MoonDay& day = days.emplace_back();
+        day.date = of.date;
+        day.span = of.span;
         add_events(table, observer, rule, day);
         for (const PhaseTime& phase : phases)
             if (phase.utc >= day.span.begin && phase.utc < day.span.end)

@@ -22,7 +22,7 @@ struct MoonDay {
     double phase_longitude_rad = 0;   ///< then
 };
 
-/// The days from `first` to `last`; days that the zone skipped are left out.
+/// The days from `first` to `last`, without those that the zone skipped.
 /// @param rule  of the moon
 /// @throws Error (BadInput) outside 1900-2100 and for an impossible place
 /// Accuracy: that of moon_position, 0.03 s of time; tests/sun/test_moon_events.cpp compares with

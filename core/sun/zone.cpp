@@ -365,4 +365,14 @@ bool is_wall_time(std::string_view text) {
     return !read_time(reader, whole).offset_s;
 }
 
+std::vector<LocalDay> local_days(Date first, Date last, const Zone& zone) {
+    if (last < first)
+        bad_input(fmt::format("sun: from {} to {}: ends before it begins", to_string(first),
+                              to_string(last)));
+    std::vector<LocalDay> days;
+    for (Date date = first; date <= last; date = add_days(date, 1))
+        if (const auto span = zone.find_day(date)) days.push_back({date, *span});
+    return days;
+}
+
 }  // namespace relevo::sun

@@ -127,4 +127,13 @@ ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone = s
 /// @throws Error (BadInput) for text that is not a time, as parse_time()
 bool is_wall_time(std::string_view text);
 
+/// A date, and when it is by a zone's clocks.
+struct LocalDay {
+    Date date;
+    TimeSpan span;
+};
+/// The days from `first` to `last`, without those that the zone skipped.
+/// @throws Error (BadInput) if `last` is before `first`
+std::vector<LocalDay> local_days(Date first, Date last, const Zone& zone);
+
 }  // namespace relevo::sun

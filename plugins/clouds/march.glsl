@@ -121,7 +121,7 @@ float clouds_share_of_way(in float way_m, in vec2 ends) {
     return ends.y > 1.5 * ends.x ? pow(share, 1.0 / 1.7) : share;
 }
 
-/// Follows a ray into a cloud by growing steps. @returns opacity, mean way of what is seen, end [m]
+/// Follows a ray through a cloud. Steps grow with the way. @returns x: opacity, y: mean distance of the visible part, z: end [m]
 vec3 clouds_dig(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float from_m, in float first_m,
                 in float limit_m) {
     float passes = 1.0, mean_m = 0.0, step_m = first_m;

@@ -84,7 +84,7 @@ float sea_shade(in vec3 normal, in vec3 up, in vec3 to_sun, in float steeper) {
     return mix(max(dot(steep, light), 0.0) / sine, 1.0, sea_shadeless);
 }
 
-/// How much steeper a floor is shaded than what is drawn of it. Slopes between points d apart fall with d^(H - 1),
+/// Factor on the slopes of a floor for its shading. Slopes between points d apart fall with d^(H - 1),
 /// and H is near 2/3: coarse posts and pixels would make an ocean's mountains plains.
 float sea_steeper(in float pixel_m) {
     float apart_m = max(pixel_m, 1.0 / frame.normal_texels_per_m);

@@ -257,7 +257,7 @@ vec3 sky_of_paper(in vec3 direction, in bool with_disc) {
     vec3 radiance = sky_brightness * sky_luminance() * colour +
                     sky_aureole * haze * sky_glow(cosine) * frame.eye_sun_light.rgb;
     if (!sky_earth) return radiance;
-    // The light of the horizon comes from far away; what is seen lower has nearer air before it.
+    // Light from the horizon comes through much air, from below the horizon through less.
     vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.2, -above));
     return with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
 }

@@ -75,7 +75,7 @@ TEST(MoonEvents, HaveTheirPhasesAndRefuseDatesBackwards) {
     EXPECT_EQ(test::error_of([] {
                   moon_days({2026, 3, 2}, {2026, 3, 1}, Zone(), {0, 0, 0});
               }),
-              "exit 3: moon: from 2026-03-02 to 2026-03-01: ends before it begins");
+              "exit 3: sun: from 2026-03-02 to 2026-03-01: ends before it begins");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class Hours:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn. Relevo chooses the members that are None or empty."""
+    """A view to draw. Members that are None or empty are left to Relevo."""
 
     when: Optional[When] = None
     size: Tuple[int, int] = (1280, 1024)  # [px]

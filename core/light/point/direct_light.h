@@ -75,7 +75,7 @@ class DirectLight {
     LightDay day(sun::Date date, const sun::Zone& zone,
                  const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
 
-    /// All local days from `first` to `last`; days that the zone skipped are left out.
+    /// All local days from `first` to `last`, without those that the zone skipped.
     std::vector<LightDay> days(
         sun::Date first, sun::Date last, const sun::Zone& zone,
         const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
