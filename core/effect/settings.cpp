@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "effect/selection.h"
+#include "effect/weather_preset.h"
 
 namespace relevo::effect {
 namespace {
@@ -17,6 +19,15 @@ std::string text_of(const Setting& setting, const shader::ParamStore& store) {
 
 std::string plugin_of(const std::string& address) {
     return address.substr(0, address.find('.'));
+}
+
+/// Whether the weather of the scene sets one of the parameters that must rise.
+bool is_of_weather(const std::vector<Preset>& presets, const Rising& rising) {
+    for (const Preset& preset : presets)
+        if (preset.name == kWeatherPreset)
+            for (const Setting& setting : preset.settings)
+                if (contains(rising.addresses, setting.address)) return true;
+    return false;
 }
 
 }  // namespace
@@ -55,7 +66,10 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
     for (const Effect* effect : selection.effects)
         for (const Rising& rising : effect->manifest.rising)
             if (const std::string fault = fault_of(rising, store); !fault.empty())
-                bad_input("effects: " + fault);
+                bad_input(fmt::format("effects: {}{}", fault,
+                                      is_of_weather(presets, rising)
+                                          ? "; the weather sets some of them, --set all"
+                                          : ""));
     return notices;
 }
 

@@ -20,8 +20,9 @@ std::string value_of(const shader::Param& param, double figure) {
     double value = param.type == shader::ParamType::Int ? std::round(figure) : figure;
     if (param.range && (value < param.range->min || value > param.range->max)) {
         value = std::clamp(value, param.range->min, param.range->max);
-        log::info(fmt::format("weather: {} is {:g}, the most that it can be; the report has {:g}",
-                              param.address, value, figure));
+        log::info(
+            fmt::format("weather: {} is {:g}, the nearest to the report's {:g} that it can be",
+                        param.address, value, figure));
     }
     return shader::format_value(param, {value});
 }
@@ -30,7 +31,7 @@ std::string value_of(const shader::Param& param, double figure) {
 
 Preset weather_preset(const Registry& registry, const weather::Facts& facts) {
     Preset preset;
-    preset.name = "weather";
+    preset.name = kWeatherPreset;
     for (const Effect& effect : registry.effects()) {
         const std::optional<WeatherSpec>& spec = effect.manifest.weather;
         if (!spec) continue;

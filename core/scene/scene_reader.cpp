@@ -112,7 +112,9 @@ void SceneReader::take_options(ObjectReader& object, std::string_view name, Scen
 }
 
 json::Value SceneReader::whole_report(json::Value value) const {
-    if (!value.text.empty() && value.text.find(' ') == std::string::npos)
+    std::error_code unknown;
+    if (!value.text.empty() &&
+        (value.text.find(' ') == std::string::npos || fs::exists(folder_ / value.text, unknown)))
         value.text = beside(value.text);
     return value;
 }

@@ -1,17 +1,33 @@
 #include "session/scene_weather.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "base/error.h"
 
 namespace relevo::session {
 namespace {
 
 double ground_in_the_middle_m(const LoadedDem& dem) {
     const double height_m = dem.height_m(dem.source->grid().center());
-    if (!std::isnan(height_m)) return height_m;
     const render::Ground ground = ground_of(dem);
-    return 0.5 * (ground.lowest_m + ground.highest_m);
+    const double ground_m =
+        std::isnan(height_m) ? 0.5 * (ground.lowest_m + ground.highest_m) : height_m;
+    // No station is on the floor of a sea.
+    return ground.sea_floor_share > 0 ? std::max(ground_m, 0.0) : ground_m;
+}
+
+/// The standard lapse makes a warm station on a mountain a furnace at sea level.
+void check_air(const SceneWeather& weather) {
+    if (!weather.air) return;
+    const double sea_level_c = weather.air->temperature_at_c(0);
+    if (sea_level_c < -90 || sea_level_c > 70)
+        bad_input(fmt::format(
+            "weather: {:.0f} C at a station {:.0f} m high is {:.0f} C at sea level; see "
+            "--station-height",
+            weather.air->temperature_c, weather.station_m, sea_level_c));
 }
 
 }  // namespace
@@ -35,6 +51,7 @@ std::optional<SceneWeather> weather_of(const scene::Scene& scene, const LoadedDe
     weather.station_m =
         weather.station_is_given ? *scene.station_height_m : ground_in_the_middle_m(dem);
     weather.air = weather::station_air(weather.report, weather.station_m);
+    check_air(weather);
     weather.facts = weather::facts_of(weather.report, weather.station_m);
     return weather;
 }

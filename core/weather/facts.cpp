@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 22> kFigures = {
 constexpr double kMiddle_m = 2000, kHigh_m = 6000;  // levels of clouds of middle latitudes (WMO)
 constexpr double kUnknownBase_m = 1000;             // of a layer whose base was not measured
 constexpr double kFogTop_m = 150, kShallowFogTop_m = 2;
-constexpr double kFogVisibility_m = 500;  // where a report of fog has none
+constexpr double kFogVisibility_m = 500;   // where a report of fog has none
+constexpr double kLeastVisibility_m = 50;  // 0000 is less
 
 enum Kind { Cumulus, Stratus, Cirrus };
 
@@ -76,7 +77,7 @@ void add_air(const Metar& report, double station_m, Facts& to) {
         if (now.snow)
             add("snow_visibility_m", *report.visibility_m);
         else
-            add("visibility_km", 1e-3 * *report.visibility_m);
+            add("visibility_km", 1e-3 * std::max(*report.visibility_m, kLeastVisibility_m));
     }
     if (now.rain || now.drizzle) {
         to.words.emplace_back("rainy");
@@ -151,6 +152,9 @@ Facts facts_of(const Metar& report, double station_m) {
         add("_kind", deck.kind);
         ++number;
     }
+    if (report.sky_is_clear)
+        for (; number < 3; ++number)
+            facts.figures.emplace_back(fmt::format("deck_{}_cover", number + 1), 0);
     return facts;
 }
 

@@ -37,9 +37,14 @@ bool is_station(std::string_view word) {
 
 /// From here on a report is a forecast or remarks.
 bool ends_the_report(std::string_view word) {
-    static constexpr std::array<std::string_view, 6> kEnds = {"RMK",   "NOSIG", "BECMG",
-                                                              "TEMPO", "TREND", "="};
-    return std::ranges::find(kEnds, word) != kEnds.end();
+    static constexpr std::array<std::string_view, 7> kEnds = {"RMK",   "NOSIG", "BECMG", "TEMPO",
+                                                              "TREND", "=",     "$"};
+    const auto time_after = [&](std::string_view prefix) {
+        return word.size() == 6 && word.starts_with(prefix) &&
+               std::ranges::all_of(word.substr(2), [](char c) { return c >= '0' && c <= '9'; });
+    };
+    return std::ranges::find(kEnds, word) != kEnds.end() || word.starts_with("PROB") ||
+           time_after("FM") || time_after("AT") || time_after("TL");
 }
 
 class Reader {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "weather/metar.h"
 
@@ -49,7 +50,12 @@ std::string report_of(const std::string& text_or_file) {
     const std::size_t first = reports.size() - std::min(reports.size(), kMostTried);
     for (std::size_t i = reports.size(); i-- > first;) {
         try {
-            return parse_metar(reports[i]).text;
+            const Metar report = parse_metar(reports[i]);
+            if (!fault.empty())
+                log::warning(fmt::format("{}; {}: the report of day {}, {:02}:{:02}, is used",
+                                         fault, text_or_file, report.day, report.hour,
+                                         report.minute));
+            return report.text;
         } catch (const Error& error) {
             if (fault.empty()) fault = error.what();
         }

@@ -94,12 +94,14 @@ bool wind(std::string_view group, Metar& to) {
     if (all_slashes(group)) return true;  // not measured
     std::optional<double> from_deg;
     if (!take(group, "VRB") && !take(group, "///")) {
-        if (group.size() < 5 || !all_digits(group.substr(0, 3))) return false;
-        from_deg = whole(group.substr(0, 3));
-        group.remove_prefix(3);
+        if (!group.starts_with("ABV")) {
+            if (group.size() < 5 || !all_digits(group.substr(0, 3))) return false;
+            from_deg = whole(group.substr(0, 3));
+            group.remove_prefix(3);
+        }
     }
     if (group == "//") return true;
-    take(group, "P");  // more than
+    if (!take(group, "ABV")) take(group, "P");  // more than
     const std::string_view speed = take_digits(group);
     std::string_view gust;
     if (take(group, "G")) {
@@ -154,16 +156,18 @@ bool present_weather(std::string_view group, Metar& to) {
     if (take(group, "+")) intensity = PresentWeather::Intensity::Heavy;
     const bool nearby = take(group, "VC");
     if (group.empty() || group.size() % 2 != 0 || group.size() > 8) return false;
-    bool shallow = false, falls = false;
+    bool shallow = false, falls = false, blown = false;
     for (; !group.empty(); group.remove_prefix(2)) {
         const std::string_view word = group.substr(0, 2);
         // Descriptors and phenomena of WMO code table 4678.
-        static constexpr std::array<std::string_view, 18> kOthers = {
-            "BC", "PR", "DR", "BL", "SH", "FZ", "FU", "VA", "DU",
-            "SA", "HZ", "PY", "PO", "SQ", "FC", "SS", "DS", "UP"};
+        static constexpr std::array<std::string_view, 16> kOthers = {
+            "BC", "PR", "SH", "FZ", "FU", "VA", "DU", "SA",
+            "HZ", "PY", "PO", "SQ", "FC", "SS", "DS", "UP"};
         falls = falls || word == "RA" || word == "DZ" || word == "SN";
         if (word == "MI")
             shallow = true;
+        else if (word == "BL" || word == "DR")
+            blown = true;
         else if (word == "TS")
             found.thunder = true;
         else if (word == "RA")
@@ -181,7 +185,7 @@ bool present_weather(std::string_view group, Metar& to) {
         else if (std::ranges::find(kOthers, word) == kOthers.end())
             return false;
     }
-    if (nearby) return true;  // not at the station
+    if (nearby || blown) return true;  // not at the station; raised from the ground
     PresentWeather& all = to.present;
     const bool first = !all.rain && !all.drizzle && !all.snow;
     if (falls && (first || intensity > all.intensity)) all.intensity = intensity;
@@ -199,7 +203,8 @@ bool present_weather(std::string_view group, Metar& to) {
 bool clouds(std::string_view group, Metar& to) {
     static constexpr std::array<std::string_view, 4> kClear = {"NSC", "NCD", "SKC", "CLR"};
     if (std::ranges::find(kClear, group) != kClear.end()) return to.sky_is_clear = true;
-    if (group.starts_with("//////")) return true;  // seen by no instrument
+    // Amount, and perhaps height, seen by no instrument: //////, ///015, //////CB.
+    if (group.size() >= 6 && group.starts_with("///")) return true;
     if (take(group, "VV")) {
         if (group == "///") return true;
         if (group.size() != 3 || !all_digits(group)) return false;
@@ -268,9 +273,16 @@ bool skipped(std::string_view group) {
     const auto digits = [&](std::size_t at, std::size_t count) {
         return group.size() >= at + count && all_digits(group.substr(at, count));
     };
-    // Runway: R24/1200FT, R14L/M0600V1200U, R88/290195. Sector of the wind: 210V270. Least
-    // visibility by direction: 1500SW. Snow on the runway, clearing, colour states.
+    // Runway: R24/1200FT, R14L/M0600V1200U, R88/290195, 88290195, and R24 after WS. Sector of the
+    // wind: 210V270. Least visibility by direction: 1500SW. Pressure at the station: QFE742. Snow
+    // on the runway, clearing, colour states.
     if (group.size() >= 4 && group[0] == 'R' && digits(1, 2) && group.find('/') <= 4) return true;
+    if (group.size() >= 3 && group.size() <= 4 && group[0] == 'R' && digits(1, 2) &&
+        group.substr(3).find_first_not_of("LCR") == std::string_view::npos)
+        return true;
+    if ((group.size() == 8 && digits(0, 8)) || group.starts_with("QFE") ||
+        group.starts_with("BLACK"))
+        return true;
     if (group.size() == 7 && digits(0, 3) && group[3] == 'V' && digits(4, 3)) return true;
     if (group.size() >= 5 && group.size() <= 6 && digits(0, 4) &&
         group.substr(4).find_first_not_of("NESW") == std::string_view::npos)
@@ -278,9 +290,9 @@ bool skipped(std::string_view group) {
     if (group.size() >= 4 && group.starts_with("RE")) return true;
     if (group.size() >= 3 && group[0] == 'W' && (digits(1, 2) || group.starts_with("W//")))
         return true;
-    static constexpr std::array<std::string_view, 14> kWords = {
+    static constexpr std::array<std::string_view, 13> kWords = {
         "WS",  "ALL", "RWY",  "SNOCLO", "BLU", "BLU+", "WHT",
-        "GRN", "YLO", "YLO1", "YLO2",   "AMB", "RED",  "BLACK"};
+        "GRN", "YLO", "YLO1", "YLO2",   "AMB", "RED"};
     return std::ranges::find(kWords, group) != kWords.end();
 }
 

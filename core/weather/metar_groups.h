@@ -21,7 +21,7 @@ bool time(std::string_view group, Metar& to);
 /// "24009KT", "VRB02KT", "24009G21MPS", "/////KT" @throws Impossible
 bool wind(std::string_view group, Metar& to);
 /// "9999", "0800", "4000NDV", "CAVOK", "10SM", "P6SM", "M1/4SM", "1/2SM"; not the whole miles of
-/// "1 1/2SM", which miles_with() joins. @throws Impossible
+/// "1 1/2SM", which is_whole_miles() tells. @throws Impossible
 bool visibility(std::string_view group, Metar& to);
 /// Whole miles that another group goes on from: "1" before "1/2SM".
 bool is_whole_miles(std::string_view group, std::string_view next);

@@ -4,7 +4,7 @@
 //! writes    factor, irradiance, radiance, transmittance
 //! source    extinction along the sun's ray exp(-tau / sin el): Bouguer and Lambert; light below: light.glsl
 
-//@ include lib/air.glsl
+//@ include lib/air_pixel.glsl
 
 uniform float clouds_visibility = 180.0; //@ range(0.1, 1000) unit(km) label("Visibility") description("How far the air before the clouds lets one see, at sea level: 3.912 / extinction")
 
@@ -94,9 +94,9 @@ void clouds_on_ambient(in Surface s, inout vec3 irradiance) {
 /// Share of the air's light before a cloud.
 float clouds_hazed(in float sine, in float distance_m) {
     float a = max(frame.eye_m.w, 0.0) / 2500.0;
-    float b = a + distance_m * (sine + 0.5 * distance_m / clouds_earth_m) / 2500.0;
-    float mean = abs(b - a) < 0.1 ? exp(-0.5 * (a + b)) : (exp(-a) - exp(-max(b, 0.0))) / (max(b, 0.0) - a + 1e-4);
-    return 1.0 - exp(-3.912e-3 / clouds_visibility * distance_m * max(mean, 0.0));
+    float b = max(a + distance_m * (sine + 0.5 * distance_m / clouds_earth_m) / 2500.0, 0.0);
+    float mean = abs(b - a) < 0.1 ? exp(-0.5 * (a + b)) : (exp(-a) - exp(-b)) / (b - a);
+    return 1.0 - exp(-3.912e-3 / clouds_visibility * distance_m * mean);
 }
 
 /// The sun's light at a height over the eye's place: the horizon lies lower there.
@@ -152,7 +152,9 @@ vec3 clouds_air(in vec3 clear) {
     float share = ((below.x + below.z) * light.x + below.y * light.y) / max(light.x + light.y, 1e-12);
     vec3 dimmed = share * mix(vec3(dot(clear, luminance)), clear, 0.15 + 0.85 * below.z);
     clouds_Deck last = clouds_deck(clouds_count() - 1);
-    return mix(dimmed, clear, smoothstep(last.base_m, last.top_m, frame.eye_m.w));
+    float above = smoothstep(last.base_m, last.top_m, frame.eye_m.w);
+    air_lit = mix(share, 1.0, above);
+    return mix(dimmed, clear, above);
 }
 
 void clouds_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance) {
@@ -174,14 +176,8 @@ void clouds_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmitta
 
 void clouds_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
-#if HAS_haze
     // Haze has put the light of a clear sky before the ground: below the decks there is less.
-    AirBetween air = air_between_eye_and(view, s.distance_m);
-    float haze = -log(1.0 - min(clouds_hazed(dot(view, frame.eye_up.xyz), s.distance_m), 0.999));
-    vec3 depth = air.depth + max(haze - air.depth.g, 0.0) * vec3(0.8, 1.0, 1.57);  // as haze, with its default colour
-    vec3 clear = min(air.radiance * (1.0 - exp(-depth)), radiance);
-    radiance += clouds_air(clear) - clear;
-#endif
+    radiance += clouds_air(air_scattered) - air_scattered;
     vec4 seen = clouds_of_pixel(1.0 / s.distance_m);
     if (seen.z < 1.0) radiance = clouds_laid(seen, view, background_radiance(view, false), radiance);
 #endif

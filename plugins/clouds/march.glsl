@@ -1,6 +1,8 @@
 //! provides  the decks along a ray: how bright, how opaque, how far
 //! reads     depth of the ground; the sun's direction
 
+//@ include lib/eye_light.glsl
+//@ include lib/pixel.glsl
 //@ include lib/screen.glsl
 
 uniform int clouds_steps = 24; //@ range(4, 64) label("Steps") description("Samples along a ray through a deck")
@@ -8,7 +10,7 @@ uniform int clouds_steps = 24; //@ range(4, 64) label("Steps") description("Samp
 uniform sampler2D clouds_depths; //@ from(core.ground_depth)
 uniform sampler2D clouds_near;
 
-const float clouds_far_m = 300000.0;
+const float clouds_far_m = 500000.0;
 
 /// Where a ray is inside of a deck, from x to y along it [m]; empty if y <= x.
 /// @param height_m  of the eye
@@ -157,7 +159,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     ends.y = min(ends.y, min(limit_m, clouds_far_m));
     if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
     float way = 0.0, last_m = ends.x, part = 1.0 / float(clouds_steps);
-    vec3 to_sun = frame.eye_sun.xyz;
+    vec3 to_sun = light_at_eye_direction();
     float shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
                                      dot(to_sun, up_at(ends.x * direction)));
     // Each turn finds the next cloud, follows the ray into it and lights it once: light is dear, and a
@@ -202,10 +204,9 @@ vec4 clouds_seen(in vec3 direction, in float limit_m, in float jitter) {
     return seen;
 }
 
-/// Where in a step a pixel samples, 0..1, even over its neighbours. source: J. Jimenez, Next Generation Post
-/// Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
+/// Where in a step a pixel samples, 0..1, even over its neighbours.
 float clouds_jitter(in vec2 at_px) {
-    return 0.25 + 0.5 * fract(52.9829189 * fract(dot(floor(at_px), vec2(0.06711056, 0.00583715))));
+    return 0.25 + 0.5 * pixel_noise(floor(at_px));
 }
 
 /// Nearness of the ground that every second pixel shows [1/m]; 0 in the sky.

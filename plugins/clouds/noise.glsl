@@ -2,23 +2,7 @@
 //! source    cellular noise: S. Worley, A Cellular Texture Basis Function, SIGGRAPH 1996; fBm: K. Perlin,
 //!           An Image Synthesizer, SIGGRAPH 1985
 
-/// A number of a cell of a grid, 0..1.
-float clouds_random(in ivec2 cell, in uint stream) {
-    uint h = uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ stream * 0xcb1ab31fu;
-    h = (h ^ (h >> 15)) * 0x2c1b3c6du;
-    h = (h ^ (h >> 12)) * 0x297a2d39u;
-    return float((h ^ (h >> 15)) >> 8) / 16777216.0;
-}
-
-/// Value noise: smooth between random numbers at whole places, 0..1.
-float clouds_smooth(in vec2 at, in uint stream) {
-    vec2 whole = floor(at), part = at - whole;
-    ivec2 cell = ivec2(whole);
-    vec2 w = part * part * part * (part * (part * 6.0 - 15.0) + 10.0);
-    float below = mix(clouds_random(cell, stream), clouds_random(cell + ivec2(1, 0), stream), w.x);
-    float above = mix(clouds_random(cell + ivec2(0, 1), stream), clouds_random(cell + ivec2(1, 1), stream), w.x);
-    return mix(below, above, w.y);
-}
+//@ include lib/noise.glsl
 
 const mat2 clouds_turn = mat2(0.8, 0.6, -0.6, 0.8);  // from octave to octave, so that no grid shows
 
@@ -27,7 +11,7 @@ float clouds_octaves(in vec2 at, in int count, in uint stream) {
     float sum = 0.0, height = 0.5, all = 0.0;
     for (int i = 0; i < 6; ++i) {
         if (i >= count) break;
-        sum += height * clouds_smooth(at, stream + uint(i));
+        sum += height * noise_smooth(at, stream + uint(i));
         all += height;
         height *= 0.5;
         at = clouds_turn * at * 2.03;
@@ -42,7 +26,7 @@ float clouds_domes(in vec2 at, in uint stream) {
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             ivec2 cell = ivec2(whole) + ivec2(x, y);
-            vec2 away = vec2(x, y) + 0.15 + 0.7 * vec2(clouds_random(cell, stream), clouds_random(cell, stream + 77u)) - part;
+            vec2 away = vec2(x, y) + 0.15 + 0.7 * vec2(noise_random(cell, stream), noise_random(cell, stream + 77u)) - part;
             nearest2 = min(nearest2, dot(away, away));
         }
     }
@@ -52,7 +36,7 @@ float clouds_domes(in vec2 at, in uint stream) {
 /// Heaps in clusters: large domes with smaller ones on them. @param at  [cells]
 float clouds_cumulus(in vec2 at, in uint stream) {
     float clusters = clouds_octaves(0.18 * at, 3, stream);
-    float bent = clouds_smooth(1.7 * at, stream + 20u);
+    float bent = noise_smooth(1.7 * at, stream + 20u);
     vec2 moved = at + 0.35 * (bent - 0.5);
     float heaps = 0.62 * clouds_domes(moved, stream + 5u) + 0.26 * clouds_domes(clouds_turn * moved * 2.3, stream + 6u) +
                   0.12 * clouds_domes(moved * 5.1, stream + 7u);
@@ -66,7 +50,7 @@ float clouds_stratus(in vec2 at, in uint stream) {
 
 /// Streaks along x, bent by slow winds. @param at  [cells]
 float clouds_cirrus(in vec2 at, in uint stream) {
-    float bent = clouds_smooth(0.07 * at, stream + 40u) - 0.5;
+    float bent = noise_smooth(0.07 * at, stream + 40u) - 0.5;
     vec2 streak = vec2(0.07 * at.x, 0.45 * at.y + 2.5 * bent);
     return 0.6 * clouds_octaves(streak, 5, stream + 41u) + 0.4 * clouds_octaves(0.08 * at, 3, stream + 50u);
 }

@@ -5,6 +5,7 @@
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
+//@ include lib/noise.glsl
 //@ include lib/repeats.glsl
 
 uniform sampler2DArray cover_albedo;
@@ -168,17 +169,6 @@ struct cover_Canopy {
 // Of this pixel, for the hook normal.
 vec2 cover_canopy_slope = vec2(0.0);
 
-/// Three numbers of 0..1 for a cell.
-/// source: M. Jarzynski and M. Olano, Hash functions for GPU rendering, J. Computer Graphics Techniques 9(3), 2020,
-/// pcg3d
-vec3 cover_random(in ivec2 cell) {
-    uvec3 v = uvec3(uvec2(cell), 7u) * 1664525u + 1013904223u;
-    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
-    v ^= v >> 16u;
-    v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
-    return vec3(v >> 8u) * (1.0 / 16777216.0);
-}
-
 /// The crown that a point of the canopy is on.
 struct cover_Crown {
     vec2 slope;   // of its surface
@@ -193,7 +183,7 @@ cover_Crown cover_crown_at(in ivec2 cell, in vec2 within, in float conifers) {
     cover_Crown highest = cover_Crown(vec2(0.0), -2.0, 0.5);
     for (int i = 0; i < 4; ++i) {
         ivec2 near = corner + ivec2(i & 1, i >> 1);
-        vec3 random = cover_random(near);
+        vec3 random = vec3(noise_random(near, 0u), noise_random(near, 1u), noise_random(near, 2u));
         float size = fract(random.z * 7.0);
         bool cone = random.z < conifers;
         float radius = (cone ? 0.38 : 0.46) + 0.3 * size;

@@ -5,6 +5,11 @@
 //! source    extinction 3.912 / visibility: H. Koschmieder, Theorie der horizontalen Sichtweite (1924); light of a
 //!           layer: W. E. Meador and W. R. Weaver, J. Atmos. Sci. 37 (1980) 630, eq. 24, without absorption
 
+//@ include lib/air.glsl
+//@ include lib/air_pixel.glsl
+//@ include lib/eye_light.glsl
+//@ include lib/noise.glsl
+
 uniform float fog_top_m = 900.0; //@ range(-500, 9000) unit(m) label("Top") description("Height up to which the fog reaches, above sea level")
 uniform float fog_visibility_m = 400.0; //@ range(20, 20000) unit(m) label("Visibility") description("How far one sees inside of it: below 1000 m it is fog")
 uniform float fog_soft_m = 25.0; //@ range(1, 1000) unit(m) label("Soft top") description("Height over which it thins by a factor of e at its top")
@@ -14,33 +19,16 @@ uniform float fog_wind_m_s = 1.0; //@ range(0, 100) unit(m/s) label("Wind") desc
 uniform float fog_wind_from_deg = 270.0; //@ angle range(0, 360) unit(deg) label("Wind from")
 
 const float fog_gamma = 0.1125;  // 0.75 (1 - g): what a layer of optical depth 1 reflects, with g = 0.85
-const float fog_earth_m = 6371000.0;
 
 float fog_extinction() {
     return 3.912 / fog_visibility_m;
-}
-
-/// A number of a cell of a grid, 0..1.
-float fog_random(in ivec2 cell) {
-    uint h = uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u;
-    h = (h ^ (h >> 15)) * 0x2c1b3c6du;
-    h = (h ^ (h >> 12)) * 0x297a2d39u;
-    return float((h ^ (h >> 15)) >> 8) / 16777216.0;
-}
-
-float fog_noise(in vec2 at) {
-    vec2 whole = floor(at), part = at - whole;
-    ivec2 cell = ivec2(whole);
-    vec2 w = part * part * (3.0 - 2.0 * part);
-    return mix(mix(fog_random(cell), fog_random(cell + ivec2(1, 0)), w.x),
-               mix(fog_random(cell + ivec2(0, 1)), fog_random(cell + ivec2(1, 1)), w.x), w.y);
 }
 
 /// Top of the fog at a place, as drawn [m]. @param place  east and north [m]
 float fog_top_at(in vec2 place) {
     vec2 to = -vec2(sin(fog_wind_from_deg), cos(fog_wind_from_deg));
     vec2 at = (place - to * fog_wind_m_s * frame.seconds) / fog_wave_length_m;
-    float wave = 0.6 * fog_noise(at) + 0.3 * fog_noise(mat2(0.8, 0.6, -0.6, 0.8) * at * 2.7) + 0.1 * fog_noise(at * 7.1);
+    float wave = 0.6 * noise_smooth(at, 0u) + 0.3 * noise_smooth(mat2(0.8, 0.6, -0.6, 0.8) * at * 2.7, 0u) + 0.1 * noise_smooth(at * 7.1, 0u);
     return (fog_top_m + fog_waves_m * (2.0 * wave - 1.0)) * frame.height_range.z;
 }
 
@@ -73,14 +61,13 @@ float fog_above(in float height_m, in float top_m) {
 
 /// Light of the fog towards the eye. @param over  optical depth above the part that is seen, @param under  below it
 vec3 fog_light(in vec3 view, in float over, in float under) {
-    vec3 to_sun = frame.eye_sun.xyz;
+    vec3 to_sun = light_at_eye_direction();
     float mu = max(dot(to_sun, frame.eye_up.xyz), 0.0), sine = dot(view, frame.eye_up.xyz);
     float x = fog_gamma * over, y = fog_gamma * under;
     float all = mix(y, 1.0 + y, 0.5 + 0.5 * sine) / (1.0 + x + y);
-    float cosine = dot(view, to_sun);
-    float peak = 1.0 + 0.8 * 0.8 - 1.6 * cosine;
-    float once = 0.25 * 0.36 * inversesqrt(peak * peak * peak) * exp(-over / max(mu, 0.08));
-    return (mu * all + 0.5 * once) * frame.eye_sun_light.rgb + all * frame.sky_irradiance.rgb;
+    const float pi = 3.14159265;
+    float once = pi * air_aerosol_phase(dot(view, to_sun)) * exp(-over / max(mu, 0.08));
+    return air_lit * ((mu * all + 0.5 * once) * light_at_eye() + all * frame.sky_irradiance.rgb);
 }
 
 bool fog_is_ground = false;  // set by the hooks of the ground: haze then asks for the sky
@@ -111,10 +98,11 @@ vec2 fog_entry(in Surface s, in float drawn_m) {
 
 /// How much more light a slope of the fog's top gets than level fog. @param top_m  fog_top_at(place)
 float fog_relief(in vec2 place, in float top_m) {
-    vec2 sunward = normalize(frame.eye_sun.xy + 1e-6);
+    vec3 to_sun = light_at_eye_direction();
+    vec2 sunward = normalize(to_sun.xy + 1e-6);
     float step_m = 0.04 * fog_wave_length_m;
     float rise = (fog_top_at(place + step_m * sunward) - top_m) / step_m;
-    float low = sqrt(max(1.0 - frame.eye_sun.z * frame.eye_sun.z, 0.0));
+    float low = sqrt(max(1.0 - to_sun.z * to_sun.z, 0.0));
     return clamp(1.0 - 2.0 * low * rise, 0.5, 1.6);
 }
 
@@ -139,7 +127,7 @@ void fog_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance
     if (fog_is_ground && frame.eye_m.w > top_m) return;
     float up = fog_above(frame.eye_m.w, top_m) / max(sine, 0.005);
     // Below the horizon the fog lies on ground that is not in the DEM.
-    float below = frame.eye_m.w > top_m ? smoothstep(-0.002, -0.012, sine - frame.eye_up.w) * 8.0 : 50.0;
+    float below = frame.eye_m.w > top_m ? 8.0 - 8.0 * smoothstep(-0.012, -0.002, sine - frame.eye_up.w) : 50.0;
     float depth = sine > 0.0 ? up : max(below, up);
     float passes = exp(-depth);
     radiance = mix(fog_light(direction, sine > 0.0 ? 0.5 * min(up, 8.0) : 1.0, 4.0), radiance, passes);

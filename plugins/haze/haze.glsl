@@ -6,6 +6,7 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section on sky and haze
 
 //@ include lib/air.glsl
+//@ include lib/air_pixel.glsl
 
 uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
 uniform float haze_density = 0.0; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0. Air that is clearer than the atmosphere's own is drawn as the atmosphere")
@@ -58,7 +59,9 @@ void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     if (haze_air) {
         AirBetween air = air_between_eye_and(view, s.distance_m);
-        radiance = mix(air.radiance, radiance, exp(-air.depth - haze_strength));
+        vec3 passed = exp(-air.depth - haze_strength);
+        air_scattered = air.radiance * (1.0 - passed);
+        radiance = radiance * passed + air_scattered;
     } else {
         radiance = mix(radiance, background_radiance(view, false), haze_strength);
     }

@@ -18,6 +18,13 @@ vec2 picture_px() {
     return gl_FragCoord.xy + vec2(frame.part_left, frame.part_below);
 }
 
+/// A number of a pixel, 0..1, even over its neighbours: interleaved gradient noise.
+/// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
+/// course, slide 123
+float pixel_noise(in vec2 at_px) {
+    return fract(52.9829189 * fract(dot(at_px, vec2(0.06711056, 0.00583715))));
+}
+
 /// This pixel. @param distance_m  from the eye to what it shows, or kSky_m
 Pixel pixel_with(in float distance_m) {
     return Pixel(gl_FragCoord.xy, gl_FragCoord.xy * frame.viewport.zw, normalize(pixel_ray_at(gl_FragCoord.xy)),

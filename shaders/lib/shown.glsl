@@ -7,15 +7,12 @@
 
 /// Rounds to 8 bits up or down by where the pixel is, so that a sky's gradient does not end in steps. Colours of 8 bits
 /// stay what they are also on GPUs that convert by half floats, which is off by up to 0.06 of a step.
-/// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
-/// course, slide 123: interleaved gradient noise
 vec3 dithered(in vec3 colour) {
 #ifdef DEEP
     return colour;  // stored with 16 bits
 #else
-    float noise = fract(52.9829189 * fract(dot(picture_px(), vec2(0.06711056, 0.00583715))));
     const float width = 0.8;  // of a step; sample_sum.cpp has it, too
-    return colour + width * (noise - 0.5) / 255.0;
+    return colour + width * (pixel_noise(picture_px()) - 0.5) / 255.0;
 #endif
 }
 

@@ -42,13 +42,20 @@ TEST(WeatherFacts, VisibilityOfFogIsNotThatOfTheAirAbove) {
     EXPECT_EQ(snow.figure("snow_visibility_m"), 1200);
 }
 
-TEST(WeatherFacts, ClearSkiesHaveNoDecks) {
+TEST(WeatherFacts, ClearSkiesHaveDecksWithoutCover) {
     const Facts f = facts("LSZB 011150Z VRB01KT CAVOK 20/10 Q1020");
     EXPECT_TRUE(f.words.empty());
-    EXPECT_FALSE(f.figure("deck_1_cover"));
+    for (const char* deck : {"deck_1_cover", "deck_2_cover", "deck_3_cover"})
+        EXPECT_EQ(f.figure(deck), 0) << deck;
+    EXPECT_EQ(facts("KSEA 011800Z 9999").figure("deck_1_cover"), std::nullopt);
     EXPECT_EQ(summary(parse_metar("LSZB 011150Z VRB01KT CAVOK 20/10 Q1020")),
               "LSZB, day 1, 11:50 UTC: wind 0.5 m/s, variable, visibility 10.0 km or more, no "
               "clouds, 20 C, 1020 hPa");
+}
+
+TEST(WeatherFacts, TheThickestAirIsNotTheClearest) {
+    // A parameter of 0 stands for none.
+    EXPECT_EQ(facts_of(parse_metar("KSEA 011800Z 0000 DS"), 0).figure("visibility_km"), 0.05);
 }
 
 }  // namespace

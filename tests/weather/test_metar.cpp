@@ -123,6 +123,23 @@ TEST(Metar, NonsenseNamesTheGroup) {
               "nothing");
 }
 
+TEST(Metar, GroupsThatSayNothingOfThePictureAreSkipped) {
+    const Metar read = parse_metar(
+        "LSZB 011150Z 240ABV49KT 9999 ///015 BKN040 WS R24L WS R06 88290195 17/13 Q1014 QFE742 "
+        "BLACKWHT FM1230 OVC002");
+    EXPECT_NEAR(*read.wind_m_s, 49 * 1852.0 / 3600, 1e-9);
+    ASSERT_EQ(read.clouds.size(), 1u);  // the forecast is none
+    EXPECT_EQ(read.clouds[0].most_oktas, 7);
+    EXPECT_EQ(*read.qnh_hpa, 1014);
+    EXPECT_EQ(parse_metar("KSEA 011800Z 24009KT 10SM CLR 17/10 A2992 $").clouds.size(), 0u);
+}
+
+TEST(Metar, SnowThatTheWindRaisesDoesNotFall) {
+    EXPECT_FALSE(parse_metar("LSZB 011150Z 9999 DRSN").present.snow);
+    EXPECT_FALSE(parse_metar("LSZB 011150Z 2000 BLSN").present.snow);
+    EXPECT_TRUE(parse_metar("LSZB 011150Z 2000 -SN BLSN").present.snow);
+}
+
 // Whatever comes is a report or an error of one line.
 TEST(Metar, RandomBytesAreReadOrRefused) {
     std::mt19937 random(7);
