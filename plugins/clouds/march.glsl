@@ -5,7 +5,7 @@
 //@ include lib/pixel.glsl
 //@ include lib/screen.glsl
 
-uniform int clouds_steps = 24; //@ range(4, 64) label("Steps") description("Samples along a ray through a deck")
+uniform int clouds_steps = 48; //@ range(8, 128) label("Steps") description("Samples along a ray through a deck")
 
 uniform sampler2D clouds_depths; //@ from(core.ground_depth)
 uniform sampler2D clouds_near;
@@ -30,30 +30,15 @@ vec2 clouds_inside_deck(in clouds_Deck d, in float height_m, in float sine) {
     return vec2(in_way, reaches_base ? base_way : out_way);
 }
 
-/// Extinction at a point of a deck [1/m], and in y and z the optical depths straight up and down.
-vec3 clouds_extinction(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m) {
-    if (height_m < d.base_m || height_m > d.top_m) return vec3(0.0);
-    vec4 columns = clouds_at(clouds_place(position_m, height_m));
-    float share = columns[deck];
-    if (share <= 0.0) return vec3(0.0);
-    float top_m = clouds_column_top_m(d, share, columns.a);
-    float tall_m = top_m - d.base_m;
-    float within = (height_m - d.base_m) / tall_m;
-    if (within >= 1.0) return vec3(0.0);
-    float tau = clouds_tau(d, share, columns.a);
-    float soft = min((1.0 - within) * 6.0, 1.0) * min(within * 12.0 + 0.1, 1.0);
-    return vec3(soft * tau / tall_m, tau * (1.0 - within), tau * within);
-}
-
-/// Optical depth from a point of a deck along a direction.
+/// Optical depth from a point of a deck along a direction. Samples are the softer the farther they are apart, so that no
+/// edge shows where one of them enters a cloud.
 float clouds_towards(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 way, in float sine) {
-    float tall_m = d.top_m - d.base_m, tau = 0.0, before_m = 0.0;
-    float next_m = 0.06 * tall_m;
-    for (int i = 0; i < 4; ++i) {
-        float at_m = 0.5 * (before_m + next_m);
-        tau += (next_m - before_m) * clouds_extinction(d, deck, position_m + at_m * way, height_m + at_m * sine).x;
-        before_m = next_m;
-        next_m *= 2.6;
+    float tau = 0.0, from_m = 0.0, step_m = 0.05 * (d.top_m - d.base_m);
+    for (int i = 0; i < 5; ++i) {
+        float at_m = from_m + 0.5 * step_m;
+        tau += step_m * clouds_point(d, deck, position_m + at_m * way, height_m + at_m * sine, step_m).extinction;
+        from_m += step_m;
+        step_m *= 2.0;
     }
     return tau;
 }
@@ -84,8 +69,8 @@ float clouds_relief(in clouds_Deck d, in int deck, in vec3 position_m, in float 
 }
 
 /// Light of a point in a deck: x by the sun's light, y by that of the sky.
-/// @param taus  clouds_extinction()
-vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 taus, in vec3 direction,
+/// @param p  the same point
+vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in clouds_Point p, in vec3 direction,
                 in vec3 to_sun, in vec3 up) {
     float sun_sine = dot(to_sun, up), sine = dot(direction, up);
     float before = clouds_towards(d, deck, position_m, height_m, to_sun, sun_sine);
@@ -93,17 +78,17 @@ vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float heig
     float cosine = dot(direction, to_sun);
     float mu = clamp(sun_sine, 0.0, 1.0);
     // As a layer, lit from above; as a heap, which stands in the light.
-    float layer = max(mu, 0.03) * clouds_inside(taus.y / max(mu, 0.15) * max(mu, 0.3), taus.z, sine);
+    float layer = max(mu, 0.03) * clouds_inside(p.above / max(mu, 0.15) * max(mu, 0.3), p.below, sine);
     float heap = clouds_inside(before, behind, cosine) * (d.kind == 0 ? 0.45 + 0.55 * mu : 1.5 * mu);
     float open = mix(d.kind == 0 ? 0.35 : 0.6, 1.0, clamp((height_m - d.base_m) / (d.top_m - d.base_m), 0.0, 1.0));
     float once = d.kind == 0 ? 0.6 : mu / (mu + abs(sine) + 0.05);
     if (d.kind == 1 && sine < 0.0) layer *= clouds_relief(d, deck, position_m, height_m, to_sun, mu);
     float stands = d.kind == 0 ? 0.75 : sine < 0.0 ? 0.25 : 0.1;
     float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + once * clouds_phase(cosine) * exp(-before);
-    float sky = open * clouds_inside(taus.y, taus.z, sine);
+    float sky = open * clouds_inside(p.above, p.below, sine);
     // Below, the ground's light; less of it the more is in shade.
-    float bounced = 0.15 * clouds_inside(taus.z, taus.y, -sine);
-    float overcast = smoothstep(0.6, 1.0, d.cover) * (1.0 - exp(-0.3 * (taus.y + taus.z))) * step(0.0, sine);
+    float bounced = 0.15 * clouds_inside(p.below, p.above, -sine);
+    float overcast = smoothstep(0.6, 1.0, d.cover) * (1.0 - exp(-0.3 * (p.above + p.below))) * step(0.0, sine);
     float cie = mix(1.0, clouds_overcast(sine), overcast * step(frame.eye_m.w, d.base_m));
     return cie * vec2(sun + bounced * mu * (1.0 - 0.8 * d.cover), sky + bounced * (1.0 - 0.5 * d.cover));
 }
@@ -113,37 +98,39 @@ float clouds_ray_height(in float sine, in float way_m) {
     return frame.eye_m.w + way_m * (sine + 0.5 * (1.0 - sine * sine) / clouds_earth_m * way_m);
 }
 
-/// How far along a deck a share of the samples reaches [m]: nearer to each other near the eye.
-float clouds_way(in float share, in vec2 ends) {
-    return mix(ends.x, ends.y, ends.y > 1.5 * ends.x ? pow(share, 1.7) : share);
+/// Over how many metres edges are soft at a distance: the width of a pixel of clouds.view.
+float clouds_soft_m(in clouds_Deck d, in float way_m) {
+    return max(0.1 * (d.top_m - d.base_m), 4.0 * length(frame.pixel_ray_dx.xyz) * way_m);
 }
 
-float clouds_share_of_way(in float way_m, in vec2 ends) {
-    float share = clamp((way_m - ends.x) / (ends.y - ends.x), 0.0, 1.0);
-    return ends.y > 1.5 * ends.x ? pow(share, 1.0 / 1.7) : share;
+clouds_Point clouds_point_of_ray(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float way_m) {
+    return clouds_point(d, deck, way_m * direction, clouds_ray_height(sine, way_m), clouds_soft_m(d, way_m));
 }
 
-/// Follows a ray through a cloud. Steps grow with the way. @returns x: opacity, y: mean distance of the visible part, z: end [m]
+/// Follows a ray through a cloud to its end. Steps grow with the way.
+/// @returns x: opacity, y: mean distance of the visible part, z: end [m]
 vec3 clouds_dig(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float from_m, in float first_m,
                 in float limit_m) {
     float passes = 1.0, mean_m = 0.0, step_m = first_m;
-    for (int i = 0; i < 8; ++i) {
-        float at_m = min(from_m + 0.5 * step_m, limit_m);
+    for (int i = 0; i < 10; ++i) {
         step_m = min(step_m, max(limit_m - from_m, 0.0));
-        float opaque = 1.0 - exp(-step_m * clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x);
+        float at_m = from_m + 0.5 * step_m;
+        float extinction = clouds_point_of_ray(d, deck, direction, sine, at_m).extinction;
+        float opaque = 1.0 - exp(-step_m * extinction);
         mean_m += passes * opaque * at_m;
         passes *= 1.0 - opaque;
         from_m += step_m;
-        step_m *= 1.8;
+        step_m *= 1.4;
+        if (extinction <= 0.0) break;
     }
     return vec3(1.0 - passes, mean_m / max(1.0 - passes, 1e-6), from_m);
 }
 
 /// The edge of a cloud between a point outside and one inside of it [m].
 float clouds_entry(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float out_m, in float in_m) {
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 4; ++i) {
         float middle_m = 0.5 * (out_m + in_m);
-        bool inside = clouds_extinction(d, deck, middle_m * direction, clouds_ray_height(sine, middle_m)).x > 0.0;
+        bool inside = clouds_point_of_ray(d, deck, direction, sine, middle_m).extinction > 0.0;
         out_m = inside ? out_m : middle_m;
         in_m = inside ? middle_m : in_m;
     }
@@ -158,35 +145,38 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     vec2 ends = clouds_inside_deck(d, frame.eye_m.w, sine);
     ends.y = min(ends.y, min(limit_m, clouds_far_m));
     if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
-    float way = 0.0, last_m = ends.x, part = 1.0 / float(clouds_steps);
     vec3 to_sun = light_at_eye_direction();
     float shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
                                      dot(to_sun, up_at(ends.x * direction)));
+    float at_m = ends.x, last_m = ends.x;
+    int samples = 0;
     // Each turn finds the next cloud, follows the ray into it and lights it once: light is dear, and a
     // device computes it for all pixels of a group.
-    for (int turn = 0; turn < 8; ++turn) {
-        float at_m = last_m;
+    for (int turn = 0; turn < 6; ++turn) {
         bool found = false;
         for (int k = 0; k < clouds_steps; ++k) {
-            if (way >= 1.0 || found) break;
-            at_m = clouds_way(min(way + jitter * part, 1.0), ends);
-            found = clouds_extinction(d, deck, at_m * direction, clouds_ray_height(sine, at_m)).x > 0.0;
-            if (!found) last_m = at_m;
-            way += part;
+            if (found || at_m >= ends.y || samples >= clouds_steps) break;
+            clouds_Point p = clouds_point_of_ray(d, deck, direction, sine, at_m);
+            found = p.extinction > 0.0;
+            if (!found) {
+                last_m = at_m;
+                float rest_m = (ends.y - at_m) / float(clouds_steps - samples);
+                float least_m = max(0.5 * clouds_soft_m(d, at_m), min(0.5 * rest_m, 0.1 * clouds_cell_m + 0.02 * at_m));
+                at_m += max(p.gap_m, samples == 0 ? jitter * least_m : least_m);
+            }
+            ++samples;
         }
         if (!found || seen.z < 0.02) break;
         float from_m = at_m > last_m ? clouds_entry(d, deck, direction, sine, last_m, at_m) : at_m;
-        float grid_m = clouds_way(min(way + part, 1.0), ends) - clouds_way(way, ends);
-        vec3 dug = clouds_dig(d, deck, direction, sine, from_m, max(0.02 * (d.top_m - d.base_m), 0.02 * grid_m), ends.y);
+        vec3 dug = clouds_dig(d, deck, direction, sine, from_m, 0.5 * clouds_soft_m(d, from_m), ends.y);
         vec3 position_m = dug.y * direction;
         float here_m = clouds_ray_height(sine, dug.y);
-        vec3 taus = clouds_extinction(d, deck, position_m, here_m);
-        vec2 lit = clouds_lit(d, deck, position_m, here_m, taus, direction, to_sun, up_at(position_m)) * vec2(shade, 1.0);
+        clouds_Point p = clouds_point(d, deck, position_m, here_m, clouds_soft_m(d, dug.y));
+        vec2 lit = clouds_lit(d, deck, position_m, here_m, p, direction, to_sun, up_at(position_m)) * vec2(shade, 1.0);
         seen.xy += seen.z * dug.x * lit;
         seen.w += seen.z * dug.x * 0.001 * dug.y;
         seen.z *= 1.0 - dug.x;
-        last_m = dug.z;
-        way = max(way, clouds_share_of_way(dug.z, ends));
+        last_m = at_m = dug.z;
     }
     return seen;
 }

@@ -55,6 +55,22 @@ float clouds_cirrus(in vec2 at, in uint stream) {
     return 0.6 * clouds_octaves(streak, 5, stream + 41u) + 0.4 * clouds_octaves(0.08 * at, 3, stream + 50u);
 }
 
+/// Cells around random points of a volume that repeats: 1 at a point, 0 half way to the next ones.
+/// @param at  0..1 along each side of it, @param count  cells along each side
+float clouds_lumps(in vec3 at, in int count, in uint stream) {
+    vec3 whole = floor(float(count) * at), part = float(count) * at - whole;
+    float nearest2 = 1.0;
+    for (int i = 0; i < 27; ++i) {
+        ivec3 aside = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        ivec3 cell = (ivec3(whole) + aside + count) % count;
+        uint layer = stream + 3u * uint(cell.z);
+        vec3 point = vec3(noise_random(cell.xy, layer), noise_random(cell.xy, layer + 1u), noise_random(cell.xy, layer + 2u));
+        vec3 away = vec3(aside) + point - part;
+        nearest2 = min(nearest2, dot(away, away));
+    }
+    return 1.0 - nearest2;
+}
+
 /// A field of a kind. @param kind  0 cumulus, 1 stratus, 2 cirrus
 float clouds_field(in int kind, in vec2 at, in uint stream) {
     if (kind == 0) return clouds_cumulus(at, stream);
