@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Takes the pictures of docs/paper.md: the paper's figures 1 and 3 to 7 on the real terrain that comes along,
 those of plugins' READMEs, and the one on the front page.
-=======
-and those of the READMEs of haze and sky.
 
 Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
 
