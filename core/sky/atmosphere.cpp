@@ -128,21 +128,6 @@ DiffuseTable all_orders(const Coefficients& air) {
     return sum;
 }
 
-Brought brought_to(const Atmosphere& from, const Atmosphere::View& view, double distance_m) {
-    const double height = std::max(view.height_m, 0.0);
-    Path path = path_of(height, view.sine);
-    const bool whole = distance_m >= path.end_m;
-    path.end_m = std::clamp(distance_m, path.begin_m, path.end_m);
-    path.lowest_m = std::min(path.lowest_m, path.end_m);
-    Brought brought;
-    brought.through = filled(1);
-    const Sun sun{view.sun_sine, view.azimuth_cos};
-    integrate(from.coefficients(), {.sun = true, .diffuse = &from.diffuse()},
-              {height, view.sine, std::span(&sun, 1)}, step_ends(path, kViewSteps),
-              path.ground && whole, std::span(&brought, 1));
-    return brought;
-}
-
 Spectrum spectrum(const Values& values) {
     Spectrum made{};
     std::copy(values.begin(), values.end(), made.begin());
@@ -157,23 +142,37 @@ Atmosphere::Atmosphere(const Air& air)
 Atmosphere::Atmosphere(const Air& air, DiffuseTable diffuse)
     : coefficients_(sky::coefficients(air)), diffuse_(std::move(diffuse)) {}
 
+std::vector<Brought> Atmosphere::brought(double height_m, double sine, std::span<const Sun> suns,
+                                         double distance_m) const {
+    const double height = std::max(height_m, 0.0);
+    Path path = path_of(height, sine);
+    const bool whole = distance_m >= path.end_m;
+    path.end_m = std::clamp(distance_m, path.begin_m, path.end_m);
+    path.lowest_m = std::min(path.lowest_m, path.end_m);
+    std::vector<Brought> made(suns.size(), Brought{.through = filled(1)});
+    integrate(coefficients_, {.sun = true, .diffuse = &diffuse_}, {height, sine, suns},
+              step_ends(path, kViewSteps), path.ground && whole, made);
+    return made;
+}
+
 Spectrum Atmosphere::scattered_in(const View& view, double distance_m) const {
-    const Brought brought = brought_to(*this, view, distance_m);
-    const double phase =
-        aerosol_phase(ray_sun_cosine(view.sine, {view.sun_sine, view.azimuth_cos}));
+    const Sun sun{view.sun_sine, view.azimuth_cos};
+    const Brought one = brought(view.height_m, view.sine, std::span(&sun, 1), distance_m).front();
+    const double phase = aerosol_phase(ray_sun_cosine(view.sine, sun));
     Spectrum radiance{};
     for (std::size_t k = 0; k < kCount; ++k)
-        radiance[k] = kPi * (brought.air[k] + phase * brought.aerosol[k] +
-                             coefficients_.albedo * brought.ground[k]);
+        radiance[k] =
+            kPi * (one.air[k] + phase * one.aerosol[k] + coefficients_.albedo * one.ground[k]);
     return radiance;
 }
 
 Spectrum Atmosphere::radiance(const View& view) const {
-    return scattered_in(view, 1e9);
+    return scattered_in(view, kWhole_m);
 }
 
 Spectrum Atmosphere::transmittance(double height_m, double sine, double distance_m) const {
-    return spectrum(brought_to(*this, {.height_m = height_m, .sine = sine}, distance_m).through);
+    constexpr Sun kAny;
+    return spectrum(brought(height_m, sine, std::span(&kAny, 1), distance_m).front().through);
 }
 
 Spectrum Atmosphere::sunlight(double height_m, double sun_sine) const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "sky/air.h"
 #include "sky/integrate.h"
 #include "sky/moments.h"
@@ -27,7 +30,10 @@ namespace relevo::sky {
 /// harmonics of the second degree.
 class Atmosphere {
   public:
-    /// Computes the tables. 0.5 s on two processors.
+    /// Distance beyond the end of every ray [m].
+    static constexpr double kWhole_m = 1e9;
+
+    /// Computes the tables: 4.3 s of processor time, 2.2 s on two processors.
     explicit Atmosphere(const Air& air = {});
     /// Takes the diffuse light of that air as it was computed before.
     Atmosphere(const Air& air, DiffuseTable diffuse);
@@ -46,6 +52,9 @@ class Atmosphere {
     Spectrum radiance(const View& view) const;
     /// The same for air up to a distance: the light that it adds to that of an object there.
     Spectrum scattered_in(const View& view, double distance_m) const;
+    /// What rays of one elevation bring up to a distance, each under another sun.
+    std::vector<Brought> brought(double height_m, double sine, std::span<const Sun> suns,
+                                 double distance_m = kWhole_m) const;
     /// Share of light that passes along a ray up to a distance, or to the ray's end.
     Spectrum transmittance(double height_m, double sine, double distance_m) const;
 

@@ -9,6 +9,7 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "sky/night.h"
 #include "sky/path.h"
 
 namespace relevo::sky {
@@ -19,12 +20,6 @@ constexpr std::size_t kCount = kWavelengths;
 int view_steps(double height_m) {
     return 24 + static_cast<int>(48 * std::clamp(height_m / 40e3, 0.0, 1.0));
 }
-
-/// A night without moon: airglow and starlight, 0.002 lux on level ground of the sun's 127 500.
-constexpr double kNight = 0.002 / 127500;
-/// The true colour of the night sky is a dull white, which eyes do not see as one: rods have no
-/// colours, and pictures of nights are blue by convention.
-constexpr glm::dvec3 kNightTint{0.66, 0.98, 1.95};
 
 /// colour_of() in single precision.
 glm::vec3 colour(const Values& values) {
@@ -64,12 +59,9 @@ void write_row(const Atmosphere& air, const EyeLayout& layout, int row, std::spa
     integrate(air.coefficients(), {.sun = true, .diffuse = &air.diffuse()},
               {layout.height_m, sine, suns}, step_ends(path, view_steps(layout.height_m)),
               path.ground, brought);
-    const glm::vec3 tint(kNight * kNightTint);
-    // Air and ground below the horizon are lit by the night sky.
     const glm::vec3 through = colour(brought.front().through);
-    const glm::vec3 night =
-        above ? glm::vec3(night_radiance(std::max(sine, 0.0))) : 0.5f * tint * (1.0f - through);
-    const glm::vec3 ground = path.ground ? tint * through : glm::vec3(0);
+    const glm::vec3 night(night_radiance(layout.height_m, sine, glm::dvec3(through)));
+    const glm::vec3 ground = path.ground ? glm::vec3(night_irradiance()) * through : glm::vec3(0);
     constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
     const auto pi = static_cast<float>(kPi);
     for (int i = 0; i < EyeLayout::kAzimuths; ++i) {
@@ -121,8 +113,7 @@ class Between {
         const glm::vec3 taken(-std::expm1(-depth * extinction_.r),
                               -std::expm1(-depth * extinction_.g),
                               -std::expm1(-depth * extinction_.b));
-        const auto night = static_cast<float>(0.5 * kNight);
-        return {scattered / taken + night * glm::vec3(kNightTint),
+        return {scattered / taken + glm::vec3(0.5 * night_irradiance()),
                 depth / static_cast<float>(distance)};
     }
 
@@ -205,15 +196,15 @@ EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine) {
     return made;
 }
 
-// The glow of a layer 100 km up, brighter towards the horizon, where air takes it away again.
-// Source: P. van Rhijn 1921, in F. E. Roach and J. L. Gordon, The Light of the Night Sky, 1973.
-glm::dvec3 night_radiance(double sine) {
-    const double ratio = 6371.0 / 6471.0;
-    const double cosine2 = 1 - sine * sine;
-    const double glow = 1 / std::sqrt(1 - ratio * ratio * cosine2);
-    const double air = 1 / (sine + 0.15 * std::pow(std::asin(sine) * 180 / kPi + 3.885, -1.253));
-    const glm::dvec3 kDepth{0.11, 0.16, 0.26};
-    return kNight * 0.72 * kNightTint * (glow * glm::exp(-0.2 * kDepth * air) + 0.35);
+double nearest_eye_height_m(double height_m) {
+    constexpr double kBase_m = 100, kStep = 0.005;
+    const double steps = std::round(std::log1p(std::max(height_m, 0.0) / kBase_m) / kStep);
+    return kBase_m * std::expm1(kStep * steps);
+}
+
+double nearest_sun_sine(double sine) {
+    constexpr double kStep = 1e-4;
+    return kStep * std::round(sine / kStep);
 }
 
 }  // namespace relevo::sky

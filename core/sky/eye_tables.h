@@ -17,14 +17,14 @@ struct EyeLayout {
     // Of the sky: rows above the horizon, then rows below it.
     static constexpr int kAzimuths = 40, kAbove = 72, kBelow = 32;
     static constexpr double kEven = 0.2;  ///< share of the rows that are even in the sine
-    static constexpr int kLayers = 3;     ///< air, aerosol, ground: as Brought
+    static constexpr int kLayers = 3;     ///< air, aerosol, ground: EyeTables::sky
     // Of the air between.
     static constexpr int kBetweenAzimuths = 24, kBetweenElevations = 48, kDistances = 28;
 
     double height_m = 0;
     double horizon = 0;  ///< sine of its elevation
-    double above_band =
-        1;  ///< how much of the sky above the horizon gets half of the rows, roughly
+    /// Share of the sines above the horizon, from it on, that about half of the rows have.
+    double above_band = 1;
     double below_band = 1;  ///< the same below
     double farthest_m = 1;  ///< distance at the last slice, from where the ray enters the air
 
@@ -44,9 +44,11 @@ struct EyeLayout {
 
 struct EyeTables {
     EyeLayout layout;
-    /// By layer, elevation, azimuth; rgb. What the air scatters towards the eye but for sunlight
-    /// scattered by the aerosol; that, without the phase function; what white ground at the end of
-    /// the rays below the horizon sends.
+    /// By layer, elevation, azimuth; rgb. Layers:
+    /// - light that the air scatters towards the eye, without that of the next layer;
+    /// - sunlight that the aerosol scatters once, over aerosol_phase(): the aureole is too sharp
+    ///   for the table;
+    /// - light of white ground at the end of the rays below the horizon.
     std::vector<glm::vec4> sky;
     /// By distance, elevation, azimuth. rgb: light scattered towards the eye over what the air
     /// between takes away, 1 - exp(-a distance colour); a: mean extinction of green light on the
@@ -56,12 +58,14 @@ struct EyeTables {
     glm::vec3 colour;
 };
 
-/// @param sun_sine  of the sun's elevation at the eye, geometric: most of the light of dusk comes
-/// from
-///                  air so high that it is hardly bent
+/// @param sun_sine  of the sun's geometric elevation at the eye: most light of dusk comes from air
+///                  so high that it hardly bends light
 EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine);
 
-/// Radiance of a moonless night sky, which is added to the sun's. @param sine  of the elevation
-glm::dvec3 night_radiance(double sine);
+/// The eye's height [m] and the sine of the sun's elevation that tables are made for instead of
+/// others near them, so that a camera on its way needs new ones a few times a second only. They
+/// change luminance by at most 1.5 % (EyeTables.AreMadeForHeightsAndSunsNearby).
+double nearest_eye_height_m(double height_m);
+double nearest_sun_sine(double sine);
 
 }  // namespace relevo::sky

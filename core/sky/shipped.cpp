@@ -1,8 +1,11 @@
 #include "sky/shipped.h"
 
+#include <algorithm>
 #include <cstring>
+#include <future>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -16,6 +19,32 @@ namespace {
 constexpr std::string_view kMark = "relevo atmosphere 1\n";
 constexpr std::string_view kWho = "atmosphere";
 constexpr int kKept = 4;
+
+/// The airs that were asked for last. Whoever asks first computes, outside of the lock; who asks
+/// for the same air meanwhile waits.
+class RecentAirs {
+  public:
+    using Made = std::shared_future<std::shared_ptr<const Atmosphere>>;
+
+    Made find(const Air& air) {
+        const std::lock_guard lock(mutex_);
+        const auto known = std::ranges::find(airs_, air, &Entry::first);
+        if (known != airs_.end()) {
+            std::rotate(airs_.begin(), known, known + 1);
+        } else {
+            if (airs_.size() >= kKept) airs_.pop_back();
+            airs_.insert(airs_.begin(), {air, std::async(std::launch::deferred, [air] {
+                                                  return std::make_shared<const Atmosphere>(air);
+                                              }).share()});
+        }
+        return airs_.front().second;
+    }
+
+  private:
+    using Entry = std::pair<Air, Made>;
+    std::mutex mutex_;
+    std::vector<Entry> airs_;  // the last one asked for first
+};
 
 std::size_t table_bytes() {
     return std::size_t{DiffuseTable::kHeights} * DiffuseTable::kSuns * sizeof(Diffuse);
@@ -40,16 +69,13 @@ Atmosphere read_atmosphere(const std::filesystem::path& path, const Air& air) {
 }
 
 std::shared_ptr<const Atmosphere> atmosphere_of(const Air& air) {
-    static std::mutex mutex;
-    static std::vector<std::pair<Air, std::shared_ptr<const Atmosphere>>> kept;
-    const std::lock_guard lock(mutex);
-    for (const auto& [one, made] : kept)
-        if (one == air) return made;
-    auto made = std::make_shared<const Atmosphere>(
-        air == Air{} ? read_atmosphere(share_dir() / "data/sky/air.bin", air) : Atmosphere(air));
-    if (kept.size() >= kKept) kept.erase(kept.begin());
-    kept.emplace_back(air, made);
-    return made;
+    if (air == Air{}) {
+        static const auto kDefault = std::make_shared<const Atmosphere>(
+            read_atmosphere(share_dir() / "data/sky/air.bin", Air{}));
+        return kDefault;
+    }
+    static RecentAirs recent;
+    return recent.find(air).get();
 }
 
 }  // namespace relevo::sky

@@ -13,7 +13,8 @@ void write_atmosphere(const std::filesystem::path& path, const Atmosphere& air);
 Atmosphere read_atmosphere(const std::filesystem::path& path, const Air& air);
 
 /// The atmosphere of an air: read from the program's data for the default one (0.3 ms), else
-/// computed (0.5 s), and kept. May be called from several threads.
+/// computed (2.2 s on two processors). Keeps the default one and the last four others. May be
+/// called from several threads, which compute different airs concurrently.
 std::shared_ptr<const Atmosphere> atmosphere_of(const Air& air);
 
 }  // namespace relevo::sky

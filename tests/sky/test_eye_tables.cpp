@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "base/units.h"
 #include "sky/eye_tables.h"
+#include "sky/night.h"
 #include "sky/path.h"
 #include "sky/shipped.h"
 
@@ -70,7 +72,8 @@ TEST(EyeTables, BetweenTheirTexelsAreTheAtmospheresRadiance) {
                 for (double u = 0.05; u < 1; u += 0.15) {
                     const double sine = tables.layout.sine_above(v);
                     const double azimuth_cos = EyeLayout::azimuth_cos(u);
-                    const glm::dvec3 night = night_radiance(std::max(sine, 0.0));
+                    const glm::dvec3 night = night_radiance(
+                        height, sine, colour_of(clean().transmittance(height, sine, 1e9)));
                     const double expected = luminance(
                         colour_of(clean().radiance({height, sine, sun, azimuth_cos})) + night);
                     const double phase = aerosol_phase(ray_sun_cosine(sine, {sun, azimuth_cos}));
@@ -152,15 +155,95 @@ TEST(EyeTables, AirBetweenScattersAndPassesWhatTheAtmosphereDoes) {
     }
 }
 
-TEST(EyeTables, MeetTheGroundWithoutAGap) {
-    // Just above and just below the horizon of a low eye, where the same air is looked through.
-    const EyeTables tables = eye_tables(clean(), 2, std::sin(radians(20.0)));
-    constexpr int kRow = EyeLayout::kAzimuths;
-    for (int i = 0; i < kRow; ++i) {
-        const double above = luminance(tables.sky[static_cast<std::size_t>(i)]);
-        const double next = luminance(tables.sky[static_cast<std::size_t>(kRow + i)]);
-        EXPECT_NEAR(next / above, 1, 0.02);
+TEST(EyeTables, AreMadeForHeightsAndSunsNearby) {
+    // As far from those that tables are made for as can be; rows count from the true horizon.
+    double worst = 0;
+    for (const double made_for : {2.0, 300.0, 3e3, 11e3, 40e3}) {
+        const double nearest = nearest_eye_height_m(made_for),
+                     height = nearest + 0.00249 * (nearest + 100);
+        EXPECT_EQ(nearest_eye_height_m(height), nearest);
+        EXPECT_EQ(nearest_eye_height_m(nearest), nearest);
+        const EyeLayout layout(nearest), here(height);
+        for (const double sun_deg : {40.0, 5.0, 0.0, -4.0, -8.0}) {
+            const double near_sun = nearest_sun_sine(std::sin(radians(sun_deg))),
+                         sun = near_sun + 0.499e-4;
+            EXPECT_EQ(nearest_sun_sine(sun), near_sun);
+            for (const double v : {0.03, 0.1, 0.3, 0.6, 1.0}) {
+                for (const double azimuth_cos : {-1.0, 0.3, 0.99}) {
+                    const double near_sine = layout.sine_above(v),
+                                 away = (near_sine - layout.horizon) / (1 - layout.horizon),
+                                 sine = here.horizon + away * (1 - here.horizon);
+                    const auto light = [&](double h, double s, double of_sun) {
+                        return luminance(colour_of(clean().radiance({h, s, of_sun, azimuth_cos})));
+                    };
+                    const double found = light(nearest, near_sine, near_sun);
+                    worst = std::max(worst, std::abs(found / light(height, sine, sun) - 1));
+                }
+            }
+        }
     }
+    fmt::print("[ accuracy ] tables for nearby heights and suns, worst: {:.2f} %\n", 100 * worst);
+    EXPECT_LT(worst, 0.015);
+}
+
+TEST(EyeTables, HaveTheHorizonsTwoSidesInTheirRows) {
+    // The last row of air before space, the first of air before the ground.
+    for (const double height : {2.0, 3000.0, 400e3}) {
+        const double sun = std::sin(radians(20.0));
+        const EyeTables tables = eye_tables(clean(), height, sun);
+        constexpr std::size_t kRow = EyeLayout::kAzimuths;
+        for (const auto& [row, aside] :
+             {std::pair{std::size_t{0}, 1e-9}, std::pair{std::size_t{EyeLayout::kAbove}, -1e-9}}) {
+            for (std::size_t i = 0; i < kRow; i += 13) {
+                const double azimuth_cos = EyeLayout::azimuth_cos(i / (kRow - 1.0));
+                const double sine = tables.layout.horizon + aside;
+                const Sun at{sun, azimuth_cos};
+                const Brought expected = clean().brought(height, sine, std::span(&at, 1)).front();
+                Spectrum air{};
+                std::copy(expected.air.begin(), expected.air.end(), air.begin());
+                EXPECT_NEAR(
+                    luminance(tables.sky[row * kRow + i]) / (kPi * luminance(colour_of(air))), 1,
+                    0.02)
+                    << height << " " << aside;
+            }
+        }
+    }
+}
+
+/// Luminance of the tables in units of that of the night on level ground.
+double night_seen(const EyeTables& tables, std::size_t row) {
+    constexpr std::size_t kRow = EyeLayout::kAzimuths,
+                          kLayer = kRow * (EyeLayout::kAbove + EyeLayout::kBelow);
+    constexpr double kAlbedo = 0.13;
+    return (luminance(tables.sky[row * kRow]) +
+            kAlbedo * luminance(tables.sky[2 * kLayer + row * kRow])) /
+           luminance(night_irradiance());
+}
+
+TEST(EyeTables, FromOrbitTheEarthAtNightIsBrighterThanSpace) {
+    const EyeTables tables = eye_tables(clean(), 400e3, -1);
+    constexpr std::size_t kZenith = EyeLayout::kAbove - 1,
+                          kNadir = EyeLayout::kAbove + EyeLayout::kBelow - 1;
+    double limb = 0;
+    for (std::size_t row = 0; row < EyeLayout::kAbove; ++row)
+        limb = std::max(limb, night_seen(tables, row));
+    fmt::print("[ sky ] night from 400 km: zenith {:.2f}, nadir {:.2f}, limb {:.1f}\n",
+               night_seen(tables, kZenith), night_seen(tables, kNadir), limb);
+    EXPECT_GT(night_seen(tables, kNadir), 2 * night_seen(tables, kZenith));
+    EXPECT_GT(limb, 5 * night_seen(tables, kNadir));  // airglow, seen edgewise
+}
+
+TEST(Night, ShedsTwoThousandthsOfALux) {
+    double lux = 0;
+    constexpr int kSteps = 400;
+    for (int i = 0; i < kSteps; ++i) {
+        const double sine = (i + 0.5) / kSteps;
+        const glm::dvec3 through = colour_of(clean().transmittance(0, sine, 1e9));
+        lux += 127500 * 2 * sine / kSteps * luminance(night_radiance(0, sine, through));
+    }
+    fmt::print("[ sky ] moonless night: {:.5f} lux\n", lux);
+    EXPECT_NEAR(lux, 0.002, 0.0001);
+    EXPECT_NEAR(127500 * luminance(night_irradiance()), 0.002, 1e-4);
 }
 
 TEST(Shipped, TheDefaultAtmosphereIsTheOneThatIsComputed) {
@@ -171,6 +254,17 @@ TEST(Shipped, TheDefaultAtmosphereIsTheOneThatIsComputed) {
     for (std::size_t k = 0; k < kWavelengths; ++k)
         EXPECT_EQ(found.moments[0][k], expected.moments[0][k]);
     EXPECT_NE(atmosphere_of(Air{.angstrom_beta = 0.1}), shipped);
+}
+
+TEST(Shipped, KeepsTheAirsThatWereAskedForLast) {
+    const auto of = [](double albedo) { return atmosphere_of(Air{.ground_albedo = albedo}); };
+    const auto shipped = atmosphere_of(Air{}), first = of(0.3);
+    for (const double albedo : {0.4, 0.5, 0.6})
+        of(albedo);
+    EXPECT_EQ(of(0.3), first);
+    of(0.7);
+    EXPECT_EQ(of(0.3), first);
+    EXPECT_EQ(atmosphere_of(Air{}), shipped);
 }
 
 }  // namespace

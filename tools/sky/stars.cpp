@@ -170,11 +170,11 @@ glm::dvec3 star_colour(double b_v) {
         return 1 / (std::exp(14387.769 / (wavelength_um * t_k)) - 1);  // but for its common factor
     };
     const double star_k = temperature_k(b_v), sun_k = temperature_k(kSunBv);
-    Spectrum share{};
-    for (int i = 0; i < kWavelengths; ++i)
+    sky::Spectrum share{};
+    for (int i = 0; i < sky::kWavelengths; ++i)
         share[static_cast<std::size_t>(i)] =
-            black_body(star_k, wavelength_um(i)) / black_body(sun_k, wavelength_um(i));
-    const glm::dvec3 colour = colour_of(share);
+            black_body(star_k, sky::wavelength_um(i)) / black_body(sun_k, sky::wavelength_um(i));
+    const glm::dvec3 colour = sky::colour_of(share);
     return colour / luminance(colour);
 }
 

@@ -9,25 +9,23 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "sky/night.h"
 
 namespace relevo::skymaker {
 namespace {
 
-/// A night without moon: airglow and starlight, 0.002 lux on level ground of the sun's 127 500.
-constexpr double kNight = 0.002 / 127500;
+/// The aureole: the part of the aerosol's forward scattering that the paper's glow stands for.
+/// @returns phase function [1/sr]
+double aureole_phase(double cosine) {
+    constexpr double kWidth_rad = radians(45.0);
+    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+    return std::exp(-std::pow(angle / kWidth_rad, 2)) * sky::aerosol_phase(cosine);
+}
 
-/// The glow of a layer 100 km up, brighter towards the horizon, where air takes it away again.
-/// Source: P. van Rhijn 1921, in F. E. Roach and J. L. Gordon, The Light of the Night Sky, 1973.
-glm::dvec3 night_radiance(double sine) {
-    const double ratio = 6371.0 / 6471.0;
-    const double cosine2 = 1 - sine * sine;
-    const double glow = 1 / std::sqrt(1 - ratio * ratio * cosine2);
-    const double air = 1 / (sine + 0.15 * std::pow(std::asin(sine) * 180 / kPi + 3.885, -1.253));
-    const glm::dvec3 kDepth{0.11, 0.16, 0.26};
-    // The true colour of the night sky is a dull white, which eyes do not see as one: rods have no
-    // colours, and pictures of nights are blue by convention.
-    const glm::dvec3 kTint{0.66, 0.98, 1.95};
-    return kNight * 0.72 * kTint * (glow * glm::exp(-0.2 * kDepth * air) + 0.35);
+glm::dvec3 colour(const sky::Values& values) {
+    sky::Spectrum spectrum{};
+    std::copy(values.begin(), values.end(), spectrum.begin());
+    return sky::colour_of(spectrum);
 }
 
 /// The sky at one height of the sun, row by row from the horizon.
@@ -37,21 +35,28 @@ struct Skies {
     Picture whole;  // with it
 };
 
-Skies make_skies(const Atmosphere& air, double sun_sine) {
+Skies make_skies(const sky::Atmosphere& air, double sun_sine) {
     Skies skies;
     skies.bare.resize(static_cast<std::size_t>(Layout::kAround * Layout::kUp));
     skies.whole = skies.bare;
+    std::vector<sky::Sun> suns;
+    for (int x = 0; x < Layout::kAround; ++x)
+        suns.push_back({sun_sine, 2 * (x / (Layout::kAround - 1.0)) - 1});
     parallel_for(0, Layout::kUp, 1, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
-            for (int x = 0; x < Layout::kAround; ++x) {
-                const double sine = Layout::sine_of(y / (Layout::kUp - 1.0));
-                const double s = x / (Layout::kAround - 1.0);
-                const auto at = static_cast<std::size_t>(y * Layout::kAround + x);
-                const Atmosphere::Radiance lit = air.radiance(sine, sun_sine, 2 * s - 1);
-                const glm::dvec3 night = night_radiance(sine);
+            const double sine = Layout::sine_of(y / (Layout::kUp - 1.0));
+            const std::vector<sky::Brought> row = air.brought(0, sine, suns);
+            for (std::size_t x = 0; x < suns.size(); ++x) {
+                const auto at = static_cast<std::size_t>(y * Layout::kAround) + x;
+                const double cosine = sky::ray_sun_cosine(sine, suns[x]),
+                             ring = aureole_phase(cosine);
+                const glm::dvec3 aerosol = kPi * colour(row[x].aerosol);
+                const glm::dvec3 bare =
+                    kPi * colour(row[x].air) + (sky::aerosol_phase(cosine) - ring) * aerosol;
                 // Interpolated texels must not reach below black where a colour is outside of sRGB.
-                skies.bare[at] = glm::max(colour_of(lit.sky), glm::dvec3(0)) + night;
-                skies.whole[at] = skies.bare[at] + glm::max(colour_of(lit.aureole), glm::dvec3(0));
+                skies.bare[at] = glm::max(bare, glm::dvec3(0)) +
+                                 sky::night_radiance(0, sine, colour(row[x].through));
+                skies.whole[at] = skies.bare[at] + glm::max(ring * aerosol, glm::dvec3(0));
             }
         }
     });
@@ -133,11 +138,11 @@ double luminance(const glm::dvec3& c) {
     return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
 
-glm::dvec3 level_irradiance(const Atmosphere& air, double sun_sine) {
+glm::dvec3 level_irradiance(const sky::Atmosphere& air, double sun_sine) {
     return slope_irradiance(make_skies(air, sun_sine).whole, 1, 0);
 }
 
-image::TextureData light_texture(const Atmosphere& air) {
+image::TextureData light_texture(const sky::Atmosphere& air) {
     constexpr int n = Layout::kNormals;
     image::TextureData made = texture(n, n, Layout::kSuns);
     const std::span<std::byte> light = made.writable_level(0);
@@ -157,7 +162,7 @@ image::TextureData light_texture(const Atmosphere& air) {
     return made;
 }
 
-image::TextureData single_texture(const Atmosphere& air, double sun_sine) {
+image::TextureData single_texture(const sky::Atmosphere& air, double sun_sine) {
     image::TextureData data = texture(Layout::kAround, Layout::kUp, 1);
     const Skies skies = make_skies(air, sun_sine);
     const double level = luminance(slope_irradiance(skies.whole, 1, 0));

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "render/air_textures.h"
 #include "sky/eye_tables.h"
+#include "sky/night.h"
 #include "sky/path.h"
 #include "sky/shipped.h"
 #include "support/gpu_snippet.h"
@@ -330,7 +331,9 @@ TEST(SkyAir, RadianceOnTheGpuIsTheAtmospheres) {
                         sky::colour_of(atmosphere->radiance({height, std::sin(elevation),
                                                              std::sin(radians(sun_deg)),
                                                              std::cos(radians(15.0 * x + 7))})) +
-                        sky::night_radiance(std::sin(elevation));
+                        sky::night_radiance(height, std::sin(elevation),
+                                            sky::colour_of(atmosphere->transmittance(
+                                                height, std::sin(elevation), 1e9)));
                     const glm::dvec3 found(results[static_cast<std::size_t>(12 * y + x)]);
                     errors.push_back(std::abs(found.g / expected.g - 1));
                     mean += errors.back() / 360;

@@ -1,4 +1,4 @@
-#include "atmosphere.h"
+#include "hillaire.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@ using namespace sky;
 
 constexpr double kEarth_m = kEarthRadius_m;
 constexpr double kTop_m = 80000;  // of the tables; 5e-5 of the air is above
-constexpr double kAureole_rad = radians(45.0);
 constexpr double kSunRadius_rad = radians(0.2666);
 
 // Tables: heights by the square root, the sun by the root of its distance from the Earth's edge.
@@ -55,13 +54,7 @@ double mix(double a, double b, double t) {
 
 }  // namespace
 
-double aureole_phase(double distance) {
-    const double angle = 2 * std::asin(std::clamp(distance / 2, 0.0, 1.0));
-    const double near = std::exp(-std::pow(angle / kAureole_rad, 2));
-    return near * aerosol_phase(std::cos(angle));
-}
-
-Atmosphere::Atmosphere(const Air& air) : air_(air), extinction_(extinction(air)) {
+HillaireSky::HillaireSky(const Air& air) : air_(air), extinction_(extinction(air)) {
     to_sun_.resize(static_cast<std::size_t>(kHeights * kSuns));
     parallel_for(0, kHeights, 1, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
@@ -78,7 +71,7 @@ Atmosphere::Atmosphere(const Air& air) : air_(air), extinction_(extinction(air))
 }
 
 /// Air along a ray to the top of the atmosphere, as lengths of it at full density.
-Atmosphere::Columns Atmosphere::columns(double height_m, double sine) const {
+HillaireSky::Columns HillaireSky::columns(double height_m, double sine) const {
     const double from = kEarth_m + height_m;
     const double length = distance_to(kEarth_m + kTop_m, from, sine);
     constexpr int kSteps = 400;
@@ -95,7 +88,7 @@ Atmosphere::Columns Atmosphere::columns(double height_m, double sine) const {
     return sum;
 }
 
-Atmosphere::Lit Atmosphere::towards_sun(double height_m, double sine) const {
+HillaireSky::Lit HillaireSky::towards_sun(double height_m, double sine) const {
     const double edge = edge_sine(height_m);
     const double above_edge_rad = std::asin(std::clamp(sine, -1.0, 1.0)) - std::asin(edge);
     Lit lit;
@@ -111,7 +104,7 @@ Atmosphere::Lit Atmosphere::towards_sun(double height_m, double sine) const {
     return lit;
 }
 
-void Atmosphere::pass(Spectrum& through, const Columns& c, double length) const {
+void HillaireSky::pass(Spectrum& through, const Columns& c, double length) const {
     for (std::size_t k = 0; k < kWavelengths; ++k)
         through[k] *= std::exp(-length * (c.rayleigh_m * extinction_.rayleigh[k] +
                                           c.aerosol_m * extinction_.aerosol[k] +
@@ -119,7 +112,7 @@ void Atmosphere::pass(Spectrum& through, const Columns& c, double length) const 
 }
 
 // In one piece: one integral, over heights, directions and steps along them.
-void Atmosphere::scatter_many() {
+void HillaireSky::scatter_many() {
     constexpr int kDirections = 64, kSteps = 32;
     many_.assign(static_cast<std::size_t>(kManyHeights * kManySuns), Spectrum{});
     std::vector<Spectrum> made(many_.size());
@@ -191,7 +184,7 @@ void Atmosphere::scatter_many() {
     many_ = std::move(made);
 }
 
-Spectrum Atmosphere::many(double height_m, double sun_sine) const {
+Spectrum HillaireSky::many(double height_m, double sun_sine) const {
     const double y = std::copysign(std::sqrt(std::abs(sun_sine)), sun_sine);
     const Place at = place(0.5 + 0.5 * y, std::sqrt(height_m / kTop_m), kManySuns, kManyHeights);
     Spectrum result;
@@ -201,17 +194,14 @@ Spectrum Atmosphere::many(double height_m, double sun_sine) const {
     return result;
 }
 
-Atmosphere::Radiance Atmosphere::radiance(double sine, double sun_sine, double azimuth_cos) const {
+Spectrum HillaireSky::radiance(double sine, double sun_sine, double azimuth_cos) const {
     constexpr int kSteps = 40;
     const double cosine =
         sine * sun_sine +
         azimuth_cos * std::sqrt(std::max(0.0, (1 - sine * sine) * (1 - sun_sine * sun_sine)));
-    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    const double air_phase = rayleigh_phase(cosine);
-    const double ring_phase = aureole_phase(2 * std::sin(angle / 2));
-    const double dust_phase = aerosol_phase(cosine) - ring_phase;
+    const double air_phase = rayleigh_phase(cosine), dust_phase = aerosol_phase(cosine);
     const double length = distance_to(kEarth_m + kTop_m, kEarth_m, sine);
-    Radiance sum;
+    Spectrum sum{};
     Spectrum through;
     through.fill(1);
     double before = 0;
@@ -239,20 +229,11 @@ Atmosphere::Radiance Atmosphere::radiance(double sine, double sun_sine, double a
                                 around[k] * (by_air + by_dust);
             if (taken <= 0) continue;
             const double passed = (through[k] - after[k]) / taken * kPi;
-            sum.sky[k] += passed * sent;
-            sum.aureole[k] += passed * light[k] * by_dust * ring_phase;
+            sum[k] += passed * sent;
         }
         through = after;
     }
     return sum;
-}
-
-Spectrum Atmosphere::transmittance(double sun_sine) const {
-    const Lit lit = towards_sun(0, sun_sine);
-    Spectrum light;
-    light.fill(lit.share);
-    pass(light, lit.columns, 1);
-    return light;
 }
 
 }  // namespace relevo::skymaker
