@@ -17,7 +17,7 @@ CORE_ONLY = {"exposed.glsl", "finite.glsl", "frame.glsl", "moved.glsl", "octahed
              "tile.glsl", "types.glsl"}
 
 # Of files with many functions, those that are for plugins.
-LISTED = {"air.glsl": {"air_radiance", "air_ground", "air_between_eye_and"}, "lines.glsl": {"lines_near"}}
+LISTED = {"air.glsl": {"air_radiance", "air_radiance_of_sky", "air_ground", "air_between_eye_and"}, "lines.glsl": {"lines_near"}}
 
 HEAD = """# What plugins can read
 

@@ -1,10 +1,12 @@
 #include "render/air_textures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <glm/geometric.hpp>
 
+#include "base/units.h"
 #include "sky/eye_tables.h"
 #include "sky/shipped.h"
 #include "sun/daylight.h"
@@ -14,8 +16,9 @@ namespace {
 
 using sky::EyeLayout;
 
+// A layer more for the moon: as the second one, for the light of the moon.
 constexpr gl::Extent kSky{EyeLayout::kAzimuths, EyeLayout::kAbove + EyeLayout::kBelow,
-                          EyeLayout::kLayers};
+                          EyeLayout::kLayers + 1};
 constexpr gl::Extent kBetween{EyeLayout::kBetweenAzimuths, EyeLayout::kBetweenElevations,
                               EyeLayout::kDistances};
 
@@ -33,24 +36,35 @@ shader::Param number(const char* address, double initial, shader::ParamRange ran
     return param;
 }
 
-/// Adds the mean over all azimuths of one table to another: moonlight scattered by the air differs
-/// little with the azimuth, but for the aureole, which sky.glsl draws.
-/// @param azimuths  texels from one elevation to the next  @param count  texels
-void add_mean(std::span<const glm::vec4> from, int azimuths, std::size_t count,
-              const glm::vec3& factor, std::span<glm::vec4> to) {
+/// Adds the mean over all azimuths of one table to another: without the aerosol's phase function,
+/// scattered moonlight depends little on the azimuth.
+/// @param azimuths  texels from one elevation to the next
+void add_mean(std::span<const glm::vec4> from, int azimuths, const glm::vec3& factor,
+              std::span<glm::vec4> to) {
     const auto width = static_cast<std::size_t>(azimuths);
-    for (std::size_t row = 0; row < count; row += width) {
-        glm::vec3 sum(0);
+    std::vector<float> weights(width);
+    const auto azimuth = [&](double i) {
+        const double u = std::clamp(i / (azimuths - 1), 0.0, 1.0);
+        return std::acos(EyeLayout::azimuth_cos(u)) / kPi;
+    };
+    for (int i = 0; i < azimuths; ++i)
+        weights[static_cast<std::size_t>(i)] =
+            static_cast<float>(azimuth(i + 0.5) - azimuth(i - 0.5));
+    for (std::size_t row = 0; row < from.size(); row += width) {
+        glm::vec3 mean(0);
         for (std::size_t i = 0; i < width; ++i)
-            sum += glm::vec3(from[row + i]);
+            mean += weights[i] * glm::vec3(from[row + i]);
         for (std::size_t i = 0; i < width; ++i)
-            to[row + i] += glm::vec4(factor * sum / static_cast<float>(width), 0);
+            to[row + i] += glm::vec4(factor * mean, 0);
     }
 }
 
 sky::EyeTables tables_of(const sky::Air& air, double height_m, const AirLight& light) {
     const auto atmosphere = sky::atmosphere_of(air);
     sky::EyeTables tables = eye_tables(*atmosphere, height_m, light.sun_sine);
+    const auto layer = static_cast<std::size_t>(EyeLayout::kAzimuths) *
+                       static_cast<std::size_t>(EyeLayout::kAbove + EyeLayout::kBelow);
+    tables.sky.resize((EyeLayout::kLayers + 1) * layer);
     const auto share = static_cast<float>(light.sun_share);
     if (share < 1)
         for (std::vector<glm::vec4>* const table : {&tables.sky, &tables.between})
@@ -58,15 +72,14 @@ sky::EyeTables tables_of(const sky::Air& air, double height_m, const AirLight& l
                 texel = glm::vec4(share * glm::vec3(texel), texel.a);
     if (light.moon == glm::vec3(0)) return tables;
     const sky::EyeTables moonlit = eye_tables(*atmosphere, height_m, light.moon_sine);
-    const auto layer = static_cast<std::size_t>(EyeLayout::kAzimuths) *
-                       static_cast<std::size_t>(EyeLayout::kAbove + EyeLayout::kBelow);
-    const std::span<const glm::vec4> from(moonlit.sky);
-    const std::span<glm::vec4> to(tables.sky);
-    for (const std::size_t first : {std::size_t{0}, 2 * layer})  // air and ground
-        add_mean(from.subspan(first, layer), EyeLayout::kAzimuths, layer, light.moon,
-                 to.subspan(first, layer));
-    add_mean(moonlit.between, EyeLayout::kBetweenAzimuths, moonlit.between.size(), light.moon,
-             tables.between);
+    const auto add_layer = [&](std::size_t from, std::size_t to) {
+        add_mean(std::span(moonlit.sky).subspan(from * layer, layer), EyeLayout::kAzimuths,
+                 light.moon, std::span(tables.sky).subspan(to * layer, layer));
+    };
+    add_layer(0, 0);
+    add_layer(1, EyeLayout::kLayers);
+    add_layer(2, 2);
+    add_mean(moonlit.between, EyeLayout::kBetweenAzimuths, light.moon, tables.between);
     return tables;
 }
 
@@ -111,9 +124,12 @@ AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up) {
 }
 
 void AirTextures::update(const sky::Air& air, const AirLight& light, FrameBlock& block) {
-    const Of wanted{air, std::max(block.eye_m.w, 0.0f), light};
+    const double eye_height_m = std::max(block.eye_m.w, 0.0f);
+    Of wanted{air, sky::nearest_eye_height_m(eye_height_m), light};
+    wanted.light.sun_sine = sky::nearest_sun_sine(light.sun_sine);
+    wanted.light.moon_sine = sky::nearest_sun_sine(light.moon_sine);
     if (of_ != wanted) {
-        const sky::EyeTables tables = tables_of(air, wanted.height_m, light);
+        const sky::EyeTables tables = tables_of(air, wanted.height_m, wanted.light);
         if (!of_) {
             sky_ =
                 gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA32F, kSky, 1, kAirSkyTexture);
@@ -125,14 +141,15 @@ void AirTextures::update(const sky::Air& air, const AirLight& light, FrameBlock&
         sky_.write(0, {0, 0, 0}, kSky, std::as_bytes(std::span(tables.sky)));
         between_.write(0, {0, 0, 0}, kBetween, std::as_bytes(std::span(tables.between)));
         const EyeLayout& layout = tables.layout;
-        const double h = layout.height_m, top = sky::kTopOfAir_m;
         mapping_ = glm::vec4(layout.above_band, layout.below_band, layout.farthest_m,
                              sky::white_extinction(air));
-        colour_ = glm::vec4(tables.colour, (h - top) * (2 * sky::kEarthRadius_m + h + top));
+        colour_ = tables.colour;
         of_ = wanted;
     }
+    constexpr double kTop = sky::kTopOfAir_m;
+    const double from_top = (eye_height_m - kTop) * (2 * sky::kEarthRadius_m + eye_height_m + kTop);
     block.air_mapping = mapping_;
-    block.air_colour = colour_;
+    block.air_colour = glm::vec4(colour_, from_top);
 }
 
 const gl::Texture* AirTextures::texture(std::string_view name) const {

@@ -34,8 +34,9 @@ AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up);
 /// What the eye of a frame sees of the air, on the device: sky::EyeTables for lib/air.glsl.
 class AirTextures {
   public:
-    /// Computes them again if the air, the eye's height or the light have changed, and writes their
-    /// coordinates. 15 ms on two processors, 30 at night with the moon.
+    /// Computes them again if the air, the eye's height or the light have changed noticeably
+    /// (sky::nearest_eye_height_m()), and writes their coordinates. 15 ms on two processors, 30 at
+    /// night with the moon.
     /// @param block  has the eye
     void update(const sky::Air& air, const AirLight& light, FrameBlock& block);
 
@@ -45,13 +46,14 @@ class AirTextures {
   private:
     struct Of {
         sky::Air air;
-        float height_m;
+        double height_m;
         AirLight light;
         bool operator==(const Of&) const = default;
     };
     std::optional<Of> of_;
     gl::Texture sky_, between_;
-    glm::vec4 mapping_{0}, colour_{0};
+    glm::vec4 mapping_{0};
+    glm::vec3 colour_{0};
 };
 
 }  // namespace relevo::render

@@ -1,6 +1,6 @@
 //! provides  the sky: its colours, the sun and the stars in it, and its light on slopes
 //! hook      background_radiance, ambient
-//! reads     direction of the view, of the sun with refraction, height of the eye [m]
+//! reads     directions of the view, and of sun and moon with refraction; height of the eye [m]
 //! writes    radiance, linear sRGB; irradiance
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
@@ -10,29 +10,29 @@
 //@ include lib/filtered.glsl
 //@ include lib/moon.glsl
 
-uniform sampler3D sky_light;     // irradiance of slopes, likewise
-uniform sampler2DArray sky_times;
+uniform sampler3D sky_light;  // irradiance of slopes by azimuth from the sun, normal and sun's elevation (tools/sky/textures.h)
+uniform sampler2DArray sky_times;  // the paper's day, sunset and night
 uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
-uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for each elevation of the sun, or the paper's three, blended")
-uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the paper's three skies: brightness without the sun; above 1 because the drawn aureole is weaker than the real one")
-uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for a camera at sea level; higher values extend the horizon's colours upwards")
-uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Elevation of the sun above which only the day texture is used; for the paper's three skies")
-uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Elevation of the sun below which only the night texture is used; for the paper's three skies")
+uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("model: the clear atmosphere. three: the paper's skies of day, sunset and night, blended by the sun's elevation")
+uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("For sky.colours three: brightness of the sky without glow and disc; above 1 because the glow is weaker than a real aureole")
+uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("For sky.colours three: exponent of the paper's equation 3 at sea level; higher values extend the horizon's colours upwards")
+uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("For sky.colours three: elevation of the sun above which only the sky of day is used")
+uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("For sky.colours three: elevation of the sun below which only the sky of night is used")
 
-uniform float sky_power = 20.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
-uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Weights of the three powers; all 1 in the paper")
-uniform float sky_aureole = 0.3; //@ range(0, 100) label("Aureole") description("Brightness of the glow, relative to the sunlight at the camera")
-uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("More glow for a low sun, which shines through more haze; off in the paper")
-uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
-uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the solar disc, relative to the sunlight at the camera")
+uniform float sky_power = 20.0; //@ range(1, 4000) label("Glow, power") description("For sky.colours three: least exponent of the glow around the sun (the paper's equation 1); the next two are 4 and 16 times it")
+uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Glow, weights") description("For sky.colours three: weights of the glow's three powers; all 1 in the paper")
+uniform float sky_aureole = 0.3; //@ range(0, 100) label("Glow") description("For sky.colours three: brightness of the glow, relative to the sunlight at the camera")
+uniform bool sky_air_mass = true; //@ static label("Glow by air mass") description("For sky.colours three: more glow around a low sun, which shines through more air; off in the paper")
+uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("Size of the sun's disc: 65000 falls to one half at 0.265 degrees, the sun's true size")
+uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, relative to the sunlight at the camera")
 uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("Sharpness of the disc's edge; 1, a soft spot, in the paper")
 
 uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness relative to the true one; 0: no stars")
 
-uniform bool sky_earth = true; //@ static label("Earth") description("On: plain ground below the horizon, lit as the terrain and seen through its air. Off: the colour of the horizon, as in the paper")
+uniform bool sky_earth = true; //@ static label("Earth") description("On: plain ground below the horizon, lit by sun and sky and seen through its air. Off: the colour of the horizon, as in the paper")
 uniform vec3 sky_earth_albedo = vec3(0.13, 0.14, 0.10); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
-uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Vertical optical depth of the air over the ground outside the DEM")
+uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("For sky.colours three: vertical optical depth of the air over the ground outside the DEM")
 
 uniform bool sky_slopes = true; //@ static label("Light by direction") description("On: a slope receives light from the part of the sky that it faces and from the ground around it. Off: the same light everywhere")
 
@@ -274,22 +274,26 @@ vec3 sky_bodies(in vec3 direction) {
     return radiance + moon_on_sky(direction, to_sun, uncovered);
 }
 
+/// Glow of the moon in the paper's skies, as that of the sun.
+vec3 sky_moon_glow(in vec3 direction) {
+    return sky_aureole * sky_air_mass_of(dot(frame.eye_moon.xyz, frame.eye_up.xyz)) *
+           sky_glow(dot(frame.eye_moon.xyz, direction)) * frame.eye_moon_light.rgb;
+}
+
 vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 radiance;
     if (sky_colours == 0) {
-        radiance = air_radiance(direction);
-        if (with_disc && sky_earth) radiance += sky_earth_albedo * air_ground(direction);
+        // What fades into the sky, and mirrors, see no ground.
+        radiance = with_disc && sky_earth ? air_radiance(direction) + sky_earth_albedo * air_ground(direction)
+                                          : air_radiance_of_sky(direction);
     } else {
         radiance = sky_of_paper(direction, with_disc);
+#if HAS_night
+        if (frame.eye_moon_light.a > 0.0) radiance += sky_moon_glow(direction);
+#endif
     }
     // What has set is behind the Earth.
     if (with_disc && dot(direction, frame.eye_up.xyz) > frame.eye_up.w) radiance += sky_bodies(direction);
-#if HAS_night
-    // As the aureole of the sun in the paper's skies.
-    if (frame.eye_moon_light.a > 0.0)
-        radiance += sky_aureole * sky_air_mass_of(dot(frame.eye_moon.xyz, frame.eye_up.xyz)) *
-                    sky_glow(dot(frame.eye_moon.xyz, direction)) * frame.eye_moon_light.rgb;
-#endif
     return radiance;
 }
 

@@ -4,7 +4,8 @@
 
 //@ include lib/filtered.glsl
 
-uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight by the aerosol, ground
+uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight that the aerosol scatters once, ground,
+                                 // moonlight that the aerosol scatters once
 uniform sampler3D air_between;   // by azimuth, elevation and distance
 
 const vec3 air_sky_size = vec3(40.0, 72.0, 32.0);      // EyeLayout: azimuths, rows above the horizon and below
@@ -12,7 +13,7 @@ const vec3 air_between_size = vec3(24.0, 48.0, 28.0);  // azimuths, elevations, 
 const float air_even = 0.2;                            // share of the rows that are even in the sine
 const float air_asymmetry = 0.8;                       // core/sky/air.h: kAerosolAsymmetry
 
-/// What the sun's light is scattered into, of an aerosol. @param cosine  of the angle from the sun [1/sr]
+/// Phase function of the aerosol [1/sr]. @param cosine  of the angle by which light is deflected
 float air_aerosol_phase(in float cosine) {
     const float g = air_asymmetry;
     float root = inversesqrt(1.0 + g * g - 2.0 * g * cosine);
@@ -38,36 +39,47 @@ float air_elevation(in float sine) {
     return below ? -min(place, 1.0) : min(place, 1.0);
 }
 
-/// Where a direction is in air_sky.
-vec2 air_sky_place(in vec3 direction) {
-    float elevation = air_elevation(dot(direction, frame.eye_up.xyz));
+/// Where a direction is in air_sky. @param elevation  air_elevation()
+vec2 air_sky_place(in vec3 direction, in float elevation) {
     float row = elevation < 0.0 ? air_sky_size.y - elevation * (air_sky_size.z - 1.0) : elevation * (air_sky_size.y - 1.0);
     return vec2((air_azimuth(direction) * (air_sky_size.x - 1.0) + 0.5) / air_sky_size.x,
                 (row + 0.5) / (air_sky_size.y + air_sky_size.z));
 }
 
+/// Radiance of air_sky at a place of it. @param direction  what sun and moon are scattered into
+vec3 air_radiance_at(in vec2 place, in vec3 direction) {
+    vec3 radiance = filtered(air_sky, vec3(place, 0.0)).rgb +
+                    air_aerosol_phase(dot(direction, frame.eye_sun.xyz)) * filtered(air_sky, vec3(place, 1.0)).rgb;
+    if (frame.eye_moon_light.a > 0.0)
+        radiance += air_aerosol_phase(dot(direction, frame.eye_moon.xyz)) * filtered(air_sky, vec3(place, 3.0)).rgb;
+    return max(radiance, 0.0);  // a few colours of dusk are outside of sRGB
+}
+
 /// Radiance of the air in a direction, up to its end or to the ground, which is not part of it.
 vec3 air_radiance(in vec3 direction) {
-    vec2 place = air_sky_place(direction);
-    float phase = air_aerosol_phase(dot(direction, frame.eye_sun.xyz));
-    vec3 radiance = filtered(air_sky, vec3(place, 0.0)).rgb + phase * filtered(air_sky, vec3(place, 1.0)).rgb;
-    return max(radiance, 0.0);  // a few colours of dusk are outside of sRGB
+    return air_radiance_at(air_sky_place(direction, air_elevation(dot(direction, frame.eye_up.xyz))), direction);
+}
+
+/// The same, but below the horizon that of the horizon.
+vec3 air_radiance_of_sky(in vec3 direction) {
+    float elevation = max(air_elevation(dot(direction, frame.eye_up.xyz)), 0.0);
+    return air_radiance_at(air_sky_place(direction, elevation), direction);
 }
 
 /// What plain ground of the Earth sends through the air, for an albedo of 1; 0 above the horizon.
 vec3 air_ground(in vec3 direction) {
-    if (dot(direction, frame.eye_up.xyz) >= frame.eye_up.w) return vec3(0.0);
-    return max(filtered(air_sky, vec3(air_sky_place(direction), 2.0)).rgb, 0.0);
+    float sine = dot(direction, frame.eye_up.xyz);
+    if (sine >= frame.eye_up.w) return vec3(0.0);
+    return max(filtered(air_sky, vec3(air_sky_place(direction, air_elevation(sine)), 2.0)).rgb, 0.0);
 }
 
-/// The air between the eye and a point.
+/// Air that light passes: mix(radiance, light, exp(-depth)) is left of the light.
 struct AirBetween {
     vec3 radiance;  // of air that lets no light through
     vec3 depth;     // optical depth in red, green and blue
 };
 
-/// What takes of the light of a point, and adds to it: mix(radiance, light, exp(-depth)).
-/// @param direction  unit vector from the eye  @param distance_m  to the point
+/// The air between the eye and a point. @param direction  unit vector from the eye  @param distance_m  to the point
 AirBetween air_between_eye_and(in vec3 direction, in float distance_m) {
     float sine = dot(direction, frame.eye_up.xyz);
     // An eye above the air looks through empty space first.
@@ -77,5 +89,5 @@ AirBetween air_between_eye_and(in vec3 direction, in float distance_m) {
     vec3 at = vec3(air_azimuth(direction), 0.5 + 0.5 * air_elevation(sine),
                    sqrt(min(way_m / frame.air_mapping.z, 1.0)));
     vec4 air = filtered(air_between, (at * (air_between_size - 1.0) + 0.5) / air_between_size);
-    return AirBetween(air.rgb, way_m * air.a * frame.air_colour.rgb);
+    return AirBetween(max(air.rgb, 0.0), way_m * air.a * frame.air_colour.rgb);
 }

@@ -366,6 +366,51 @@ TEST(SkyAir, GroundOfTheEarthIsSeenThroughItsAir) {
     EXPECT_LT(worst(errors, "ground of the Earth, GPU against the atmosphere", 0.03), 0.03);
 }
 
+TEST(SkyAir, BelowTheHorizonTheSkyGoesOnAsTheHorizon) {
+    // What fades into the sky, and what stands where there is no ground.
+    test::GpuSnippet gpu("sky");
+    render::AirTextures air;
+    look(gpu, air, 2000, 30);
+    const auto results = gpu.run(
+        "float elevation = 0.9999 * asin(frame.eye_up.w) - 0.3 * float(x);\n"
+        "vec3 view = vec3(0.0, -cos(elevation), sin(elevation));\n"
+        "result = vec4(sky_on_background_radiance(view, false), 1.0);",
+        5, 1);
+    for (int x = 1; x < 5; ++x)
+        EXPECT_NEAR(results[static_cast<std::size_t>(x)].g / results[0].g, 1, 0.05) << x;
+}
+
+TEST(SkyAir, TheMoonHasTheAureoleOfItsLight) {
+    // A moon 40 degrees high in the east of a night, whose light is a millionth of the sun's.
+    const auto atmosphere = sky::atmosphere_of(sky::Air{});
+    const double moon_sine = std::sin(radians(40.0)), strength = 1e-6;
+    test::GpuSnippet gpu("sky");
+    render::AirTextures air;
+    look(gpu, air, 2, -40);
+    gpu.frame().eye_moon = glm::vec4(std::cos(radians(40.0)), 0, moon_sine, 0.0045);
+    gpu.frame().eye_moon_light = glm::vec4(glm::vec3(1e-6f), 1);
+    air.update(
+        sky::Air{},
+        {.sun_sine = std::sin(radians(-40.0)), .moon_sine = moon_sine, .moon = glm::vec3(1e-6f)},
+        gpu.frame());
+    const auto results = gpu.run(
+        "float elevation = radians(40.0 + 2.0 * float(x));\n"
+        "vec3 view = vec3(cos(elevation), 0.0, sin(elevation));\n"
+        "result = vec4(1e6 * air_radiance(view), 1.0);",
+        20, 1);
+    std::vector<double> errors;
+    for (int x = 1; x < 20; ++x) {
+        const double sine = std::sin(radians(40.0 + 2 * x));
+        const glm::dvec3 night =
+            sky::night_radiance(2, sine, sky::colour_of(atmosphere->transmittance(2, sine, 1e9)));
+        const glm::dvec3 expected =
+            sky::colour_of(atmosphere->radiance({2, sine, moon_sine, 1})) + night / strength;
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].g / expected.g - 1));
+    }
+    // But for the aureole the sky has the mean of its azimuths.
+    EXPECT_LT(worst(errors, "sky around the moon, GPU against the atmosphere", 0.1), 0.1);
+}
+
 TEST(SkyAir, ColoursOfTheDuskStayAboveBlack) {
     test::GpuSnippet gpu("sky");
     render::AirTextures air;
