@@ -20,7 +20,7 @@ using sky::EyeLayout;
 constexpr gl::Extent kSky{EyeLayout::kAzimuths, EyeLayout::kAbove + EyeLayout::kBelow,
                           EyeLayout::kLayers + 1};
 constexpr gl::Extent kBetween{EyeLayout::kBetweenAzimuths, EyeLayout::kBetweenElevations,
-                              EyeLayout::kDistances};
+                              EyeLayout::kDistances* sky::EyeTables::kOrders};
 
 constexpr const char* kAerosol = "air.aerosol";
 constexpr const char* kOzone = "air.ozone";

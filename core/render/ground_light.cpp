@@ -404,6 +404,23 @@ const gl::Texture* GroundLight::texture(std::string_view name) const {
     return nullptr;
 }
 
+namespace {
+
+/// @returns 1e9 where no ground is known
+double eye_above_ground_m(const dem::Heightfield& field, const FrameBlock& block,
+                          double exaggeration) {
+    constexpr double kNoGround_m = 1e9;
+    if (block.eye_axes == glm::vec4(0)) return kNoGround_m;
+    const glm::dvec4 eye(block.eye_post);
+    const glm::dvec2 post =
+        (glm::dvec2(eye.x + eye.z, eye.y + eye.w) + 0.5) / static_cast<double>(field.reduction) -
+        0.5;
+    const double ground_m = field.height_at(post.x, post.y);
+    return std::isnan(ground_m) ? kNoGround_m : block.eye_m.w - exaggeration * ground_m;
+}
+
+}  // namespace
+
 void GroundLight::describe(FrameBlock& block) const {
     const Impl& my = *impl_;
     const dem::Grid& grid = my.field.grid;
@@ -416,6 +433,7 @@ void GroundLight::describe(FrameBlock& block) const {
                         static_cast<float>(1 / (given * sky_reduction)), 0,
                         static_cast<float>(kClearancePosts * reduction *
                                            std::max(spacing_m.x, spacing_m.y) * exaggeration)};
+    block.eye_above_ground = static_cast<float>(eye_above_ground_m(my.field, block, exaggeration));
     const geo::Geodetic centre = grid.center();
     const double step_m = std::max(spacing_m.x, spacing_m.y);
     const auto posts_per_m = [&](double azimuth_rad) {

@@ -85,25 +85,34 @@ class Between {
         const double sine = layout_.sine_between(row / (EyeLayout::kBetweenElevations - 1.0));
         // The ground does not end the rays: DEMs have ground below the sea, too.
         const double begin = path_of(layout_.height_m, sine).begin_m;
-        std::vector<Brought> brought(suns_.size(), Brought{.through = filled(1)});
+        const Sources once{.sun = true}, further{.sun = false, .diffuse = &air_.diffuse()};
+        std::vector<Brought> sunlight(suns_.size(), Brought{.through = filled(1)});
+        std::vector<Brought> diffuse = sunlight;
         double before = 0;
         for (int slice = 0; slice < EyeLayout::kDistances; ++slice) {
             const double distance =
-                std::max(layout_.distance_m(slice / (EyeLayout::kDistances - 1.0)), 10.0);
+                std::max(layout_.distance_m(slice / (EyeLayout::kDistances - 1.0), sine), 10.0);
             const std::array<double, 3> ends{begin + before, begin + 0.5 * (before + distance),
                                              begin + distance};
-            integrate(air_.coefficients(), {.sun = true, .diffuse = &air_.diffuse()},
-                      {layout_.height_m, sine, suns_}, ends, false, brought);
+            const Rays rays{layout_.height_m, sine, suns_};
+            integrate(air_.coefficients(), once, rays, ends, false, sunlight);
+            integrate(air_.coefficients(), further, rays, ends, false, diffuse);
             before = distance;
-            for (std::size_t i = 0; i < suns_.size(); ++i)
-                to[(static_cast<std::size_t>(slice) * EyeLayout::kBetweenElevations +
-                    static_cast<std::size_t>(row)) *
-                       suns_.size() +
-                   i] = texel(brought[i], sine, suns_[i], distance);
+            for (std::size_t i = 0; i < suns_.size(); ++i) {
+                to[at(0, slice, row) + i] = texel(diffuse[i], sine, suns_[i], distance) +
+                                            glm::vec4(0.5 * night_irradiance(), 0);
+                to[at(1, slice, row) + i] = texel(sunlight[i], sine, suns_[i], distance);
+            }
         }
     }
 
   private:
+    std::size_t at(int order, int slice, int row) const {
+        return static_cast<std::size_t>(
+                   (order * EyeLayout::kDistances + slice) * EyeLayout::kBetweenElevations + row) *
+               suns_.size();
+    }
+
     glm::vec4 texel(const Brought& brought, double sine, const Sun& sun, double distance) const {
         const auto phase = static_cast<float>(aerosol_phase(ray_sun_cosine(sine, sun)));
         const glm::vec3 scattered =
@@ -113,8 +122,7 @@ class Between {
         const glm::vec3 taken(-std::expm1(-depth * extinction_.r),
                               -std::expm1(-depth * extinction_.g),
                               -std::expm1(-depth * extinction_.b));
-        return {scattered / taken + glm::vec3(0.5 * night_irradiance()),
-                depth / static_cast<float>(distance)};
+        return {scattered / taken, depth / static_cast<float>(distance)};
     }
 
     const Atmosphere& air_;
@@ -156,7 +164,21 @@ EyeLayout::EyeLayout(double eye_height_m)
     const double to_horizon_m = -horizon * (kEarthRadius_m + height_m);
     above_band = std::clamp(4 * kAir_m / std::max(to_horizon_m, 1.0), 0.012, 0.5);
     below_band = std::max(-5 * horizon, 0.002);
-    farthest_m = std::min(to_horizon_m + 350e3, 1200e3);
+    // A little above the ground, so that the way to it is not 0.
+    const double level = std::min(horizon, horizon_sine(1));
+    horizon_m = -level * (kEarthRadius_m + height_m) - path_of(height_m, level).begin_m;
+    farthest_m = horizon_m + (height_m < kHigh_m ? 350e3 : 0);
+}
+
+double EyeLayout::reach_m(double sine) const {
+    if (sine >= horizon) return farthest_m;
+    const Path path = path_of(std::max(height_m, 1.0), sine);
+    const double to_ground_m = path.ground ? path.end_m - path.begin_m : horizon_m;
+    return to_ground_m * farthest_m / horizon_m;
+}
+
+double EyeLayout::distance_m(double w, double sine) const {
+    return reach_m(sine) * (height_m < kHigh_m ? w * w : 1 - (1 - w) * (1 - w));
 }
 
 double EyeLayout::place_of(double away, double band) {
@@ -180,8 +202,9 @@ EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine) {
     made.colour = extinction_colour(air, made.layout);
     constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
     made.sky.resize(static_cast<std::size_t>(EyeLayout::kAzimuths * kRows * EyeLayout::kLayers));
-    made.between.resize(static_cast<std::size_t>(
-        EyeLayout::kBetweenAzimuths * EyeLayout::kBetweenElevations * EyeLayout::kDistances));
+    made.between.resize(
+        static_cast<std::size_t>(EyeLayout::kBetweenAzimuths * EyeLayout::kBetweenElevations *
+                                 EyeLayout::kDistances * EyeTables::kOrders));
     const std::vector<Sun> around = suns_around(EyeLayout::kAzimuths, sun_sine);
     const std::vector<Sun> between_around = suns_around(EyeLayout::kBetweenAzimuths, sun_sine);
     const Between between(air, made.layout, made.colour, between_around);

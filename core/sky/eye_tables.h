@@ -26,7 +26,8 @@ struct EyeLayout {
     /// Share of the sines above the horizon, from it on, that about half of the rows have.
     double above_band = 1;
     double below_band = 1;  ///< the same below
-    double farthest_m = 1;  ///< distance at the last slice, from where the ray enters the air
+    /// Distance at the last slice of level rays, and of the horizon, from where rays enter the air.
+    double farthest_m = 1, horizon_m = 1;
 
     explicit EyeLayout(double height_m);
 
@@ -39,7 +40,13 @@ struct EyeLayout {
     double sine_below(double v) const;
     /// For the air between: 0 at the nadir, 0.5 at the horizon, 1 at the zenith.
     double sine_between(double v) const;
-    double distance_m(double w) const { return farthest_m * w * w; }
+    /// Distance of a slice, from where the ray enters the air: those of an eye above kHigh_m are
+    /// dense at the ground, where most air is, those of others at the eye.
+    double distance_m(double w, double sine) const;
+    static constexpr double kHigh_m = 10e3;
+
+  private:
+    double reach_m(double sine) const;
 };
 
 struct EyeTables {
@@ -50,10 +57,12 @@ struct EyeTables {
     ///   for the table;
     /// - light of white ground at the end of the rays below the horizon.
     std::vector<glm::vec4> sky;
-    /// By distance, elevation, azimuth. rgb: light scattered towards the eye over what the air
-    /// between takes away, 1 - exp(-a distance colour); a: mean extinction of green light on the
-    /// way [1/m].
+    /// By order, distance, elevation, azimuth. rgb: light scattered towards the eye over what the
+    /// air between takes away, 1 - exp(-a distance colour), first that of light scattered more than
+    /// once, then that of sunlight scattered once; a: mean extinction of green light on the way
+    /// [1/m].
     std::vector<glm::vec4> between;
+    static constexpr int kOrders = 2;
     /// Extinction in red, green and blue, relative to that of green light.
     glm::vec3 colour;
 };

@@ -7,6 +7,7 @@
 
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
+//@ include lib/sun_share.glsl
 
 uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
 uniform float haze_density = 0.0; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0. Air that is clearer than the atmosphere's own is drawn as the atmosphere")
@@ -54,13 +55,36 @@ void haze_on_vertex(in VertexFrame v) {
     haze_strength = haze_air ? depth * haze_colour() : haze_strength_of(depth);
 }
 
+/// Sunlight that air and haze scatter once on the way to a point, without what the shadow of the terrain keeps off. Along
+/// the way, heights above the shadow are taken as linear.
+/// @param unshaded  all of it  @param strength  optical depth of the haze
+vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength) {
+#if HAS_shadow
+    float eye_m = sun_shadow_clearance(frame.eye_post.xy + frame.eye_post.zw) + frame.eye_above_ground;
+    float point_m = sun_shadow_clearance(s.post);
+    if (eye_m >= 0.0 && point_m >= 0.0) return unshaded;
+    vec3 lit = vec3(0.0);
+    if (eye_m > 0.0 || point_m > 0.0) {
+        float edge = eye_m / (eye_m - point_m);  // share of the way up to the edge of the shadow
+        AirBetween air = air_between_eye_and(view, edge * s.distance_m);
+        vec3 before = air.once * (1.0 - exp(-air.depth - edge * strength));
+        lit = eye_m > 0.0 ? before : max(unshaded - before, 0.0);
+    }
+    // At the horizon the shadow is the Earth's, which the tables have.
+    return mix(unshaded, lit, smoothstep(-0.005, 0.01, frame.sun_apparent.w));
+#else
+    return unshaded;
+#endif
+}
+
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     // What is seen from outside, as a model on a table, has no air before it.
 #if !HAS_outside
     if (haze_air) {
         AirBetween air = air_between_eye_and(view, s.distance_m);
         vec3 passed = exp(-air.depth - haze_strength);
-        air_scattered = air.radiance * (1.0 - passed);
+        vec3 once = air.once * (1.0 - passed);
+        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength);
         radiance = radiance * passed + air_scattered;
     } else {
         radiance = mix(radiance, background_radiance(view, false), haze_strength);

@@ -6,7 +6,7 @@
 
 uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight that the aerosol scatters once, ground,
                                  // moonlight that the aerosol scatters once
-uniform sampler3D air_between;   // by azimuth, elevation and distance
+uniform sampler3D air_between;   // by azimuth, elevation and distance, twice: light scattered more than once, and once
 
 const vec3 air_sky_size = vec3(40.0, 72.0, 32.0);      // EyeLayout: azimuths, rows above the horizon and below
 const vec3 air_between_size = vec3(24.0, 48.0, 28.0);  // azimuths, elevations, distances
@@ -76,8 +76,23 @@ vec3 air_ground(in vec3 direction) {
 /// Air that light passes: mix(radiance, light, exp(-depth)) is left of the light.
 struct AirBetween {
     vec3 radiance;  // of air that lets no light through
+    vec3 once;      // the part of it that is sunlight scattered once
     vec3 depth;     // optical depth in red, green and blue
 };
+
+/// Where a distance is among the slices of air_between, 0..1: EyeLayout::distance_m().
+/// @param way_m  from where the ray enters the air  @param entry_m  from the eye to there
+float air_slice(in float sine, in float way_m, in float entry_m) {
+    float height_m = max(frame.eye_m.w, 1.0), above_ground = height_m * (12742000.0 + height_m);
+    float level_m = sqrt(above_ground);
+    float horizon_m = level_m - max(level_m - sqrt(max(above_ground - frame.air_colour.w, 0.0)), 0.0);
+    float down = (6371000.0 + height_m) * sine, to_ground2 = down * down - above_ground;
+    bool meets = sine < frame.eye_up.w && to_ground2 > 0.0;
+    float to_ground_m = meets ? above_ground / (sqrt(to_ground2) - down) - entry_m : horizon_m;
+    float share = min(way_m * horizon_m / (to_ground_m * frame.air_mapping.z), 1.0);
+    bool high = frame.air_mapping.z < horizon_m + 1e5;  // EyeLayout::kHigh_m
+    return high ? 1.0 - sqrt(1.0 - share) : sqrt(share);
+}
 
 /// The air between the eye and a point. @param direction  unit vector from the eye  @param distance_m  to the point
 AirBetween air_between_eye_and(in vec3 direction, in float distance_m) {
@@ -86,8 +101,10 @@ AirBetween air_between_eye_and(in vec3 direction, in float distance_m) {
     float down = (6371000.0 + max(frame.eye_m.w, 0.0)) * sine;
     float entry_m = max(-down - sqrt(max(down * down - frame.air_colour.w, 0.0)), 0.0);
     float way_m = max(distance_m - entry_m, 0.0);
-    vec3 at = vec3(air_azimuth(direction), 0.5 + 0.5 * air_elevation(sine),
-                   sqrt(min(way_m / frame.air_mapping.z, 1.0)));
-    vec4 air = filtered(air_between, (at * (air_between_size - 1.0) + 0.5) / air_between_size);
-    return AirBetween(max(air.rgb, 0.0), way_m * air.a * frame.air_colour.rgb);
+    vec3 at = vec3(air_azimuth(direction), 0.5 + 0.5 * air_elevation(sine), air_slice(sine, way_m, entry_m));
+    vec3 size = vec3(air_between_size.xy, 2.0 * air_between_size.z);
+    vec3 place = (at * (air_between_size - 1.0) + 0.5) / size;
+    vec4 further = filtered(air_between, place);
+    vec3 once = max(filtered(air_between, place + vec3(0.0, 0.0, 0.5)).rgb, 0.0);
+    return AirBetween(max(further.rgb, 0.0) + once, once, way_m * further.a * frame.air_colour.rgb);
 }

@@ -80,4 +80,5 @@ layout(std140, binding = 0) uniform Frame {
     vec4 moon_axis;           // xyz: axis of the moon, northwards
     vec4 moon_radiance;       // rgb: of its full disc before the eye; a: that of its dark side, relative
     vec4 corona;              // rgb: in totality, irradiance that the sun would have at the eye; else 0
+    float eye_above_ground;   // height of the eye above the posts below it, as drawn [m]; 1e9 where there are none
 } frame;

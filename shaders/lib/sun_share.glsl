@@ -1,4 +1,5 @@
-//! provides  sun_share: visible fraction of the solar disc at a point of the ground, after occlusion by terrain
+//! provides  sun_share: visible fraction of the solar disc at a point of the ground, after occlusion by terrain;
+//!           sun_shadow_clearance: how far ground is above or in the shadow of terrain
 //! reads     light_clearance, light_fraction (core/render/ground_light.h)
 //! source    core/light/raster/clearance.h computes the clearances
 
@@ -82,4 +83,17 @@ float sun_share(in Surface s, in vec3 to_sun) {
     vec2 share = textureLod(light_fraction, at, max(level - 1.0, 0.0)).rg;
     float far = share.g > 0.0 ? share.r / share.g : near;
     return mix(near, far, moved_m == 0.0 ? min(level, 1.0) : 0.0);
+}
+
+/// Height of the ground at a post above the shadow of the terrain, of the sun's centre [m]; below 0 in the shadow, and 1e9
+/// where nothing is known.
+float sun_shadow_clearance(in vec2 post) {
+    vec2 node = (post + 0.5) * frame.light_grid.x - 0.5;
+    vec2 quad = floor(node), t = node - quad, size = vec2(textureSize(light_clearance, 0));
+    if (any(lessThan(node, vec2(-0.5))) || any(greaterThan(node, size - 0.5))) return 1e9;
+    vec2 at = (quad + 1.0) / size;
+    vec4 upper = textureGather(light_clearance, at, 0), lower = textureGather(light_clearance, at, 1);
+    vec4 weights = vec4((1.0 - t.x) * t.y, t.x * t.y, t.x * (1.0 - t.y), (1.0 - t.x) * (1.0 - t.y));
+    weights *= vec4(lessThan(upper, vec4(kVoidClearance)));
+    return dot(weights, vec4(1.0)) > 0.0 ? 0.5 * between(upper + lower, weights) : 1e9;
 }
