@@ -273,5 +273,16 @@ TEST(Shipped, KeepsTheAirsThatWereAskedForLast) {
     EXPECT_EQ(atmosphere_of(Air{}), shipped);
 }
 
+TEST(Night, KeepsItsBlueDownToTheHorizon) {
+    for (const double height : {2.0, 1000.0, 3000.0})
+        for (double v = 0; v < 1; v += 0.02) {
+            const double sine = EyeLayout(height).sine_above(v) + 1e-6;
+            const glm::dvec3 light =
+                night_radiance(height, sine, colour_of(clean().transmittance(height, sine, 1e9)));
+            EXPECT_GT(light.b, 0.6 * light.g) << height << " " << sine;
+            EXPECT_GT(light.r, 0.5 * light.g) << height << " " << sine;
+        }
+}
+
 }  // namespace
 }  // namespace relevo::sky
