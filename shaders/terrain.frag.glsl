@@ -193,7 +193,7 @@ void main() {
 #endif
 
     vec3 to_sun;
-    vec3 irradiance = sun_light(s.up, to_sun);
+    vec3 irradiance = sun_light_at(s.height_m, s.up, to_sun);
 #ifdef ORTHOGRAPHIC
     vec3 view = -s.up;
 #else
@@ -218,7 +218,7 @@ void main() {
     hook_visibility(s, to_sun, lit);
     lit *= sunlight;
     // The part of the sky that a slope sees, of the light on level ground.
-    vec3 sky = frame.sky_irradiance.rgb * (0.5 + 0.5 * dot(s.normal, s.up));
+    vec3 sky = sky_light_at(s.height_m, s.up) * (0.5 + 0.5 * dot(s.normal, s.up));
     hook_ambient(s, sky);
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);

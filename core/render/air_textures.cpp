@@ -25,6 +25,7 @@ constexpr gl::Extent kBetween{EyeLayout::kBetweenAzimuths, EyeLayout::kBetweenEl
 constexpr const char* kAerosol = "air.aerosol";
 constexpr const char* kOzone = "air.ozone";
 constexpr const char* kAlbedo = "air.albedo";
+constexpr const char* kGround = "air.ground";
 
 shader::Param number(const char* address, double initial, shader::ParamRange range) {
     shader::Param param;
@@ -99,7 +100,14 @@ std::vector<shader::Param> air_params() {
     albedo.label = "Albedo below the air";
     albedo.description =
         "Albedo of the Earth's ground, whose light the air scatters: 0.8 over snow";
-    return {aerosol, ozone, albedo};
+    shader::Param ground = number(kGround, 1, {});
+    ground.type = shader::ParamType::Bool;
+    ground.range.reset();
+    ground.label = "Light of the ground";
+    ground.description =
+        "On: sun and sky light the ground through this air, by its height. Off: by formulas for "
+        "clean air at one height, as in the paper";
+    return {aerosol, ozone, albedo, ground};
 }
 
 sky::Air air_of(const shader::ParamStore& values) {
@@ -111,6 +119,11 @@ sky::Air air_of(const shader::ParamStore& values) {
     read(kOzone, air.ozone_du);
     read(kAlbedo, air.ground_albedo);
     return air;
+}
+
+std::shared_ptr<const sky::Atmosphere> ground_air_of(const shader::ParamStore& values) {
+    if (!values.find(kGround) || values.value(kGround)[0] == 0) return nullptr;
+    return sky::atmosphere_of(air_of(values));
 }
 
 AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up) {

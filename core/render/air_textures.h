@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -9,16 +10,22 @@
 #include "shader/param_store.h"
 #include "sky/air.h"
 
+namespace relevo::sky {
+class Atmosphere;
+}
+
 namespace relevo::render {
 
 /// Samplers in lib/air.glsl.
 inline constexpr const char* kAirSkyTexture = "air_sky";
 inline constexpr const char* kAirBetweenTexture = "air_between";
 
-/// Parameters of core for the atmosphere: `air.aerosol`, `air.ozone`, `air.albedo`.
+/// Parameters of core for the atmosphere: `air.aerosol`, `air.ozone`, `air.albedo`, `air.ground`.
 std::vector<shader::Param> air_params();
 /// Their values; the defaults where a store has none of them.
 sky::Air air_of(const shader::ParamStore& values);
+/// FrameInputs::atmosphere: null where `air.ground` is off, or in a store without it.
+std::shared_ptr<const sky::Atmosphere> ground_air_of(const shader::ParamStore& values);
 
 /// What lights the air over an eye.
 struct AirLight {

@@ -9,9 +9,9 @@
 
 #include "base/units.h"
 #include "geo/ellipsoid.h"
+#include "render/height_light.h"
 #include "scene/map_view.h"
 #include "sun/daylight.h"
-#include "sun/moonlight.h"
 
 namespace relevo::render {
 namespace {
@@ -22,17 +22,17 @@ constexpr double kBennett45_rad = radians(59.7 / 3600);  // as in frame.glsl: ey
 
 /// rgb: irradiance at a place where the sine of the sun's geometric elevation is `sine`. a:
 /// displacement of the unit vector to the sun along the vertical by refraction.
-glm::dvec4 light_at(const SunLight& sun, double sine) {
+glm::dvec4 light_at(const SunLight& sun, const HeightLight& at, double sine) {
     const double elevation = std::asin(std::clamp(sine, -1.0, 1.0));
     const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
     // Refraction raises normalize(direction + a up). There is none at the zenith.
     const double cosine = std::cos(elevation + lift);
-    return {sun.strength * sun::direct_transmittance(elevation + lift, sun.ground_height_m),
-            cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
+    return {at.direct(sun, sine), cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
 }
 
-/// The direct light on the ground: direction, refraction, irradiance.
-void write_direct_light(const SunLight& light, FrameBlock& block) {
+/// The light on the ground: direction, refraction, irradiance.
+void write_ground_light(const FrameInputs& inputs, FrameBlock& block) {
+    const SunLight& light = inputs.direct_light();
     const double elevation = std::asin(std::clamp(light.direction.z, -1.0, 1.0));
     const double lift = light.refraction_rad ? light.refraction_rad(elevation) : 0.0;
     const glm::dvec3 level{light.direction.x, light.direction.y, 0};
@@ -41,10 +41,13 @@ void write_direct_light(const SunLight& light, FrameBlock& block) {
     block.sun_apparent = glm::vec4(
         std::cos(elevation + lift) * heading + glm::dvec3(0, 0, std::sin(elevation + lift)),
         elevation + lift);
-    block.sun_light[0] = glm::vec4(light_at(light, 0.5 * (light.lowest_sine + light.highest_sine)));
-    const SunLightTable table = sun_light_table(light);
+    const HeightLight middle(inputs, light.ground_height_m);
+    block.sun_light[0] =
+        glm::vec4(light_at(light, middle, 0.5 * (light.lowest_sine + light.highest_sine)));
+    const SunLightTable table = sun_light_table(light, middle);
     block.sun_light_table = table.light;
     block.sun_light_domain = {table.domain.x, table.domain.y, 0, 0};
+    block.sky_irradiance = glm::vec4(middle.sky(light.direction.z), 0);
 }
 
 /// Half of the width and of the height of the picture, at view depth 1.
@@ -116,17 +119,20 @@ double sun_light_scale(double sine) {
     return sine / (std::abs(sine) + 0.1);
 }
 
-SunLightTable sun_light_table(const SunLight& sun) {
+double sun_light_sine(double scaled) {
+    return 0.1 * scaled / (1 - std::abs(scaled));
+}
+
+SunLightTable sun_light_table(const SunLight& sun, const HeightLight& at) {
     // Widened for single precision.
     const double begin = sun_light_scale(sun.lowest_sine) - 1e-5,
                  step = (sun_light_scale(sun.highest_sine) + 1e-5 - begin) /
                         (SunLightTable::kEntries - 1);
     SunLightTable table;
     table.domain = {static_cast<float>(begin), static_cast<float>(1 / step)};
-    for (std::size_t i = 0; i < SunLightTable::kEntries; ++i) {
-        const double scaled = begin + static_cast<double>(i) * step;
-        table.light[i] = glm::vec4(light_at(sun, 0.1 * scaled / (1 - std::abs(scaled))));
-    }
+    for (std::size_t i = 0; i < SunLightTable::kEntries; ++i)
+        table.light[i] =
+            glm::vec4(light_at(sun, at, sun_light_sine(begin + static_cast<double>(i) * step)));
     return table;
 }
 
@@ -201,10 +207,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.up_matrix = glm::mat4(glm::mat3(matrix));
     block.polar_axis = glm::vec4(axis, 0);
 
-    write_direct_light(inputs.direct_light(), block);
+    write_ground_light(inputs, block);
     const double elevation = std::asin(std::clamp(inputs.sun.direction.z, -1.0, 1.0));
-    block.sky_irradiance =
-        glm::vec4(sun::eclipsed_sky(inputs.sun_visible) * sun::sky_irradiance(elevation), 0);
     block.height_range = {ground.lowest_m, 1 / std::max(ground.highest_m - ground.lowest_m, 1e-3),
                           inputs.exaggeration,
                           inputs.displacement.range_m(ground.lowest_m, ground.highest_m).first};
@@ -233,10 +237,11 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
         glm::vec4(normalize(inputs.sun.direction + raise * eye_up), eye_elevation + eye_lift);
     const double bent =
         inputs.sun.refraction_rad ? thinned * inputs.sun.refraction_rad(kPi / 4) : 0;
-    block.eye_sun_light = glm::vec4(
-        inputs.sun.strength * sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m),
-        bent / kBennett45_rad);
-    write_moon(inputs, eye_up, above_sea_m, thinned, block);
+    const HeightLight at_eye(inputs, above_sea_m);
+    block.eye_sun_light =
+        glm::vec4(at_eye.direct(inputs.sun, dot(inputs.sun.direction, eye_up), thinned),
+                  bent / kBennett45_rad);
+    write_moon(inputs, at_eye, eye_up, thinned, block);
     const glm::dmat3 rows = glm::transpose(inputs.stars.axes);
     for (int i = 0; i < 3; ++i)
         block.celestial[static_cast<std::size_t>(i)] = glm::vec4(rows[i], inputs.stars.velocity[i]);

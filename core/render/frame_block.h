@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include <glm/mat4x4.hpp>
@@ -19,14 +20,21 @@
 #include "sun/celestial.h"
 #include "sun/refraction.h"
 
+namespace relevo::sky {
+class Atmosphere;
+}
+
 namespace relevo::render {
+
+class HeightLight;
 
 /// The sun over a DEM, for the shaders.
 struct SunLight {
     glm::dvec3 direction{0, 0, 1};  ///< unit vector towards the geometric sun, in the local frame
     /// Refraction at a geometric elevation [rad]; empty without refraction.
     std::function<double(double elevation_rad)> refraction_rad;
-    double ground_height_m = 0;  ///< of the lit ground, above sea level
+    double ground_height_m = 0;  ///< of the lit ground, above sea level: its middle
+    double highest_m = 0;        ///< height of the highest ground
     /// Range of the sine of the sun's geometric elevation over the DEM.
     double lowest_sine = 0, highest_sine = 1;
     double semidiameter_rad = 0;  ///< of the solar disc; 0: a point source
@@ -49,9 +57,12 @@ struct SunLightTable {
     std::array<glm::vec4, kEntries> light;
     glm::vec2 domain;
 };
-SunLightTable sun_light_table(const SunLight& sun);
+/// @param at  light at the ground's height
+SunLightTable sun_light_table(const SunLight& sun, const HeightLight& at);
 /// As in lib/ground.glsl.
 double sun_light_scale(double sine);
+/// Its inverse.
+double sun_light_sine(double scaled);
 
 /// The part of a picture that a frame shows: a tile of one that is larger than a frame, or the
 /// whole moved by less than a pixel, for samples within pixels. Cameras are of the whole picture.
@@ -72,6 +83,9 @@ struct FrameInputs {
     SunLight sun;
     double sun_visible = 1;      ///< fraction of the sun's disc that the moon does not cover
     std::optional<Moon> moon{};  ///< drawn in the sky if there is one
+    /// Whose light falls on the ground; null: that of the formulas of sun/daylight.h. Set by the
+    /// renderer.
+    std::shared_ptr<const sky::Atmosphere> atmosphere{};
     /// The moon's light, if it is the direct light on the ground: set by choose_direct_light().
     std::optional<SunLight> moonlight{};
     /// The direct light on the ground, with its shadows.

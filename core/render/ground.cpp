@@ -293,6 +293,7 @@ SunLight make_sun_light(const sun::SkyPosition& position, const sun::Refraction&
         return refraction.apparent_rad(elevation_rad) - elevation_rad;
     };
     light.ground_height_m = ground.air_height_m();
+    light.highest_m = ground.highest_m;
     light.semidiameter_rad = position.semidiameter_rad;
     light.lowest_sine = 1;
     light.highest_sine = -1;

@@ -9,6 +9,8 @@
 
 #include "base/units.h"
 #include "render/frame_block.h"
+#include "render/height_light.h"
+#include "sky/path.h"
 #include "sun/daylight.h"
 #include "sun/moonlight.h"
 
@@ -19,9 +21,12 @@ double refracted_rad(const SunLight& light, double elevation_rad) {
     return elevation_rad + (light.refraction_rad ? light.refraction_rad(elevation_rad) : 0.0);
 }
 
+/// Whether a part of its disc is above the horizon of the sea from the highest ground.
 bool shines(const SunLight& light) {
+    constexpr double kSemidiameter_rad = radians(0.2666);
     const double highest_rad = std::asin(std::clamp(light.highest_sine, -1.0, 1.0));
-    return sun::direct_transmittance(refracted_rad(light, highest_rad), 0).y > 0;
+    return refracted_rad(light, highest_rad) + kSemidiameter_rad >
+           std::asin(sky::horizon_sine(light.highest_m));
 }
 
 double luminance(const glm::dvec3& rgb) {
@@ -76,23 +81,15 @@ double moonlight_lux(const FrameInputs& inputs) {
            luminance(direct + sun::moonlit_sky_irradiance(elevation_rad, inputs.moon->light));
 }
 
-void write_moon(const FrameInputs& inputs, const glm::dvec3& eye_up, double eye_height_m,
+void write_moon(const FrameInputs& inputs, const HeightLight& at_eye, const glm::dvec3& eye_up,
                 double bent, FrameBlock& block) {
-    if (inputs.moonlight)
-        block.sky_irradiance +=
-            glm::vec4(sun::moonlit_sky_irradiance(
-                          std::asin(std::clamp(inputs.moonlight->direction.z, -1.0, 1.0)),
-                          inputs.moon->light),
-                      0);
     if (!inputs.moon) return;
     const Moon& moon = *inputs.moon;
     const glm::dvec3 seen = lifted(moon.direction, inputs.sun, eye_up, bent);
     const double elevation_rad = std::asin(std::clamp(dot(seen, eye_up), -1.0, 1.0));
     const double horizon_rad = std::asin(static_cast<double>(block.eye_up.w));
     if (elevation_rad + moon.semidiameter_rad < horizon_rad) return;
-    // Seen from above its own horizon, the disc is through the air of its centre.
-    const glm::dvec3 air =
-        sun::direct_transmittance(std::max(elevation_rad, radians(0.3)), eye_height_m);
+    const glm::dvec3 air = at_eye.passed(inputs.sun, dot(moon.direction, eye_up), bent);
     block.eye_moon = glm::vec4(seen, moon.semidiameter_rad);
     block.eye_moon_light = glm::vec4(moon.light * air, inputs.moonlight ? 1 : 0);
     block.moon_to_sun = glm::vec4(moon.to_sun, 0);
@@ -101,7 +98,8 @@ void write_moon(const FrameInputs& inputs, const glm::dvec3& eye_up, double eye_
     // The corona is a millionth of the sun: the sky drowns it in all but the last of an eclipse.
     constexpr double kShowsCorona = 0.002;
     if (inputs.sun_visible < kShowsCorona)
-        block.corona = glm::vec4(sun::direct_transmittance(block.eye_sun.w, eye_height_m), 0);
+        block.corona =
+            glm::vec4(at_eye.passed(inputs.sun, dot(inputs.sun.direction, eye_up), bent), 0);
 }
 
 }  // namespace relevo::render

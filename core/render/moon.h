@@ -8,6 +8,7 @@
 
 namespace relevo::render {
 
+class HeightLight;
 struct FrameInputs;
 struct SunLight;
 
@@ -26,7 +27,8 @@ struct Moon {
 Moon make_moon(const sun::MoonPosition& moon, const sun::Position& sun,
                const sun::CelestialFrame& stars);
 
-/// Sets the direct light to the moon's if the sun shines nowhere on the DEM and the moon does.
+/// Sets the direct light to the moon's if no part of the sun is above the horizon of the
+/// highest ground and the moon is.
 /// @param moonlight  the moon as make_sun_light() has it
 void choose_direct_light(FrameInputs& inputs, SunLight moonlight);
 
@@ -35,10 +37,10 @@ void choose_direct_light(FrameInputs& inputs, SunLight moonlight);
 double moonlight_lux(const FrameInputs& inputs);
 
 /// Writes the moon's part of the frame block, after all others.
-/// @param eye_up         vertical at the eye
-/// @param eye_height_m   above sea level
-/// @param bent           refraction at the eye, as a fraction of that in inputs.sun
-void write_moon(const FrameInputs& inputs, const glm::dvec3& eye_up, double eye_height_m,
+/// @param at_eye  light at the eye's height
+/// @param eye_up  vertical at the eye
+/// @param bent    refraction at the eye, as a fraction of that in inputs.sun
+void write_moon(const FrameInputs& inputs, const HeightLight& at_eye, const glm::dvec3& eye_up,
                 double bent, FrameBlock& block);
 
 }  // namespace relevo::render

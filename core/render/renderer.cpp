@@ -22,6 +22,7 @@
 #include "render/frame_runner.h"
 #include "render/ground_probe.h"
 #include "render/instances.h"
+#include "render/light_by_height.h"
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "render/readback.h"
@@ -76,6 +77,7 @@ struct Renderer::Impl : FrameServices {
     TileSelection tiles;  // of the last frame
     GroundProbe probe;
     AirTextures air;
+    LightByHeight light;
     gl::Texture footprint;  // of the last ground that was seen from outside
     std::vector<NativeHost> natives;
     bool native_is_made = false;     // prepared in an earlier frame
@@ -208,6 +210,7 @@ struct Renderer::Impl : FrameServices {
     const gl::Texture* find_texture(const shader::TextureUnit& unit, const Terrain& terrain) const {
         if (unit.resource == "floor_ground") return &footprint;
         if (const gl::Texture* const found = air.texture(unit.resource)) return found;
+        if (const gl::Texture* const found = light.texture(unit.resource)) return found;
         if (const gl::Texture* const found = terrain.texture(unit.resource)) return found;
         if (const gl::Texture* const found = effect_textures.find(unit.resource)) return found;
         if (const gl::Texture* const found = line_textures.find(unit.resource)) return found;
@@ -221,9 +224,10 @@ struct Renderer::Impl : FrameServices {
 
     bool reads(std::string_view resource) const { return runner.plan().reads(resource); }
 
-    /// Makes the frame block, and sets `inputs.displacement`.
+    /// Makes the frame block, and sets `inputs.displacement` and `inputs.atmosphere`.
     FrameBlock prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs) {
         inputs.displacement = displacement_of(displaces, values);
+        inputs.atmosphere = ground_air_of(values);
         terrain.displace(inputs.displacement);
         line_textures.update(terrain.grid(), terrain.serial(), shared.lines);
         const double limit = anisotropy > 1 ? anisotropy : kFootprintWithoutAnisotropy;
@@ -239,6 +243,7 @@ struct Renderer::Impl : FrameServices {
         if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
         write_places(terrain.rasters());
+        if (reads(kLightByHeightTexture)) light.update(inputs, block);
         if (reads(kAirSkyTexture) || reads(kAirBetweenTexture))
             air.update(air_of(values), air_light(inputs, glm::dvec3(block.eye_up)), block);
         if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);

@@ -47,14 +47,28 @@ std::array<double, kDensities> log_densities() {
     return logs;
 }
 
-}  // namespace
-
-double rayleigh_density(double height_m) {
+/// A height between two of the table: the logarithm of the density, and its slope [1/km].
+struct LogDensity {
+    double log, slope;
+};
+LogDensity log_density(double height_m) {
     static const std::array<double, kDensities> kLogs = log_densities();
     const double km = 1e-3 * height_m;
     const auto i = std::min(static_cast<std::size_t>(std::max(km, 0.0)),
                             static_cast<std::size_t>(kDensities - 2));
-    return std::exp(kLogs[i] + (km - static_cast<double>(i)) * (kLogs[i + 1] - kLogs[i]));
+    const double slope = kLogs[i + 1] - kLogs[i];
+    return {kLogs[i] + (km - static_cast<double>(i)) * slope, slope};
+}
+
+}  // namespace
+
+double rayleigh_density(double height_m) {
+    return std::exp(log_density(height_m).log);
+}
+
+double rayleigh_density_slope(double height_m) {
+    const auto [log, slope] = log_density(height_m);
+    return 1e-3 * slope * std::exp(log);
 }
 
 double aerosol_depth(const Air& air, double um) {

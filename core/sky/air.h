@@ -61,6 +61,8 @@ inline constexpr double kAerosolAsymmetry = 0.8;
 /// The air's: U.S. Standard Atmosphere, 1976. An exponential of one scale height has twice as much
 /// air from 40 to 80 km, which dusk is as much too bright by.
 double rayleigh_density(double height_m);
+/// Its change with height [1/m].
+double rayleigh_density_slope(double height_m);
 inline double aerosol_density(double height_m) {
     return std::exp(-height_m / kAerosolScaleHeight_m);
 }

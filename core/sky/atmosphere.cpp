@@ -175,9 +175,21 @@ Spectrum Atmosphere::transmittance(double height_m, double sine, double distance
     return spectrum(brought(height_m, sine, std::span(&kAny, 1), distance_m).front().through);
 }
 
-Spectrum Atmosphere::sunlight(double height_m, double sun_sine) const {
-    return spectrum(
-        sky::sunlight(coefficients_, coefficients_.aerosol, std::max(height_m, 0.0), sun_sine));
+Spectrum Atmosphere::sunlight(const SunRays& rays, double elevation_rad) const {
+    // Gauss-Chebyshev nodes of the second kind: strips of the disc.
+    constexpr int kStrips = 7;
+    Spectrum mean{};
+    for (int i = 1; i <= kStrips; ++i) {
+        const double angle = i * kPi / (kStrips + 1);
+        const auto column = rays.towards(elevation_rad + kSunRadius_rad * std::cos(angle));
+        if (!column) continue;
+        const double weight = 2 * std::sin(angle) * std::sin(angle) / (kStrips + 1);
+        for (std::size_t k = 0; k < kCount; ++k)
+            mean[k] += weight * passed(column->rayleigh_m * coefficients_.rayleigh[k] +
+                                       column->aerosol_m * coefficients_.aerosol[k] +
+                                       column->ozone_m * coefficients_.ozone[k]);
+    }
+    return mean;
 }
 
 Spectrum Atmosphere::sky_irradiance(double height_m, double sun_sine) const {

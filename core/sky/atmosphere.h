@@ -6,6 +6,7 @@
 #include "sky/air.h"
 #include "sky/integrate.h"
 #include "sky/moments.h"
+#include "sky/sun_rays.h"
 
 namespace relevo::sky {
 
@@ -58,8 +59,9 @@ class Atmosphere {
     /// Share of light that passes along a ray up to a distance, or to the ray's end.
     Spectrum transmittance(double height_m, double sine, double distance_m) const;
 
-    /// Sunlight on a surface that faces the sun; 0 where its disc is below the horizon of a height.
-    Spectrum sunlight(double height_m, double sun_sine) const;
+    /// Sunlight on a surface that faces the sun: the mean over its disc, of which what is below the
+    /// horizon of the sea sends nothing. @param elevation_rad  of its centre, geometric
+    Spectrum sunlight(const SunRays& rays, double elevation_rad) const;
     /// Light of the sky on level ground, without the sun's disc.
     Spectrum sky_irradiance(double height_m, double sun_sine) const;
 

@@ -10,8 +10,6 @@
 namespace relevo::sky {
 namespace {
 
-constexpr double kSunRadius_rad = radians(0.2666);
-
 Column column_of(double height_m, double sine) {
     constexpr int kSteps = 24;
     // A ray at the horizon grazes the ground and goes on.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/units.h"
 #include "sky/air.h"
 #include "sky/values.h"
 
@@ -31,6 +32,9 @@ class Columns {
   private:
     std::vector<Column> table_;  // by height and sine, dense at the ground and at the horizon
 };
+
+/// Semidiameter of the sun's disc.
+inline constexpr double kSunRadius_rad = radians(0.2666);
 
 /// Part of the sun's disc above the horizon of a height. @param sine  of its centre's elevation
 double disc_above_horizon(double height_m, double sine);

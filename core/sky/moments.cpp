@@ -42,26 +42,19 @@ DiffuseTable::Place DiffuseTable::column_of(double sun_sine) {
     return place((folded(sun_sine) - lowest()) / (folded(1) - lowest()), kSuns);
 }
 
-Diffuse DiffuseTable::read(double height_m, double sun_sine) const {
+Values DiffuseTable::level(double height_m, double sun_sine) const {
     const Place row = row_of(height_m), column = column_of(sun_sine);
-    Diffuse sum;
+    Values sum{};
     for (int j = 0; j < 2; ++j) {
         for (int i = 0; i < 2; ++i) {
             const float weight =
                 (j ? row.share : 1 - row.share) * (i ? column.share : 1 - column.share);
-            const Diffuse& node = at(row.first + j, column.first + i);
-            for (std::size_t c = 0; c < kHarmonics; ++c)
-                for (std::size_t k = 0; k < kWavelengths; ++k)
-                    sum.moments[c][k] += weight * node.moments[c][k];
+            const Values& node = at(row.first + j, column.first + i).level;
             for (std::size_t k = 0; k < kWavelengths; ++k)
-                sum.level[k] += weight * node.level[k];
+                sum[k] += weight * node[k];
         }
     }
     return sum;
-}
-
-Values DiffuseTable::level(double height_m, double sun_sine) const {
-    return read(height_m, sun_sine).level;
 }
 
 }  // namespace relevo::sky

@@ -67,8 +67,7 @@ class DiffuseTable {
     std::vector<Diffuse>& nodes() { return nodes_; }
     const std::vector<Diffuse>& nodes() const { return nodes_; }
 
-    /// Interpolated linearly.
-    Diffuse read(double height_m, double sun_sine) const;
+    /// Irradiance of level ground, interpolated linearly.
     Values level(double height_m, double sun_sine) const;
 
   private:

@@ -22,11 +22,16 @@ glm::dvec3 matching_functions(double nm) {
 }
 
 glm::dvec3 tristimulus(const Spectrum& share) {
+    static const std::array<glm::dvec3, kWavelengths> kSun = [] {
+        std::array<glm::dvec3, kWavelengths> sun;
+        for (int i = 0; i < kWavelengths; ++i)
+            sun[static_cast<std::size_t>(i)] = solar_irradiance()[static_cast<std::size_t>(i)] *
+                                               matching_functions(1e3 * wavelength_um(i));
+        return sun;
+    }();
     glm::dvec3 xyz(0);
-    for (int i = 0; i < kWavelengths; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        xyz += share[k] * solar_irradiance()[k] * matching_functions(1e3 * wavelength_um(i));
-    }
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        xyz += share[k] * kSun[k];
     return xyz;
 }
 

@@ -8,9 +8,10 @@
 
 //@ include lib/air.glsl
 //@ include lib/filtered.glsl
+//@ include lib/ground.glsl
 //@ include lib/moon.glsl
 
-uniform sampler3D sky_light;  // irradiance of slopes by azimuth from the sun, normal and sun's elevation (tools/sky/textures.h)
+uniform sampler3D sky_light;  // irradiance of slopes over that of level ground, by azimuth from the sun, normal and sun's elevation (tools/sky/textures.h)
 uniform sampler2DArray sky_times;  // the paper's day, sunset and night
 uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
@@ -99,9 +100,9 @@ vec3 sky_ground_seen(in vec3 air_light, in float sun_sine, in float below) {
 }
 
 /// Light of the ground around on a slope, of which a slope sees the more the steeper it is.
-/// @param cosine  of the slope
-vec3 sky_bounce(in float cosine, in float sun_sine) {
-    return (0.5 - 0.5 * cosine) * sky_ground(sun_sine);
+/// @param cosine  of the slope  @param level  irradiance of level ground
+vec3 sky_bounce(in float cosine, in vec3 level) {
+    return (0.5 - 0.5 * cosine) * sky_earth_albedo * level;
 }
 
 /// Equation 1 without its narrowest term. @param cosine  L . V
@@ -298,14 +299,14 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {
+    irradiance = sky_light_at(s.height_m, s.up);
     if (sky_slopes) {
-        vec3 to_sun = frame.eye_sun.xyz;
+        vec3 to_sun = frame.eye_sun.xyz, to_light;
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
                        sky_slice(dot(to_sun, s.up)));
-        irradiance = sky_luminance() *
-                         filtered(sky_light, sky_texel(at, sky_light_size)).rgb +
-                     sky_bounce(dot(s.normal, s.up), dot(to_sun, s.up));
-    } else {
-        irradiance = frame.sky_irradiance.rgb;
+        vec3 direct = sun_light_at(s.height_m, s.up, to_light);
+        vec3 level = irradiance + max(dot(to_light, s.up), 0.0) * direct;
+        irradiance = irradiance * filtered(sky_light, sky_texel(at, sky_light_size)).rgb +
+                     sky_bounce(dot(s.normal, s.up), level);
     }
 }

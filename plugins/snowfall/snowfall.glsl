@@ -5,6 +5,8 @@
 //! source    extinction 3.912 / visibility: H. Koschmieder, Theorie der horizontalen Sichtweite (1924);
 //!           fall of aggregates, 1 to 1.5 m/s: J. Locatelli and P. Hobbs, J. Geophys. Res. 79 (1974)
 
+//@ include lib/ground.glsl
+
 uniform float snowfall_visibility_m = 3000.0; //@ range(50, 20000) unit(m) label("Visibility") description("How far one sees: over 1000 m in light snow, below 500 m in heavy snow")
 uniform float snowfall_light = 1.6;           //@ range(0, 2) label("Light") description("Light below the clouds, of that of a clear day, with the longer exposure that it gets")
 uniform float snowfall_flakes = 1.0;          //@ range(0, 4) label("Flakes") description("Factor on the number of flakes")
@@ -44,7 +46,7 @@ void snowfall_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
 
 void snowfall_on_ambient(in Surface s, inout vec3 irradiance) {
 #if !HAS_outside
-    float open = dot(irradiance, vec3(1.0)) / max(dot(frame.sky_irradiance.rgb, vec3(1.0)), 1e-9);
+    float open = dot(irradiance, vec3(1.0)) / max(dot(sky_light_at(s.height_m, s.up), vec3(1.0)), 1e-9);
     irradiance = snowfall_irradiance() * min(open, 1.0);
 #endif
 }

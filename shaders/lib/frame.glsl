@@ -16,11 +16,11 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, or the moon that lights a night (eye_moon_light),
                               // geometric; w: its elevation [rad]
     vec4 sun_apparent;        // xyz: the same with refraction; w: apparent elevation [rad]
-    vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM,
-                              // with refraction; the others are 0
+    vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM and of its
+                              // heights, with refraction; the others are 0. sun_light_at() has it by height
     vec4 sun_light_domain;    // of sun_light_table; x: where it begins, y: entries of it a unit, on the scale of
                               // sun_light_scale()
-    vec4 sky_irradiance;      // rgb: on level ground from the whole sky
+    vec4 sky_irradiance;      // rgb: on level ground from the whole sky, there; sky_light_at() has it by height
     vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration,
                               // w: lowest that effects move ground to [m], before exaggeration
     vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m
@@ -80,5 +80,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 moon_axis;           // xyz: axis of the moon, northwards
     vec4 moon_radiance;       // rgb: of its full disc before the eye; a: that of its dark side, relative
     vec4 corona;              // rgb: in totality, irradiance that the sun would have at the eye; else 0
+    vec4 light_heights;       // of light_by_height, for lib/ground.glsl; x: height of its first row [m], y: 1 / (its last - its
+                              // first) [1/m]
     float eye_above_ground;   // height of the eye above the posts below it, as drawn [m]; 1e9 where there are none
 } frame;

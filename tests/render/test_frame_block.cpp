@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "render/frame_block.h"
+#include "render/height_light.h"
 #include "sun/daylight.h"
 #include "sun/refraction.h"
 #include "support/support.h"
@@ -137,7 +138,8 @@ Off worst_over(double lowest_deg, double highest_deg, double from_deg) {
     sun.refraction_rad = bennett_rad;
     sun.lowest_sine = std::sin(radians(lowest_deg));
     sun.highest_sine = std::sin(radians(highest_deg));
-    const SunLightTable table = sun_light_table(sun);
+    const FrameInputs inputs{.camera = {}, .sun = sun, .stars = {}};
+    const SunLightTable table = sun_light_table(sun, HeightLight(inputs, 0));
     Off worst;
     for (double at_deg = from_deg; at_deg <= highest_deg;
          at_deg += (highest_deg - lowest_deg) / 517) {

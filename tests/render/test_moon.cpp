@@ -63,6 +63,14 @@ TEST(Moon, IsTheDirectLightWhereTheSunShinesNowhere) {
     EXPECT_LT(block.sun_light[0].g, 0.85 * 2.4e-6);
 }
 
+TEST(Moon, WaitsUntilTheSunHasLeftTheSummits) {
+    FrameInputs inputs = inputs_with(-1.5, 40);
+    EXPECT_TRUE(inputs.moonlight);
+    inputs.sun.highest_m = 4400;  // its horizon is 2.1 degrees down
+    choose_direct_light(inputs, light_from(inputs.moon->direction));
+    EXPECT_FALSE(inputs.moonlight);
+}
+
 TEST(Moon, ThatIsDownChangesNothing) {
     FrameInputs with = inputs_with(-30, -5), without = with;
     without.moon.reset();

@@ -93,8 +93,8 @@ TEST(Atmosphere, LosesNoLight) {
     const Air pure{.angstrom_beta = 0, .ozone_du = 0, .ground_albedo = 0.3};
     const Atmosphere air(pure);
     const double sun = sine(60);
-    const double ground =
-        luminance(air.sunlight(0, sun)) * sun + luminance(air.sky_irradiance(0, sun));
+    const double ground = luminance(air.sunlight(SunRays(0), std::asin(sun))) * sun +
+                          luminance(air.sky_irradiance(0, sun));
     const double out = leaving(air, sun);
     fmt::print("[ sky ] of {:.4f} the ground keeps {:.4f}, {:.4f} leave\n", sun, 0.7 * ground, out);
     EXPECT_NEAR((0.7 * ground + out) / sun, 1, 0.02);
@@ -154,10 +154,14 @@ TEST(Atmosphere, OzoneMakesTheZenithOfDuskBlue) {
 }
 
 TEST(Atmosphere, LightsSummitsAfterTheValleys) {
-    EXPECT_EQ(luminance(clean().sunlight(500, sine(-1.5))), 0);
-    EXPECT_GT(luminance(clean().sunlight(4000, sine(-1.5))), 0.0003);
-    const glm::dvec3 glow = colour_of(clean().sunlight(4000, sine(-1)));
+    const auto light = [](double height_m, double sun_deg) {
+        return clean().sunlight(SunRays(height_m), radians(sun_deg));
+    };
+    EXPECT_EQ(luminance(light(0, -0.9)), 0);
+    EXPECT_GT(luminance(light(4000, -1.5)), 0.001);
+    const glm::dvec3 glow = colour_of(light(4000, -1));
     EXPECT_GT(glow.r, 3 * std::max(glow.g, 0.0));
+    EXPECT_EQ(luminance(light(4000, -3.2)), 0);
 }
 
 TEST(Atmosphere, IsBrighterAndWhiterWhereTheAirIsTurbid) {
@@ -168,8 +172,9 @@ TEST(Atmosphere, IsBrighterAndWhiterWhereTheAirIsTurbid) {
                      clear = colour_of(clean().radiance(view));
     EXPECT_GT(dusty.g, 1.3 * clear.g);
     EXPECT_LT(dusty.b / dusty.r, 0.9 * clear.b / clear.r);
-    EXPECT_LT(luminance(turbid.sunlight(0, sine(40))),
-              0.75 * luminance(clean().sunlight(0, sine(40))));
+    const SunRays rays(0);
+    EXPECT_LT(luminance(turbid.sunlight(rays, radians(40))),
+              0.75 * luminance(clean().sunlight(rays, radians(40))));
 }
 
 }  // namespace

@@ -255,8 +255,7 @@ TEST(Night, ShedsTwoThousandthsOfALux) {
 TEST(Shipped, TheDefaultAtmosphereIsTheOneThatIsComputed) {
     const auto shipped = atmosphere_of(Air{});
     EXPECT_EQ(shipped, atmosphere_of(Air{}));
-    const Diffuse found = shipped->diffuse().read(1200, 0.3),
-                  expected = clean().diffuse().read(1200, 0.3);
+    const Diffuse &found = shipped->diffuse().at(7, 50), &expected = clean().diffuse().at(7, 50);
     for (std::size_t k = 0; k < kWavelengths; ++k)
         EXPECT_EQ(found.moments[0][k], expected.moments[0][k]);
     EXPECT_NE(atmosphere_of(Air{.angstrom_beta = 0.1}), shipped);

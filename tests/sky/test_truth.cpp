@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
@@ -40,6 +44,28 @@ TEST(Atmosphere, IsThePathIntegralsSky) {
         EXPECT_LT(score.mean_uv, 0.012);
         EXPECT_LT(score.worst_uv, turbid || score.sun_deg < -4 ? 0.03 : 0.02);
     }
+}
+
+TEST(Atmosphere, ShedsThePathIntegralsLightOnLevelGround) {
+    double sum = 0, worst = 0;
+    const std::vector<test::SkyRow> rows = test::sky_truth("sky_truth_level.csv");
+    for (const test::SkyRow& row : rows) {
+        const glm::dvec3 xyz =
+            xyz_of(atmosphere(row.parameters())
+                       .sky_irradiance(row.height_m, std::sin(radians(row.sun_deg))));
+        const double error = xyz.y / row.luminance - 1;
+        fmt::print(
+            "[ sky ] {} air, {:.0f} m, sun {:.0f}: irradiance {:+.1f} % (+- {:.1f}), u'v' {:.4f}\n",
+            row.air, row.height_m, row.sun_deg, 100 * error, 100 * row.error,
+            glm::distance(chromaticity(xyz), row.uv));
+        sum += std::abs(error) / static_cast<double>(rows.size());
+        worst = std::max(worst, std::abs(error));
+        EXPECT_LT(glm::distance(chromaticity(xyz), row.uv), 0.01);
+    }
+    fmt::print("[ accuracy ] light of the sky on level ground: mean {:.1f} %, worst {:.1f} %\n",
+               100 * sum, 100 * worst);
+    EXPECT_LT(sum, 0.05);
+    EXPECT_LT(worst, 0.15);
 }
 
 }  // namespace

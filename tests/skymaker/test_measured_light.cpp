@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "path_integral.h"
+#include "sky/atmosphere.h"
 #include "sun/daylight.h"
 #include "sun/position.h"
 #include "support/sky_truth.h"
@@ -105,11 +106,14 @@ TEST(MeasuredLight, SpectraOfAstmG173) {
     constexpr double kSun_deg = 41.81;
     const Spectrum through =
         PathIntegral(medium_of(air), radians(kSun_deg)).transmittance({0, radians(kSun_deg), 0});
+    const Spectrum programs =
+        sky::Atmosphere(air, sky::DiffuseTable()).sunlight(sky::SunRays(0), radians(kSun_deg));
     const Spectrum on_tilt = light_of(air, kSun_deg, 0, 37, 600).all();
-    std::vector<double> direct, global;
+    std::vector<double> direct, global, of_program;
     for (int i = 0; i < kWavelengths; ++i) {
         const auto k = static_cast<std::size_t>(i);
         direct.push_back(through[k] * outside[k] - facing[k]);
+        of_program.push_back(programs[k] * outside[k] - facing[k]);
         global.push_back(on_tilt[k] * outside[k] - tilted[k]);
         fmt::print(
             "[ sky ] {:.0f} nm: direct {:.3f} W/m2/nm, ASTM {:.3f}; on the tilt {:.3f}, ASTM "
@@ -122,7 +126,10 @@ TEST(MeasuredLight, SpectraOfAstmG173) {
         "tilt of 37 degrees {:.3f} ({:.1f} %)\n",
         root_mean_square(direct), 100 * root_mean_square(direct) / 1.28, root_mean_square(global),
         100 * root_mean_square(global) / 1.43);
+    fmt::print("[ accuracy ] ASTM G173, the program's direct light: RMSE {:.3f} W/m2/nm\n",
+               root_mean_square(of_program));
     EXPECT_LT(root_mean_square(direct), 0.05);
+    EXPECT_LT(root_mean_square(of_program), 0.05);
     EXPECT_LT(root_mean_square(global), 0.11);
 }
 
@@ -215,6 +222,20 @@ class ClearDay {
     std::array<std::array<double, kSines.size()>, kBetas.size()> watts_{};
 };
 
+/// Level irradiance from 400 to 700 nm of the program's default air [W/m2].
+double programs_irradiance(double height_m, double sun_sine) {
+    static const sky::Atmosphere kAir;
+    static const sky::SunRays kRays(height_m);
+    const Spectrum direct = kAir.sunlight(kRays, std::asin(sun_sine)),
+                   diffuse = kAir.sky_irradiance(height_m, sun_sine);
+    double sum = 0;
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
+        const double width_nm = k == 0 || k + 1 == kWavelengths ? 10 : 20;
+        sum += width_nm * sky::solar_irradiance()[k] * (sun_sine * direct[k] + diffuse[k]);
+    }
+    return sum;
+}
+
 TEST(MeasuredLight, IrradianceOfAClearDayInIthaca) {
     SKIP_WITHOUT_TEST_DATA(folder);
     const KidersDay day(read_numbers(folder / "sky/kider_2013-05-27_ghi.txt"));
@@ -256,6 +277,22 @@ TEST(MeasuredLight, IrradianceOfAClearDayInIthaca) {
         "{:.3f} of that from 400 to 700 nm and beta {:.2f} (fitted): RMSE {:.1f} W/m2 of "
         "1000; {:.3f} (fitted) and beta 0.04: RMSE {:.1f}\n",
         sines.size(), day.noon_min(), broadband, best_beta, best, infrared * broadband, error);
+    double scaled = 0, of_program = 0;
+    std::vector<double> program;
+    for (const double sine : sines)
+        program.push_back(programs_irradiance(300, sine));
+    for (std::size_t i = 0; i < sines.size(); ++i) {
+        scaled += program[i] * measured[i];
+        of_program += program[i] * program[i];
+    }
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < sines.size(); ++i)
+        differences.push_back(scaled / of_program * program[i] - measured[i]);
+    fmt::print(
+        "[ accuracy ] Ithaca, the program's default air: all light {:.3f} of that from 400 to 700 "
+        "nm (fitted): RMSE {:.1f} W/m2\n",
+        scaled / of_program * std::pow(sun.distance_au, 2), root_mean_square(differences));
+    EXPECT_LT(root_mean_square(differences), 20);
     EXPECT_NEAR(day.noon_min(), 217, 2);
     EXPECT_LT(best, 20);
     EXPECT_LT(error, 20);

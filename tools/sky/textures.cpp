@@ -149,7 +149,7 @@ image::TextureData light_texture(const sky::Atmosphere& air) {
     for (int slice = 0; slice < Layout::kSuns; ++slice) {
         const double sun_sine = Layout::sun_sine_of(slice / (Layout::kSuns - 1.0));
         const Skies skies = make_skies(air, sun_sine);
-        const double level = luminance(slope_irradiance(skies.whole, 1, 0));
+        const glm::dvec3 level = slope_irradiance(skies.whole, 1, 0);
         parallel_for(0, n * n, 1, [&](int first, int last) {
             for (int i = first; i < last; ++i)
                 write_texel(light, static_cast<std::size_t>(slice * n * n + i),

@@ -12,9 +12,6 @@
 namespace relevo::skymaker {
 
 /// Coordinates of the textures of the sky at sea level. plugins/sky/sky.glsl has the same formulas.
-///
-/// Texels are colours over the luminance of the light of the whole sky on level ground, without
-/// the sun's disc.
 struct Layout {
     static constexpr int kAround = 48;   ///< s = 0.5 + 0.5 cos(azimuth from the sun), 0..1
     static constexpr int kUp = 64;       ///< t, by sine_of; 0 and 1 included
@@ -32,11 +29,13 @@ struct Layout {
     static double sun_sine_of(double slice);
 };
 
-/// Irradiance of slopes by the sky alone, for each elevation of the sun: a volume of half floats by
-/// azimuth of the normal, z of the normal (0..1), and slice. The ground sends nothing.
+/// Irradiance of slopes by the sky alone over that of level ground, each colour by itself, for each
+/// elevation of the sun: a volume of half floats by azimuth of the normal, z of the normal (0..1),
+/// and slice. The ground and the sun's disc send nothing.
 image::TextureData light_texture(const sky::Atmosphere& air);
 
-/// Radiance at one elevation of the sun, without the aureole: the paper's day, sunset and night.
+/// Radiance at one elevation of the sun, without the aureole, over the luminance of
+/// level_irradiance: the paper's day, sunset and night.
 image::TextureData single_texture(const sky::Atmosphere& air, double sun_sine);
 
 /// Light of the whole sky on level ground at sea level, without the sun's disc, by summing up its
