@@ -138,6 +138,42 @@ std::map<std::string, std::string> band_metadata(const std::string& path, int nu
     return metadata_of(dataset, band_of(dataset, path, number));
 }
 
+namespace {
+
+void add_bands(const Dataset& dataset, const std::string& path, std::vector<BandInFile>& to) {
+    for (int number = 1; number <= GDALGetRasterCount(dataset.get()); ++number) {
+        const GDALRasterBandH band = GDALGetRasterBand(dataset.get(), number);
+        to.push_back({path, number, GDALGetRasterUnitType(band), metadata_of(dataset, band)});
+    }
+}
+
+}  // namespace
+
+std::vector<BandInFile> bands_of(const std::string& path) {
+    std::string opened = path;
+    const Dataset dataset = open_dataset(opened);
+    std::vector<BandInFile> bands;
+    add_bands(dataset, path, bands);
+    if (!bands.empty()) return bands;
+    char** const parts = GDALGetMetadata(dataset.get(), "SUBDATASETS");
+    for (int part = 1;; ++part) {
+        const std::string key = fmt::format("SUBDATASET_{}_NAME", part);
+        const char* const name = CSLFetchNameValue(parts, key.c_str());
+        if (!name) return bands;
+        std::string of_part = name;
+        add_bands(open_dataset(of_part), name, bands);
+    }
+}
+
+Grid grid_of_raster(const std::string& path) {
+    std::string opened = path;
+    const Dataset dataset = open_dataset(opened);
+    Description unused;
+    const Georeference where = georeference(opened, dataset.get(), {}, unused);
+    return {GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()), where.affine,
+            where.crs};
+}
+
 BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
     std::string opened = path;
     const Dataset dataset = open_dataset(opened);

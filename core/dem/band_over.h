@@ -27,6 +27,21 @@ struct BandOver {
 /// What a band says of itself: BandOver::about. @throws Error (BadInput) as read_band_over()
 std::map<std::string, std::string> band_metadata(const std::string& path, int band);
 
+/// A band of a file, or of a part of it (NetCDF, HDF).
+struct BandInFile {
+    std::string path;                          ///< opens the part
+    int band = 1;                              ///< of the part
+    std::string unit;                          ///< as BandOver::unit
+    std::map<std::string, std::string> about;  ///< as BandOver::about
+};
+
+/// All bands of a file; of one without bands those of all its parts.
+/// @throws Error (BadInput) as Source::open()
+std::vector<BandInFile> bands_of(const std::string& path);
+
+/// The cells of any raster that GDAL opens. @throws Error (BadInput) as Source::open()
+Grid grid_of_raster(const std::string& path);
+
 /// Values of more posts than these are means or picks of fewer [posts].
 inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;
 

@@ -103,6 +103,11 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
         return;
     }
     if (!manifest.module.empty()) return;
+    if (std::ranges::find(manifest.fields, name, &FieldSpec::name) != manifest.fields.end())
+        fail(sampler.file, sampler.line,
+             fmt::format("{0}: a field has no sampler; remove this line and read it by "
+                         "{0}(place_m)",
+                         sampler.name));
     if (std::ranges::find(manifest.rasters, name, &RasterSpec::name) != manifest.rasters.end())
         fail(sampler.file, sampler.line,
              fmt::format("{0}: a raster has no sampler; remove this line and read it by {0}(s)",
@@ -376,6 +381,9 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     for (const RasterSpec& raster : effect.manifest.rasters)
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), manifest, raster_glsl(raster, effect.id())));
+    for (const FieldSpec& field : effect.manifest.fields)
+        effect.snippets.push_back(
+            shader::parse_snippet(effect.id(), manifest, field_glsl(field, effect.id())));
     for (const std::filesystem::path& file : effect.manifest.glsl)
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), file.string(), glsl_text(file)));

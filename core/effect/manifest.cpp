@@ -22,15 +22,15 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 61> kReserved = {
-    "air",     "all",     "antialias", "backdrop",  "background", "camera",   "climate", "colour",
-    "copy",    "core",    "crown",     "data",      "depth",      "east",     "edge",    "edges",
-    "end",     "floor",   "footprint", "frame",     "gbuffer",    "geometry", "gl",      "ground",
-    "height",  "hook",    "instance",  "instances", "light",      "lines",    "load",    "moon",
-    "net",     "neutral", "noise",     "none",      "normal",     "overlay",  "page",    "picture",
-    "pixel",   "place",   "post",      "raster",    "scene",      "screen",   "select",  "side",
-    "slope",   "srgb",    "steps",     "store",     "stored",     "sun",      "surface", "tangent",
-    "terrain", "up",      "varyings",  "vertex",    "water"};
+constexpr std::array<std::string_view, 62> kReserved = {
+    "air",     "all",     "antialias", "backdrop",  "background", "camera",  "climate",  "colour",
+    "copy",    "core",    "crown",     "data",      "depth",      "east",    "edge",     "edges",
+    "end",     "field",   "floor",     "footprint", "frame",      "gbuffer", "geometry", "gl",
+    "ground",  "height",  "hook",      "instance",  "instances",  "light",   "lines",    "load",
+    "moon",    "net",     "neutral",   "noise",     "none",       "normal",  "overlay",  "page",
+    "picture", "pixel",   "place",     "post",      "raster",     "scene",   "screen",   "select",
+    "side",    "slope",   "srgb",      "steps",     "store",      "stored",  "sun",      "surface",
+    "tangent", "terrain", "up",        "varyings",  "vertex",     "water"};
 
 constexpr std::size_t kMaxInstanceSets = 16;
 
@@ -196,9 +196,11 @@ class ManifestReader {
 
     void texture(const std::string& name, const json::Value& value) {
         json::ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
-        const std::size_t kind =
-            object.choice("kind", {"2d", "2d-array", "3d", "table", "cube", "raster", "lines"});
-        if (kind == 6)
+        const std::size_t kind = object.choice(
+            "kind", {"2d", "2d-array", "3d", "table", "cube", "raster", "lines", "field"});
+        if (kind == 7)
+            manifest_.fields.push_back(read_field_spec(object, manifest_.id, name, value.line));
+        else if (kind == 6)
             manifest_.lines.push_back(read_lines_spec(object, manifest_.id, name, value.line));
         else if (kind == 5)
             manifest_.rasters.push_back(read_raster_spec(object, manifest_.id, name, value.line));
@@ -295,9 +297,12 @@ class ManifestReader {
             manifest_.texts.push_back(text(name, value));
         });
         bool reads_texts = !manifest_.module.empty() || !manifest_.rasters.empty() ||
-                           !manifest_.lines.empty() || !manifest_.marks.empty();
+                           !manifest_.fields.empty() || !manifest_.lines.empty() ||
+                           !manifest_.marks.empty();
         for (const LinesSpec& lines : manifest_.lines)
             check_text(object, "textures." + lines.name, lines.line, lines.file, true);
+        for (const FieldSpec& field : manifest_.fields)
+            check_text(object, "textures." + field.name, field.line, field.file, true);
         for (const TextureSpec& texture : manifest_.textures)
             if (!texture.from.empty()) {
                 check_text(object, "textures." + texture.name, texture.line, texture.from, true);

@@ -88,6 +88,7 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::vector<RasterSpec> rasters;
+    std::vector<FieldSpec> fields;
     std::vector<LinesSpec> lines;
     std::vector<shader::PluginPass> passes;
     std::vector<MarksSpec> marks;

@@ -242,7 +242,7 @@ struct Renderer::Impl : FrameServices {
         if (reads("surface_pages")) terrain.require_surface_pages();
         if (reads("water_pages")) terrain.require_water_pages();
         terrain.write(block);
-        write_places(terrain.rasters());
+        write_places(terrain);
         if (reads(kLightByHeightTexture)) light.update(inputs, block);
         if (reads(kAirSkyTexture) || reads(kAirBetweenTexture))
             air.update(air_of(values), air_light(inputs, glm::dvec3(block.eye_up)), block);
@@ -252,8 +252,9 @@ struct Renderer::Impl : FrameServices {
                        1.0F / static_cast<float>(posts.rows())};
     }
 
-    /// Writes where effects' rasters lie, for the functions of effect::raster_glsl().
-    void write_places(const GroundRasters& rasters) {
+    /// Writes where effects' rasters and fields lie, for the functions of effect::raster_glsl() and
+    /// effect::field_glsl().
+    void write_places(const Terrain& terrain) {
         bool changed = false;
         const auto write = [&](const std::string& address, const glm::vec4& to) {
             const shader::ParamValue value{to.x, to.y, to.z, to.w};
@@ -261,8 +262,13 @@ struct Renderer::Impl : FrameServices {
             values.write_host(address, value);
             changed = true;
         };
-        for (const auto& [name, raster] : rasters.all()) {
-            const RasterPlace at = rasters.place(name);
+        for (const auto& [name, raster] : terrain.rasters().all()) {
+            const RasterPlace at = terrain.rasters().place(name);
+            write(name + "_place", at.place);
+            write(name + "_shape", at.shape);
+        }
+        for (const auto& [name, field] : terrain.fields().all()) {
+            const FieldPlace at = terrain.fields().place(name);
             write(name + "_place", at.place);
             write(name + "_shape", at.shape);
         }

@@ -243,6 +243,7 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     if (const gl::Texture* const light = light_.texture(name)) return light;
     if (const gl::Texture* const raster = overlay_.texture(name)) return raster;
     if (const gl::Texture* const raster = rasters_.texture(name)) return raster;
+    if (const gl::Texture* const field = fields_.texture(name)) return field;
     return surface_.find(name);
 }
 

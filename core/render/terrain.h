@@ -18,6 +18,7 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/climate_volume.h"
+#include "render/fields.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/ground_rasters.h"
@@ -146,6 +147,9 @@ class Terrain {
     /// were set before keep their pages.
     void set_rasters(NamedRasters rasters);
     const GroundRasters& rasters() const { return rasters_; }
+    /// Sets the fields of effects, by the resources of their textures.
+    void set_fields(NamedFields fields) { fields_.set(std::move(fields)); }
+    const Fields& fields() const { return fields_; }
 
     /// Updates the climate tables to the snow of a day (0 to 364).
     /// @returns tables for FrameBlock
@@ -219,6 +223,7 @@ class Terrain {
     PageCache heights_;  // by tile
     PageCache surface_;  // normals and other data by place
     GroundRasters overlay_, rasters_;
+    Fields fields_;
 };
 
 }  // namespace relevo::render

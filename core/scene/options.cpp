@@ -94,9 +94,13 @@ constexpr Option kOptions[] = {
      [](Scene& s, const Value& v) { s.refraction = v.text; }},
     {"", "weather", "--weather", "Options",
      "Weather of a METAR, as text or in a file: clouds, fog, rain, snow, wind, visibility, and the air "
-     "of the sun's refraction", Kind::Text, 0, 0, {},
-     [](const Scene& s) { return text(s.weather); },
-     [](Scene& s, const Value& v) { s.weather = v.text.empty() ? "" : weather::report_of(v.text); }},
+     "of the sun's refraction. Or a GRIB or NetCDF file with cloud cover at the picture's time",
+     Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.weather.empty() ? s.forecast : s.weather); },
+     [](Scene& s, const Value& v) {
+         s.forecast = weather::is_forecast_file(v.text) ? v.text : "";
+         s.weather = v.text.empty() || !s.forecast.empty() ? "" : weather::report_of(v.text);
+     }},
     {"", "station_height", "--station-height", "Options",
      "Height of the weather's station above sea level, metres, from which bases of clouds count; "
      "default: the ground in the middle of the DEM", Kind::Number, -500, 9000, {},

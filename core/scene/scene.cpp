@@ -159,6 +159,7 @@ ordered_json json_of(const Scene& scene, const fs::path& folder) {
     json["refraction"];  // before the camera: --resume compares texts with those of older files
     json["camera"] = camera_json(scene);
     add_options(scene, "", Defaults::Written, json);
+    if (!scene.forecast.empty()) json["weather"] = from_folder(scene.forecast, folder);
     json["effects"] = effects_json(scene.effects, folder);
     if (scene.overlay) json["overlay"] = overlay_json(scene, folder);
     if (scene.stamps != Stamps()) json["stamps"] = stamps_json(scene);
@@ -297,6 +298,7 @@ Scene with_absolute_paths(Scene scene) {
     };
     for (std::string& name : scene.dems)
         whole(name);
+    whole(scene.forecast);
     if (scene.overlay) {
         whole(scene.overlay->file);
         if (is_colour_file(scene.overlay->colours)) whole(scene.overlay->colours);

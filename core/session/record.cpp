@@ -220,9 +220,13 @@ std::string sidecar_text(const Session& session, SceneInputs& inputs, const std:
     json["utc"] = sun::exact_iso(session.time());
     json["sun"] = sun_json(session);
     json["camera"] = camera_json(session);
-    if (const SceneWeather* const weather = session.weather())
-        json["weather"] = {{"report", weather->report.text},
-                           {"station_height_m", weather->station_m}};
+    if (const SceneWeather* const weather = session.weather()) {
+        if (weather->report)
+            json["weather"]["report"] = weather->report->text;
+        else
+            json["weather"]["forecast"] = weather->forecast->summary();
+        json["weather"]["station_height_m"] = weather->station_m;
+    }
     json["effects"] = ordered_json::array();
     for (const effect::Effect* effect : session.effects().loaded.selection.effects)
         json["effects"].push_back(effect->id());

@@ -146,7 +146,8 @@ const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::st
 }
 
 SceneInputs::Key SceneInputs::key_of(const scene::Scene& scene) {
-    Key key{&raster_files(scene.dems), nullptr, &of(scene.effects), {}};
+    Key key{&raster_files(scene.dems), nullptr, nullptr, &of(scene.effects), {}};
+    if (!scene.forecast.empty()) key.forecast = &raster_files({scene.forecast});
     if (!scene.overlay) return key;
     key.overlay = &raster_files({scene.overlay->file});
     if (scene::is_colour_file(scene.overlay->colours)) key.colours = scene.overlay->colours;
@@ -157,6 +158,9 @@ void SceneInputs::add_to(FilesInUse& files, const scene::Scene& scene) {
     if (!added_.insert(key_of(scene)).second) return;
     for (const fs::path& file : raster_files(scene.dems))
         files.add_input(file, "the DEM");
+    if (!scene.forecast.empty())
+        for (const fs::path& file : raster_files({scene.forecast}))
+            files.add_input(file, "the weather");
     if (scene.overlay) {
         for (const fs::path& file : raster_files({scene.overlay->file}))
             files.add_input(file, "the overlay");
@@ -226,6 +230,7 @@ std::string SceneInputs::record_of(const scene::Scene& scene) {
         if (scene::is_colour_file(scene.overlay->colours))
             json["colours"] = digest({scene.overlay->colours});
     }
+    if (!scene.forecast.empty()) json["weather"] = digest_of_rasters({scene.forecast});
     const OfEffects& effects = of(scene.effects);
     if (!effects.presets.empty()) json["presets"] = digest(effects.presets);
     std::string plugins;

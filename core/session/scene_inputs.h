@@ -19,9 +19,9 @@ struct HashedFile {
     std::string path, sha256;
 };
 
-/// The files that scenes are drawn from: DEM, overlay, colour file, presets, plugins, and files
-/// named by parameters. Finds and hashes each once, however many scenes share it. Needs no device.
-/// Not thread-safe.
+/// The files that scenes are drawn from: DEM, overlay, weather, colour file, presets, plugins, and
+/// files named by parameters. Finds and hashes each once, however many scenes share it. Needs no
+/// device. Not thread-safe.
 class SceneInputs {
   public:
     /// @param version  of Relevo
@@ -41,7 +41,8 @@ class SceneInputs {
     void add_to(FilesInUse& files, const scene::Scene& scene);
 
     /// The inputs of a scene's picture as one line of JSON: Relevo's version, and a digest of the
-    /// file contents of each kind ("dem", "overlay", "colours", "presets", "plugins", "files").
+    /// file contents of each kind ("dem", "overlay", "colours", "weather", "presets", "plugins",
+    /// "files").
     /// File names and times are excluded, so that copies are equal. Exceptions: rasters of more
     /// than 1 GiB are identified by file sizes and times, an index of tiles by its content and by
     /// sizes and times of its tiles on this machine, and remote files are not read.
@@ -67,6 +68,7 @@ class SceneInputs {
     struct Key {
         const void* dems = nullptr;
         const void* overlay = nullptr;
+        const void* forecast = nullptr;
         const void* effects = nullptr;
         std::string colours;
 

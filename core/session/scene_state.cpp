@@ -37,6 +37,7 @@ void SceneState::take_shape(bool other) {
 }
 
 void SceneState::set_time(sun::Instant utc) {
+    if (weather) weather->set_time(utc.unix_us() / 1'000'000);
     utc_ = utc;
     const geo::Geodetic place = ground_->frame.origin();
     position_ = sun::position(utc, place);

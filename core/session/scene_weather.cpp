@@ -32,27 +32,36 @@ void check_air(const SceneWeather& weather) {
 
 }  // namespace
 
+void SceneWeather::set_time(std::int64_t unix_s) {
+    if (forecast) fields = forecast->at(unix_s);
+}
+
 std::string SceneWeather::notice(bool has_time) const {
-    std::string said = fmt::format("weather: {}", weather::summary(report));
+    std::string said =
+        fmt::format("weather: {}", report ? weather::summary(*report) : forecast->summary());
     if (!station_is_given)
-        said += fmt::format(
-            "; station at {:.0f} m, the ground in the DEM's middle, --station-height "
-            "sets it",
-            station_m);
-    if (!has_time) said += "; the report names no month, so --time sets the time";
+        said +=
+            fmt::format("; {} {:.0f} m, the ground in the DEM's middle, --station-height sets it",
+                        report ? "station at" : "bases count from", station_m);
+    if (report && !has_time) said += "; the report names no month, so --time sets the time";
     return said;
 }
 
 std::optional<SceneWeather> weather_of(const scene::Scene& scene, const LoadedDem& dem) {
-    if (scene.weather.empty()) return std::nullopt;
+    if (scene.weather.empty() && scene.forecast.empty()) return std::nullopt;
     SceneWeather weather;
-    weather.report = weather::parse_metar(scene.weather);
     weather.station_is_given = scene.station_height_m.has_value();
     weather.station_m =
         weather.station_is_given ? *scene.station_height_m : ground_in_the_middle_m(dem);
-    weather.air = weather::station_air(weather.report, weather.station_m);
+    if (!scene.forecast.empty()) {
+        weather.forecast = std::make_shared<CoverForecast>(scene.forecast, dem.source->grid());
+        weather.facts = weather::facts_of(weather.forecast->levels(), weather.station_m);
+        return weather;
+    }
+    weather.report = weather::parse_metar(scene.weather);
+    weather.air = weather::station_air(*weather.report, weather.station_m);
     check_air(weather);
-    weather.facts = weather::facts_of(weather.report, weather.station_m);
+    weather.facts = weather::facts_of(*weather.report, weather.station_m);
     return weather;
 }
 

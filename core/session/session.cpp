@@ -44,7 +44,8 @@ scene::GroundHeight Session::heights_to_aim_at() const {
 }
 
 void Session::set_time(sun::Instant utc) {
-    impl_->state.set_time(utc);
+    impl_->context->make_current();
+    impl_->set_time(utc);
     impl_->state.scene.time.at = sun::exact_iso(utc);
     impl_->state.scene.time.date.clear();
 }

@@ -51,10 +51,11 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     auto loading = std::async(std::launch::async | std::launch::deferred,
                               [this] { return options.dem ? options.dem : load_own(); });
     std::shared_ptr<const LoadedDem> loaded;
-    if (!scene.weather.empty()) {  // heights of its clouds need the ground
+    if (!scene.weather.empty() || !scene.forecast.empty()) {  // its clouds need the ground
         loaded = loading.get();
+        if (!scene.forecast.empty()) dem::add_all(std::span(&scene.forecast, 1), files);
         state.weather = weather_of(scene, *loaded);
-        log::info(state.weather->notice(timed));
+        if (state.weather->report) log::info(state.weather->notice(timed));
     }
     open_device(files);
     if (!loaded) loaded = loading.get();
@@ -69,7 +70,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     upload(loaded);
     look(scene.view);
     warn_of_eye();
-    state.set_time(time ? time->utc : state.default_time());
+    set_time(time ? time->utc : state.default_time());
+    if (state.weather && state.weather->forecast) log::info(state.weather->notice(timed));
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
@@ -154,11 +156,14 @@ void Session::Impl::set_effects(const scene::Effects& asked) {
 void Session::Impl::switch_to(const EffectsRequest& wanted) {
     if (drawn->take(wanted)) return;
     const EffectRasters before = rasters;
+    const EffectFields fields_before = fields;
     try {
         switch_effects(wanted);
     } catch (...) {
         rasters = before;
         terrain->set_rasters(rasters.named());
+        fields = fields_before;
+        lay_fields();
         throw;
     }
 }
@@ -185,6 +190,17 @@ void Session::Impl::switch_effects(const EffectsRequest& wanted) {
 void Session::Impl::lay_rasters(const DrawnEffects& of) {
     rasters = EffectRasters(of.effects(), terrain->grid(), rasters);
     terrain->set_rasters(rasters.named());
+    fields = EffectFields(of.effects(), terrain->grid(), fields);
+    lay_fields();
+}
+
+void Session::Impl::lay_fields() {
+    terrain->set_fields(fields.named(state.weather ? state.weather->fields : WeatherFields{}));
+}
+
+void Session::Impl::set_time(sun::Instant utc) {
+    state.set_time(utc);
+    lay_fields();
 }
 
 void Session::Impl::resize(int width_px, int height_px) {
@@ -196,9 +212,10 @@ void Session::Impl::resize(int width_px, int height_px) {
 void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     context->make_current();
     state.inputs.deterministic = true;
-    if (next.weather != state.scene.weather ||
+    if (next.weather != state.scene.weather || next.forecast != state.scene.forecast ||
         next.station_height_m != state.scene.station_height_m) {
         state.scene.weather = next.weather;
+        state.scene.forecast = next.forecast;
         state.scene.station_height_m = next.station_height_m;
         state.weather = weather_of(next, *state.dem());
     }
@@ -227,14 +244,17 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     }
     scene.stamps = next.stamps;
     scene.time = next.time;
-    state.set_time(utc);
+    set_time(utc);
     look(next.view);
     warn_of_eye();
 }
 
 void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
     const auto began = Clock::now();
-    if (state.dem() != dem) rasters = {};
+    if (state.dem() != dem) {
+        rasters = {};
+        fields = {};
+    }
     terrain.reset();  // refers to the previous DEM
     state.take_dem(dem);
     terrain.emplace(dem->to_draw(), state.ground().frame,
@@ -264,7 +284,7 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     upload(dem);
     state.weather = weather_of(state.scene, *dem);
     look(given.view);
-    state.set_time(given.time.at.empty() ? state.default_time() : state.utc());
+    set_time(given.time.at.empty() ? state.default_time() : state.utc());
     const scene::Effects effects = drawn->request().effects;
     const EffectsRequest wanted = request(effects);
     if (wanted.ground != drawn->request().ground ||

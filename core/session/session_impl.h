@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "render/terrain.h"
 #include "session/drawn_effects.h"
+#include "session/effect_fields.h"
 #include "session/effect_rasters.h"
 #include "session/marks.h"
 #include "session/non_finite.h"
@@ -68,6 +69,7 @@ struct Session::Impl {
     std::optional<OverlayTime> overlay_time;
     bool hides_shadows = false;  // of the overlay: EffectsRequest
     EffectRasters rasters;       // of the drawn effects
+    EffectFields fields;
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
     std::optional<render::PicturePart> part;   // of the scene's picture, that frames show
@@ -91,8 +93,11 @@ struct Session::Impl {
     /// Draws a request: with the current effects, with recent ones, or with newly loaded ones.
     void switch_to(const EffectsRequest& wanted);
     void switch_effects(const EffectsRequest& wanted);
-    /// Reads the rasters of effects and lays them over the terrain.
+    /// Reads the rasters and fields of effects and lays them over the terrain.
     void lay_rasters(const DrawnEffects& of);
+    /// Lays the fields over the terrain, those of the weather as they are at the current time.
+    void lay_fields();
+    void set_time(sun::Instant utc);
     void resize(int width_px, int height_px);
     void show(const scene::Scene& next, sun::Instant utc);
     void upload(const std::shared_ptr<const LoadedDem>& dem);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +19,12 @@ constexpr std::array<std::string_view, 22> kFigures = {
     "deck_2_depth",      "deck_2_kind",   "deck_3_cover",  "deck_3_base_m",    "deck_3_top_m",
     "deck_3_depth",      "deck_3_kind"};
 
+constexpr std::array<std::string_view, 3> kFields = {"deck_1_cover", "deck_2_cover",
+                                                     "deck_3_cover"};
+
 constexpr double kMiddle_m = 2000, kHigh_m = 6000;  // levels of clouds of middle latitudes (WMO)
 constexpr double kUnknownBase_m = 1000;             // of a layer whose base was not measured
+constexpr double kMiddleBase_m = 4000, kHighBase_m = 8000;  // of forecasts, which have none
 constexpr double kFogTop_m = 150, kShallowFogTop_m = 2;
 constexpr double kFogVisibility_m = 500;   // where a report of fog has none
 constexpr double kLeastVisibility_m = 50;  // 0000 is less
@@ -60,6 +65,15 @@ std::vector<Deck> decks_of(const Metar& report) {
     decks.resize(std::min<std::size_t>(decks.size(), 3));
     std::ranges::stable_sort(decks, std::less{}, &Deck::base_m);
     return decks;
+}
+
+/// All figures of a deck but its cover. @param add  takes the end of a figure's name, and its value
+void add_deck(const Deck& deck, double station_m,
+              const std::function<void(std::string_view, double)>& add) {
+    add("_base_m", station_m + deck.base_m);
+    add("_top_m", station_m + deck.top_m);
+    add("_depth", deck.depth);
+    add("_kind", deck.kind);
 }
 
 void add_air(const Metar& report, double station_m, Facts& to) {
@@ -135,6 +149,29 @@ std::span<const std::string_view> fact_figures() {
     return kFigures;
 }
 
+std::span<const std::string_view> fact_fields() {
+    return kFields;
+}
+
+Facts facts_of(const std::vector<CloudLevel>& levels, double station_m) {
+    Facts facts{.words = {"cloudy"}};
+    for (std::size_t i = 0; i < kFields.size(); ++i) {
+        const auto add = [&](std::string_view what, double value) {
+            facts.figures.emplace_back(fmt::format("deck_{}{}", i + 1, what), value);
+        };
+        if (i >= levels.size()) {
+            add("_cover", 0);
+            continue;
+        }
+        const double base_m = levels[i] == CloudLevel::Middle ? kMiddleBase_m
+                              : levels[i] == CloudLevel::High ? kHighBase_m
+                                                              : kUnknownBase_m;
+        add_deck(deck_of({.least_oktas = 5, .most_oktas = 7, .base_m = base_m}, false), station_m,
+                 add);
+    }
+    return facts;
+}
+
 Facts facts_of(const Metar& report, double station_m) {
     Facts facts;
     add_air(report, station_m, facts);
@@ -146,10 +183,7 @@ Facts facts_of(const Metar& report, double station_m) {
             facts.figures.emplace_back(fmt::format("deck_{}{}", n, what), value);
         };
         add("_cover", deck.cover);
-        add("_base_m", station_m + deck.base_m);
-        add("_top_m", station_m + deck.top_m);
-        add("_depth", deck.depth);
-        add("_kind", deck.kind);
+        add_deck(deck, station_m, add);
         ++number;
     }
     if (report.sky_is_clear)

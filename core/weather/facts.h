@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "weather/cover_band.h"
 #include "weather/metar.h"
 
 namespace relevo::weather {
@@ -35,6 +36,16 @@ std::span<const std::string_view> fact_words();
 ///   deck_1_depth           optical depth, vertical, where there is cloud
 ///   deck_1_kind            0 cumulus, 1 stratus, 2 cirrus
 std::span<const std::string_view> fact_figures();
+
+/// Figures that vary from place to place, in the weather of a forecast: deck_1_cover, deck_2_cover,
+/// deck_3_cover. Textures of plugins name them.
+std::span<const std::string_view> fact_fields();
+
+/// Facts of a forecast of cloud cover: a deck of each level in the usual height, from below. The
+/// cover is a field (fact_fields()) and no figure.
+/// @param levels     of which there is cover, from below: Total alone, or others
+/// @param station_m  height above sea level that clouds stand above
+Facts facts_of(const std::vector<CloudLevel>& levels, double station_m);
 
 /// Facts of a report. Reports know neither tops nor optical depths: those usual for the kind and
 /// height are taken (docs/weather.md). Of more than three layers the most covering are decks.

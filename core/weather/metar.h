@@ -59,6 +59,10 @@ Metar parse_metar(std::string_view text);
 /// blanks between words and begins as reports do.
 bool is_report(std::string_view text);
 
+/// Whether a word of the command line names a file of rasters and not one of reports: it has bytes
+/// of 0, as no text has, or is GDAL's virtual raster.
+bool is_forecast_file(const std::string& text_or_file);
+
 /// The report of a text as given to `--weather`: the text itself, or the last report in that file
 /// that can be read. Lines of dates, as NOAA's files have them, and empty lines are skipped; a
 /// report goes on over lines that begin with blanks, and may end in `=`.

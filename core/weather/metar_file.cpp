@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,15 @@ std::vector<std::string> reports_of(const std::string& text) {
 }
 
 }  // namespace
+
+bool is_forecast_file(const std::string& text_or_file) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(text_or_file, unknown)) return false;
+    std::ifstream file(text_or_file, std::ios::binary);
+    std::string head(1024, ' ');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head.find('\0') != std::string::npos || head.starts_with("<VRTDataset");
+}
 
 std::string report_of(const std::string& text_or_file) {
     std::error_code unknown;

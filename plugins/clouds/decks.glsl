@@ -30,18 +30,30 @@ const float clouds_earth_m = 6371000.0;
 const float clouds_reach_m = 400000.0;  // half of the map of columns
 
 struct clouds_Deck {
-    float cover;
+    float cover;   // over the DEM, where it varies
     float base_m;  // as drawn, exaggerated
     float top_m;
-    float depth;
+    float depth;   // of the thickest columns
+    float varies;  // how much the depth does beyond that, 0..1
     int kind;
 };
 
 /// @param deck  0 to 2
 clouds_Deck clouds_deck(in int deck) {
-    clouds_Deck d = clouds_Deck(clouds_cover_1, clouds_base_1_m, clouds_top_1_m, clouds_depth_1, clouds_kind_1);
-    if (deck == 1) d = clouds_Deck(clouds_cover_2, clouds_base_2_m, clouds_top_2_m, clouds_depth_2, clouds_kind_2);
-    if (deck == 2) d = clouds_Deck(clouds_cover_3, clouds_base_3_m, clouds_top_3_m, clouds_depth_3, clouds_kind_3);
+    clouds_Deck d = clouds_Deck(clouds_cover_1, clouds_base_1_m, clouds_top_1_m, clouds_depth_1, clouds_variation, clouds_kind_1);
+    if (deck == 1) d = clouds_Deck(clouds_cover_2, clouds_base_2_m, clouds_top_2_m, clouds_depth_2, clouds_variation, clouds_kind_2);
+    if (deck == 2) d = clouds_Deck(clouds_cover_3, clouds_base_3_m, clouds_top_3_m, clouds_depth_3, clouds_variation, clouds_kind_3);
+    float cover_most = vec3(clouds_covers_1_most(), clouds_covers_2_most(), clouds_covers_3_most())[deck];
+    float depth_most = vec3(clouds_depths_1_most(), clouds_depths_2_most(), clouds_depths_3_most())[deck];
+    if (cover_most >= 0.0) {
+        float mean = vec3(clouds_covers_1_mean(), clouds_covers_2_mean(), clouds_covers_3_mean())[deck];
+        d.cover = cover_most > 0.0 ? max(mean, 1e-3) : 0.0;  // clouds may be beyond the DEM
+    }
+    if (depth_most >= 0.0) {
+        d.cover = depth_most > 0.0 ? 0.5 : 0.0;
+        d.depth = depth_most;
+        d.varies = 0.0;
+    }
     d.base_m *= frame.height_range.z;
     d.top_m = max(d.top_m * frame.height_range.z, d.base_m + 1.0);
     return d;
@@ -82,29 +94,50 @@ vec2 clouds_of_map(in vec2 at) {
     return clouds_centre() + clouds_near_m() * sign(out_of_middle) * away;
 }
 
-/// A place where the wind has not yet moved the clouds, in cells.
-vec2 clouds_cells(in vec2 place) {
+/// A place where the wind has not yet moved the clouds.
+vec2 clouds_before_wind(in vec2 place) {
     vec2 to = -vec2(sin(clouds_wind_from_deg), cos(clouds_wind_from_deg));
-    return (place - to * clouds_wind_m_s * frame.seconds) / clouds_cell_m;
+    return place - to * clouds_wind_m_s * frame.seconds;
+}
+
+/// The same in cells.
+vec2 clouds_cells(in vec2 place) {
+    return clouds_before_wind(place) / clouds_cell_m;
+}
+
+/// Cover of a deck at a place; beyond what a raster or a forecast has its mean over the DEM.
+float clouds_cover_at(in clouds_Deck d, in int deck, in vec2 place) {
+    if (vec3(clouds_covers_1_most(), clouds_covers_2_most(), clouds_covers_3_most())[deck] < 0.0) return d.cover;
+    vec2 found = deck == 0 ? clouds_covers_1(place) : deck == 1 ? clouds_covers_2(place) : clouds_covers_3(place);
+    return mix(d.cover, clamp(found.x, 0.0, 1.0), found.y);
+}
+
+/// The share whose column has an optical depth from a raster: the inverse of clouds_tau().
+float clouds_share_of_depth(in clouds_Deck d, in int deck, in vec2 place) {
+    vec2 at = clouds_before_wind(place);
+    vec2 found = deck == 0 ? clouds_depths_1(at) : deck == 1 ? clouds_depths_2(at) : clouds_depths_3(at);
+    float part = clamp(found.x * found.y / d.depth, 0.0, 1.0);
+    return d.kind == 2 ? part : 1.0 - sqrt(1.0 - (d.kind == 0 ? part * part : part));
 }
 
 /// Thickness of a deck's cloud at a place: clouds_share().
 float clouds_thickness(in int deck, in vec2 place) {
     clouds_Deck d = clouds_deck(deck);
     if (d.cover <= 0.0) return -4.0;
+    if (vec3(clouds_depths_1_most(), clouds_depths_2_most(), clouds_depths_3_most())[deck] > 0.0) return clouds_share_of_depth(d, deck, place);
     vec2 cells = clouds_cells(place);
     if (d.kind == 2) {  // streaks lie along the wind
         float s = sin(clouds_wind_from_deg), c = cos(clouds_wind_from_deg);
         cells = mat2(s, c, c, -s) * cells;
     }
     uint stream = uint(clouds_seed) * 4099u + uint(deck) * 1013u;
-    return clouds_share(d.kind, clouds_field(d.kind, cells, stream), d.cover);
+    return clouds_share(d.kind, clouds_field(d.kind, cells, stream), clouds_cover_at(d, deck, place));
 }
 
 /// Decks up to the last one that covers anything; those beyond cost nothing. Loops end after a deck and
 /// not before the next one: software devices compute what follows a break.
 int clouds_count() {
-    return clouds_cover_3 > 0.0 ? 3 : clouds_cover_2 > 0.0 ? 2 : 1;
+    return clouds_deck(2).cover > 0.0 ? 3 : clouds_deck(1).cover > 0.0 ? 2 : 1;
 }
 
 /// Thickness of the three decks: clouds_share(); and how their tops and depths vary, 0..1.
@@ -137,7 +170,7 @@ float clouds_height(in clouds_Deck d, in float share) {
 /// Vertical optical depth of a column. @param vary  0..1
 float clouds_tau(in clouds_Deck d, in float share, in float vary) {
     float of_deck = d.kind == 2 ? share : clouds_height(d, share);
-    return d.depth * of_deck * (1.0 + clouds_variation * (2.0 * vary - 1.0));
+    return d.depth * of_deck * (1.0 + d.varies * (2.0 * vary - 1.0));
 }
 
 /// Top of a column [m].

@@ -60,6 +60,8 @@ std::string write_raster(const std::filesystem::path& path, const Raster& raster
         GDALRasterBandH band = GDALGetRasterBand(dataset, b);
         if (raster.nodata) GDALSetRasterNoDataValue(band, *raster.nodata);
         if (!raster.unit.empty()) GDALSetRasterUnitType(band, raster.unit.c_str());
+        for (const auto& [key, value] : raster.about)
+            GDALSetMetadataItem(band, key.c_str(), value.c_str(), nullptr);
         if (raster.scale) GDALSetRasterScale(band, *raster.scale);
         if (raster.offset) GDALSetRasterOffset(band, *raster.offset);
         if (raster.pictures)

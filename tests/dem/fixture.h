@@ -27,6 +27,7 @@ struct Raster {
     std::string unit = {};
     std::optional<double> scale = {};
     std::optional<double> offset = {};
+    std::vector<std::pair<std::string, std::string>> about = {};  ///< metadata of each band
     std::vector<std::string> options = {};  ///< of the driver, "COMPRESS=DEFLATE"
     /// What is stored at a column and row of a band, from 1.
     std::function<double(int column, int row, int band)> value = [](int column, int row, int) {

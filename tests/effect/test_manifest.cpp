@@ -238,6 +238,13 @@ INSTANTIATE_TEST_SUITE_P(
             with(
                 R"("textures": {"photo": {"kind": "raster", "from": "file", "holds": "values", "colours": "ramp"}})"),
             "2: textures.photo.colours: expected it of a raster that holds colours only"},
+        Bad{"FieldText", with(R"("textures": {"rain": {"kind": "field", "from": "file"}})"),
+            "2: textures.rain: expected a text of kind \"file\"; add \"texts\": {\"file\": "
+            "{\"kind\": \"file\"}}"},
+        Bad{"FieldWeather",
+            with(R"("textures": {"rain": {"kind": "field", "from": "file", "weather": "rain"}})"),
+            "2: textures.rain.weather: expected one of deck_1_cover, deck_2_cover, deck_3_cover "
+            "but got \"rain\""},
         Bad{"Textures", with(R"("textures": [])"),
             "2: textures: expected an object of name and texture but got a list"},
         Bad{"TextureName", with(R"("textures": {"No": {}})"),
@@ -247,7 +254,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NoKind", texture(R"("file": "a.png")"),
             "2: textures.noise: expected a member \"kind\""},
         Bad{"BadKind", texture(R"("kind": "2darray")"),
-            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, table, cube, raster, lines "
+            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d, table, cube, raster, "
+            "lines, field "
             "but got \"2darray\"; "
             "did you "
             "mean 2d-array?"},

@@ -81,6 +81,9 @@ TEST(PluginSchema, HasTheLoadersKeys) {
     EXPECT_THAT(keys(member(objects, "raster")),
                 UnorderedElementsAreArray(known_keys(
                     R"("textures": {"a": {"kind": "raster", "from": "file", )" + unknown + "}}")));
+    EXPECT_THAT(keys(member(objects, "field")),
+                UnorderedElementsAreArray(known_keys(
+                    R"("textures": {"a": {"kind": "field", "from": "file", )" + unknown + "}}")));
     EXPECT_THAT(keys(member(objects, "lines")),
                 UnorderedElementsAreArray(known_keys(
                     R"("textures": {"a": {"kind": "lines", "from": "file", )" + unknown + "}}")));

@@ -89,8 +89,18 @@ class Drawn {
             render::TerrainOptions{.pixel_error = pixel_error,
                                    .vertex_budget = 100000000,
                                    .max_array_layers = context_.info().max_array_layers});
+        for (const effect::Effect& effect : shipped_)
+            for (const effect::FieldSpec& field : effect.manifest.fields)
+                fields_[field.resource] = nullptr;
+        terrain_->set_fields(fields_);
         shine("2026-06-21T15:00Z");
         frame_.camera.fov_y_rad = radians(kFov_deg);
+    }
+
+    /// @param resource  of a texture of kind `field` of a shipped effect
+    void set_field(const std::string& resource, render::Field field) {
+        fields_.at(resource) = std::make_shared<const render::Field>(std::move(field));
+        terrain_->set_fields(fields_);
     }
 
     void shine(const char* utc) {
@@ -158,6 +168,7 @@ class Drawn {
     gl::Context context_{{.device = test::gl_device(), .debug = true}};
     std::optional<render::Renderer> renderer_;
     std::optional<render::Terrain> terrain_;
+    render::NamedFields fields_;
     render::FrameInputs frame_;
 };
 

@@ -47,9 +47,14 @@ bool effect_has_several(const std::filesystem::path& folder) {
 std::vector<shader::Snippet> read_snippets(const std::string& plugin) {
     const std::filesystem::path folder = source_dir() / "plugins" / plugin;
     std::vector<std::filesystem::path> files{folder / fmt::format("{}.glsl", plugin)};
-    if (effect_has_several(folder))
-        files = effect::load_manifest(folder, share_dir() / "data").glsl;
     std::vector<shader::Snippet> snippets;
+    if (effect_has_several(folder)) {
+        const effect::Manifest manifest = effect::load_manifest(folder, share_dir() / "data");
+        files = manifest.glsl;
+        for (const effect::FieldSpec& field : manifest.fields)
+            snippets.push_back(
+                shader::parse_snippet(plugin, "fields", effect::field_glsl(field, plugin)));
+    }
     for (const std::filesystem::path& file : files)
         snippets.push_back(shader::parse_snippet(plugin, file.string(), read_text(file, "test")));
     return snippets;
