@@ -34,7 +34,7 @@ geo::Crs local_crs(const geo::Geodetic& origin) {
     return geo::Crs::parse(fmt::format("+proj=ortho +lat_0={:.12f} +lon_0={:.12f} +ellps=WGS84 "
                                        "+units=m +type=crs",
                                        degrees(origin.lat_rad), degrees(origin.lon_rad)),
-                           "dem::read_band_around");
+                           "field");
 }
 
 /// Posts at a square net of places. @param step_m  from place to place

@@ -15,8 +15,9 @@ namespace relevo::render {
 /// Values around a DEM for effects, and what they are on the whole.
 struct Field {
     dem::ValuesAround around;
-    float mean = 0;  ///< over the DEM
-    float most = 0;  ///< the largest value
+    float mean = 0;         ///< over the DEM
+    float most = 0;         ///< the largest value
+    float part_of_dem = 1;  ///< that has values
 };
 
 /// Fields by the resources of their textures: "clouds.local_cover_1". Null: there is none.

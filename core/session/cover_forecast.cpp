@@ -32,6 +32,11 @@ std::string clock_of(const std::string& utc) {
     return utc.substr(11, 5);
 }
 
+/// "the DEM", "40 % of the DEM"
+std::string dem_text(float part) {
+    return part < 0.995F ? fmt::format("{:.0f} % of the DEM", 100 * part) : "the DEM";
+}
+
 dem::ValuesAround mixed(const dem::ValuesAround& before, const dem::ValuesAround& after,
                         double share_of_after) {
     dem::ValuesAround around = before;
@@ -55,6 +60,7 @@ std::shared_ptr<const render::Field> field_of(dem::ValuesAround around,
             ++count;
         }
     field->mean = count > 0 ? static_cast<float>(sum / count) : 0;
+    field->part_of_dem = static_cast<float>(count) / static_cast<float>(over_dem.size());
     for (const float value : around.values)
         if (value > field->most) field->most = value;
     field->around = std::move(around);
@@ -148,6 +154,7 @@ WeatherFields CoverForecast::at(std::int64_t unix_s) {
     std::set<std::pair<std::string, int>> used;
     std::vector<std::string> names, covers;
     std::string times;
+    float part = 1;
     for (std::size_t i = 0; i < levels_.size(); ++i) {
         const Series& series = series_[i];
         const weather::BetweenTimes place = place_of(series, unix_s);
@@ -157,6 +164,7 @@ WeatherFields CoverForecast::at(std::int64_t unix_s) {
                    after = values(series, place.after, levels_[i]);
         const auto field = field_of(mixed(*before, *after, place.share_of_after), over_dem_);
         fields.emplace(fmt::format("deck_{}_cover", i + 1), field);
+        part = std::min(part, field->part_of_dem);
         const std::string name = weather::cover_text(levels_[i]);
         names.push_back(name.substr(0, name.find(' ')));
         covers.push_back(fmt::format("{:.0f}", 100 * field->mean));
@@ -167,9 +175,9 @@ WeatherFields CoverForecast::at(std::int64_t unix_s) {
                                               clock_of(second) + " UTC");
     }
     std::erase_if(read_, [&](const auto& entry) { return !used.contains(entry.first); });
-    summary_ = fmt::format("{}: {} cloud cover, {} % over the DEM, {}",
+    summary_ = fmt::format("{}: {} cloud cover, {} % over {}, {}",
                            std::filesystem::path(file_).filename().string(), joined(names),
-                           joined(covers), times);
+                           joined(covers), dem_text(part), times);
     return fields;
 }
 

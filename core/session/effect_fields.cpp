@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "dem/band_over.h"
 
 namespace relevo::session {
@@ -47,6 +48,9 @@ EffectFields::EffectFields(const ActiveEffects& effects, const dem::Grid& dem,
                 if (!file.empty()) {
                     entry.field = field_of(read_values(spec, file, dem), dem::places_over_dem(dem));
                     entry.stamps.add(file);
+                    if (const float part = entry.field->part_of_dem; part < 0.995F)
+                        log::info(fmt::format("{}: {} has values for {:.0f} % of the DEM",
+                                              spec.file, file, 100 * part));
                 }
             } catch (const Error& error) {
                 throw Error(error.code(), fmt::format("{}: {}", spec.file, error.what()));

@@ -79,7 +79,8 @@ std::optional<CoverBand> grib_band(const Metadata& about, const std::string& ele
     if (!level || (level == CloudLevel::Total && !height.empty() && !is_of_all_heights(height)))
         return std::nullopt;
     CoverBand band{.level = *level};
-    const std::string time = text_of(about, "GRIB_VALID_TIME");  // "1780315200 sec UTC"
+    const std::string valid = text_of(about, "GRIB_VALID_TIME");
+    const std::string_view time = trimmed(valid);  // "1780315200 sec UTC"
     if (const auto seconds = parse_number(time.substr(0, time.find(' '))))
         band.unix_s = static_cast<std::int64_t>(*seconds);
     const auto product = parse_number(text_of(about, "GRIB_PDS_PDTN"));

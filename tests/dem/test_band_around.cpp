@@ -84,13 +84,15 @@ TEST(BandAround, CellsWithoutAValueHaveNone) {
 
 TEST(BandAround, ElsewhereIsAnError) {
     const std::string far = write_degrees("elsewhere.tif", 40, 10, 0.1, 20);
-    EXPECT_THAT(error_of([&] { read_band_around(grid(), far, 1); }),
-                testing::AllOf(testing::StartsWith(far + ": the raster does not cover"),
-                               testing::HasSubstr("latitude 8")));
+    EXPECT_THAT(
+        error_of([&] { read_band_around(grid(), far, 1); }),
+        testing::AllOf(testing::StartsWith("exit 3: " + far + ": the raster does not cover"),
+                       testing::HasSubstr("latitude 8")));
     // In reach, but not over the DEM.
     const std::string beside = write_degrees("beside.tif", 10, 48, 0.1, 20);
     EXPECT_THAT(error_of([&] { read_band_around(grid(), beside, 1); }),
-                testing::StartsWith(beside + ": the raster has no value over this DEM; it is at"));
+                testing::StartsWith("exit 3: " + beside +
+                                    ": the raster has no value over this DEM; it is at"));
 }
 
 TEST(BandAround, PlacesOverTheDemReachItsCorners) {

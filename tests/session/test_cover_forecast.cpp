@@ -115,6 +115,23 @@ TEST(CoverForecast, PlacesWithoutAValueHaveNone) {
     const auto field = forecast.at(kNoon_s).at("deck_1_cover");
     EXPECT_TRUE(std::isnan(field->around.at({-100'000, 0})));
     EXPECT_FLOAT_EQ(field->around.at({0, 0}), 0.5F);
+    EXPECT_EQ(field->part_of_dem, 1);
+}
+
+TEST(CoverForecast, OverAPartOfTheDemIsSaid) {
+    const std::string file = (folder() / "part.nc").string();
+    test::write_netcdf(file, "days since 1970-01-01", {20605.5},
+                       {{"clt", "1", {0.5}, [](double lon_deg) { return lon_deg < 9; }}});
+    const dem::Grid wide(41, 31, {400000, 5000, 0, 5270000, 0, -5000},
+                         geo::Crs::parse("EPSG:32632", "test"));
+    CoverForecast forecast(file, wide);
+    const float part = forecast.at(kNoon_s).at("deck_1_cover")->part_of_dem;
+    EXPECT_NEAR(part, 0.5, 0.1);
+    EXPECT_EQ(
+        forecast.summary(),
+        fmt::format("part.nc: total cloud cover, 50 % over {:.0f} % of the DEM, of 2026-06-01 "
+                    "12:00 UTC",
+                    100 * part));
 }
 
 TEST(CoverForecast, ATimeThatItDoesNotHaveIsAnError) {
@@ -122,9 +139,10 @@ TEST(CoverForecast, ATimeThatItDoesNotHaveIsAnError) {
     CoverForecast forecast(file, dem_grid());
     EXPECT_EQ(
         error_of([&] { forecast.at(kNoon_s - 2 * kHour_s); }),
-        fmt::format("weather: {}: its times are 2026-06-01 12:00 UTC to 2026-06-01 15:00 UTC, "
-                    "the picture's is 2026-06-01 10:00 UTC; --time sets another",
-                    file));
+        fmt::format(
+            "exit 3: weather: {}: its times are 2026-06-01 12:00 UTC to 2026-06-01 15:00 UTC, "
+            "the picture's is 2026-06-01 10:00 UTC; --time sets another",
+            file));
     CoverForecast single(write_grib("single.grib2", {{1, 12, 40}}), dem_grid());
     EXPECT_THAT(error_of([&] { single.at(kNoon_s + 2 * kHour_s); }),
                 HasSubstr("its times are 2026-06-01 12:00 UTC, the picture's"));
@@ -145,13 +163,15 @@ std::string write_band(const std::string& name, double value,
 TEST(CoverForecast, WhatIsMissingIsSaid) {
     const std::string timeless =
         write_band("timeless.tif", 40, {{"GRIB_ELEMENT", "TCDC"}, {"GRIB_UNIT", "[%]"}});
-    EXPECT_THAT(error_of([&] { CoverForecast(timeless, dem_grid()); }),
-                StartsWith(fmt::format("weather: {}: its cloud cover has no time", timeless)));
+    EXPECT_THAT(
+        error_of([&] { CoverForecast(timeless, dem_grid()); }),
+        StartsWith(fmt::format("exit 3: weather: {}: its cloud cover has no time", timeless)));
     const std::string plain = write_band("plain.tif", 40, {});
-    EXPECT_THAT(error_of([&] { CoverForecast(plain, dem_grid()); }),
-                StartsWith(fmt::format("weather: {}: no band says that it is cloud cover", plain)));
+    EXPECT_THAT(
+        error_of([&] { CoverForecast(plain, dem_grid()); }),
+        StartsWith(fmt::format("exit 3: weather: {}: no band says that it is cloud cover", plain)));
     EXPECT_THAT(error_of([&] { CoverForecast("nowhere.grib2", dem_grid()); }),
-                StartsWith("weather: nowhere.grib2: "));
+                StartsWith("exit 3: weather: nowhere.grib2: "));
 }
 
 TEST(CoverForecast, ValuesThatAreNoCoverAreAnError) {
@@ -161,8 +181,9 @@ TEST(CoverForecast, ValuesThatAreNoCoverAreAnError) {
         {"GRIB_VALID_TIME", fmt::format("{}", kNoon_s)}};
     const std::string file = write_band("wild.tif", 400, about);
     CoverForecast forecast(file, dem_grid());
-    EXPECT_EQ(error_of([&] { forecast.at(kNoon_s); }),
-              fmt::format("weather: {}: low cloud cover of 400 %, expected 0 to 100 %", file));
+    EXPECT_EQ(
+        error_of([&] { forecast.at(kNoon_s); }),
+        fmt::format("exit 3: weather: {}: low cloud cover of 400 %, expected 0 to 100 %", file));
     const std::string negative = write_band("negative.tif", -3, about);
     CoverForecast below(negative, dem_grid());
     EXPECT_THAT(error_of([&] { below.at(kNoon_s); }), HasSubstr("low cloud cover of -3 %"));
@@ -179,7 +200,7 @@ TEST(CoverForecast, ElsewhereIsAnError) {
                                         40);
     CoverForecast forecast(file, dem_grid());
     EXPECT_THAT(error_of([&] { forecast.at(kNoon_s); }),
-                StartsWith(fmt::format("weather: {}: the raster does not cover", file)));
+                StartsWith(fmt::format("exit 3: weather: {}: the raster does not cover", file)));
 }
 
 TEST(CoverForecast, ATemplateThatGdalCannotReadIsNamedInItsWords) {
@@ -196,7 +217,7 @@ TEST(CoverForecast, ATemplateThatGdalCannotReadIsNamedInItsWords) {
         CoverForecast forecast(file, dem_grid());
         forecast.at(kNoon_s);
     });
-    EXPECT_THAT(error, StartsWith(fmt::format("weather: {}: ", file)));
+    EXPECT_THAT(error, StartsWith(fmt::format("exit 3: weather: {}: ", file)));
     EXPECT_THAT(error, HasSubstr("emplate"));
 }
 

@@ -99,15 +99,16 @@ TEST(CoverBand, WhatIsNotUnderstoodIsAnError) {
     const auto fault = [](const Metadata& about, const std::string& unit) {
         return test::error_of([&] { cover_band(about, unit); });
     };
-    EXPECT_EQ(fault(netcdf("tcc"), "okta"), "cloud cover in \"okta\", expected % or 1");
+    EXPECT_EQ(fault(netcdf("tcc"), "okta"), "exit 3: cloud cover in \"okta\", expected % or 1");
     Metadata about = netcdf("tcc");
     about["time#calendar"] = "noleap";
-    EXPECT_EQ(fault(about, "1"), "times of the calendar \"noleap\", expected the standard one");
+    EXPECT_EQ(fault(about, "1"),
+              "exit 3: times of the calendar \"noleap\", expected the standard one");
     about = netcdf("tcc");
     about["time#units"] = "fortnights since 1900-01-01";
-    EXPECT_EQ(
-        fault(about, "1"),
-        "times in \"fortnights since 1900-01-01\", expected as in \"hours since 1970-01-01\"");
+    EXPECT_EQ(fault(about, "1"),
+              "exit 3: times in \"fortnights since 1900-01-01\", expected as in \"hours since "
+              "1970-01-01\"");
     about["time#units"] = "hours since the flood";
     EXPECT_NE(fault(about, "1").find("hours since the flood"), std::string::npos);
 }
