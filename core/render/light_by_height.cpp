@@ -58,7 +58,7 @@ std::vector<glm::vec4> LightByHeight::texels(const FrameInputs& inputs, const Fr
                 const auto at =
                     (aloft ? 2 * kLayer : 0) + static_cast<std::size_t>(row * kSines + column);
                 texels[at] = glm::vec4(here.direct(light, sine), 0);
-                texels[kLayer + at] = glm::vec4(here.sky(sine), 0);
+                if (!aloft) texels[kLayer + at] = glm::vec4(here.sky(sine), 0);
             }
         }
     });

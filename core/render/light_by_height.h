@@ -15,12 +15,12 @@ inline constexpr const char* kLightByHeightTexture = "light_by_height";
 /// Light over a DEM by height and by the elevation of sun or moon, on the device.
 class LightByHeight {
   public:
-    static constexpr int kSines = 64, kHeights = 16, kLayers = 4;  ///< as in lib/ground.glsl
+    static constexpr int kSines = 64, kHeights = 16, kLayers = 3;  ///< as in lib/ground.glsl
     static constexpr double kAloft_m = 16000;
 
     /// Layer 0: HeightLight::direct(), layer 1: HeightLight::sky(), by height and sine, of the
-    /// heights of the DEM. Layers 2 and 3: the same from the sea to kAloft_m, for clouds. Rows are
-    /// even in the height, columns even on the scale of frame.sun_light_domain.
+    /// heights of the DEM. Layer 2: direct() from the sea to kAloft_m, for clouds. Rows are even in
+    /// the height, columns even on the scale of frame.sun_light_domain.
     static std::vector<glm::vec4> texels(const FrameInputs& inputs, const FrameBlock& block);
 
     /// Computes the texture again if the light has changed, and writes where its rows are.

@@ -35,8 +35,8 @@ glm::dvec3 night_irradiance() {
 glm::dvec3 night_radiance(double height_m, double sine, const glm::dvec3& through) {
     const double h = std::max(height_m, 0.0);
     const glm::dvec3 share = glm::clamp(through, 0.0, 1.0);
-    // Most of what air takes of the light of a whole sky it scatters on. Near the horizon the colour
-    // of the light that passes is outside of sRGB: red and blue follow from green.
+    // Most of what air takes of the light of a whole sky it scatters on. Near the horizon the
+    // colour of the light that passes is outside of sRGB: red and blue follow from green.
     const double depth = -0.2 * std::log(std::max(share.g, 1e-4));
     const glm::dvec3 far = glm::exp(-depth * glm::dvec3(0.69, 1, 1.63));
     const double glow = kAirglow * slant(h, sine);

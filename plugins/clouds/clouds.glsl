@@ -5,6 +5,7 @@
 //! source    extinction along the sun's ray exp(-tau / sin el): Bouguer and Lambert; light below: light.glsl
 
 //@ include lib/air_pixel.glsl
+//@ include lib/ground.glsl
 
 uniform float clouds_visibility = 180.0; //@ range(0.1, 1000) unit(km) label("Visibility") description("How far the air before the clouds lets one see, at sea level: 3.912 / extinction")
 
@@ -83,8 +84,9 @@ void clouds_on_ambient(in Surface s, inout vec3 irradiance) {
 #if !HAS_outside
     float height_m = s.height_m * frame.height_range.z;
     vec2 below = textureLod(clouds_below, clouds_map_at(clouds_place(s.position_m, height_m)), 0.0).rg;
-    vec3 sun = max(dot(frame.sun_apparent.xyz, s.up), 0.0) * frame.sun_light[0].rgb;
-    vec3 factor = below.y + below.x * sun / max(frame.sky_irradiance.rgb, vec3(1e-9));
+    vec3 to_sun, sun = sun_light_at(s.height_m, s.up, to_sun);
+    vec3 level = max(dot(to_sun, s.up), 0.0) * sun;
+    vec3 factor = below.y + below.x * level / max(sky_light_at(s.height_m, s.up), vec3(1e-9));
     clouds_Deck last = clouds_deck(clouds_count() - 1);
     float above = smoothstep(last.base_m, last.top_m, height_m);
     irradiance *= mix(factor, vec3(1.0), above);
@@ -99,19 +101,12 @@ float clouds_hazed(in float sine, in float distance_m) {
     return 1.0 - exp(-3.912e-3 / clouds_visibility * distance_m * mean);
 }
 
-/// The sun's light at a height over the eye's place: the horizon lies lower there.
-vec3 clouds_sunlight(in float height_m) {
-    float sine = dot(frame.sun_direction.xyz, frame.eye_up.xyz) + sqrt(2.0 * max(height_m, 0.0) / clouds_earth_m);
-    float at = clamp((sun_light_scale(sine) - frame.sun_light_domain.x) * frame.sun_light_domain.y, 0.0, 126.99);
-    return mix(frame.sun_light_table[int(at)].rgb, frame.sun_light_table[int(at) + 1].rgb, fract(at));
-}
-
 /// Lays clouds over what is behind them. @param air  light of the air before them
 vec3 clouds_laid(in vec4 seen, in vec3 direction, in vec3 air, in vec3 behind) {
     if (seen.z >= 1.0) return behind;
     float sine = dot(direction, frame.eye_up.xyz), distance_m = 1000.0 * seen.w;
     float height_m = frame.eye_m.w + distance_m * (sine + 0.5 * distance_m / clouds_earth_m);
-    vec3 light = seen.x * clouds_sunlight(height_m) + seen.y * frame.sky_irradiance.rgb;
+    vec3 light = seen.x * sun_light_aloft(height_m, frame.eye_up.xyz) + seen.y * frame.sky_irradiance.rgb;
     return seen.z * behind + mix(light, (1.0 - seen.z) * air, clouds_hazed(sine, distance_m));
 }
 

@@ -8,6 +8,7 @@
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
 //@ include lib/eye_light.glsl
+//@ include lib/ground.glsl
 //@ include lib/noise.glsl
 
 uniform float fog_top_m = 900.0; //@ range(-500, 9000) unit(m) label("Top") description("Height up to which the fog reaches, above sea level")
@@ -84,7 +85,8 @@ void fog_on_ambient(in Surface s, inout vec3 irradiance) {
 #if !HAS_outside
     float tau = fog_above(s.height_m * frame.height_range.z, fog_top_at(s.ground_m.xy));
     float passes = 1.0 / (1.0 + fog_gamma * tau), mu = max(frame.sun_apparent.z, 0.0);
-    vec3 sun = mu * frame.sun_light[0].rgb / max(frame.sky_irradiance.rgb, vec3(1e-9));
+    vec3 to_sun, light = sun_light_at(s.height_m, s.up, to_sun);
+    vec3 sun = mu * light / max(sky_light_at(s.height_m, s.up), vec3(1e-9));
     irradiance *= passes + max(passes - exp(-tau / max(mu, 0.05)), 0.0) * sun;
 #endif
 }

@@ -5,7 +5,7 @@
 //@ include lib/filtered.glsl
 
 uniform sampler2DArray light_by_height;  // by sine of the light's elevation and height; layers: direct light and sky of
-                                         // the DEM's heights, the same of heights up to 16 km
+                                         // the DEM's heights, direct light of heights up to 16 km
 
 const vec2 light_by_height_size = vec2(64.0, 16.0);  // LightByHeight: columns, rows
 
@@ -79,6 +79,3 @@ const float light_aloft_m = 16000.0;  // LightByHeight::kAloft_m
 
 /// Irradiance on a surface that faces the sun, or the moon that lights a night, at a height from 0 to 16 km.
 vec3 sun_light_aloft(in float height_m, in vec3 up) { return light_in_layer(2.0, height_m / light_aloft_m, up); }
-
-/// Irradiance from above by the sky, there.
-vec3 sky_light_aloft(in float height_m, in vec3 up) { return light_in_layer(3.0, height_m / light_aloft_m, up); }

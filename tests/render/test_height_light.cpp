@@ -62,8 +62,8 @@ TEST(HeightLight, GoesOutAtTheValleysFirst) {
     const FrameInputs dusk = lit_from(-1.5);
     const double sine = dusk.sun.direction.z;
     const HeightLight valley(dusk, 600), summit(dusk, 4400);
-    EXPECT_EQ(valley.direct(dusk.sun, sine), glm::dvec3(0));
     const glm::dvec3 glow = summit.direct(dusk.sun, sine);
+    EXPECT_LT(valley.direct(dusk.sun, sine).r, 1e-3 * glow.r);
     EXPECT_GT(glow.r, 0.01);
     EXPECT_GT(glow.r, 4 * glow.g);
 }
@@ -130,7 +130,7 @@ double worst_over(double sun_deg, double spread_deg, std::size_t layer) {
                 worst = std::max(worst, std::abs(found[c] - exact[c]));
         }
     }
-    return worst / most;
+    return most > 0 ? worst / most : 0;
 }
 
 TEST(LightByHeight, IsTheLightOfEachHeight) {
