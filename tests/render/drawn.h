@@ -90,8 +90,8 @@ class Drawn {
                                    .vertex_budget = 100000000,
                                    .max_array_layers = context_.info().max_array_layers});
         for (const effect::Effect& effect : shipped_)
-            for (const effect::FieldSpec& field : effect.manifest.fields)
-                fields_[field.resource] = nullptr;
+            for (const effect::FieldSpec& of_effect : effect.manifest.fields)
+                fields_[of_effect.resource] = nullptr;
         terrain_->set_fields(fields_);
         shine("2026-06-21T15:00Z");
         frame_.camera.fov_y_rad = radians(kFov_deg);
