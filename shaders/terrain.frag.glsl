@@ -218,7 +218,7 @@ void main() {
     hook_visibility(s, to_sun, lit);
     lit *= sunlight;
     // The part of the sky that a slope sees, of the light on level ground.
-    vec3 sky = sky_light_at(s.height_m, s.up) * (0.5 + 0.5 * dot(s.normal, s.up));
+    vec3 sky = light_of_sky_at(s.height_m, s.up) * (0.5 + 0.5 * dot(s.normal, s.up));
     hook_ambient(s, sky);
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);

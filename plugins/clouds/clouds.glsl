@@ -86,7 +86,7 @@ void clouds_on_ambient(in Surface s, inout vec3 irradiance) {
     vec2 below = textureLod(clouds_below, clouds_map_at(clouds_place(s.position_m, height_m)), 0.0).rg;
     vec3 to_sun, sun = sun_light_at(s.height_m, s.up, to_sun);
     vec3 level = max(dot(to_sun, s.up), 0.0) * sun;
-    vec3 factor = below.y + below.x * level / max(sky_light_at(s.height_m, s.up), vec3(1e-9));
+    vec3 factor = below.y + below.x * level / max(light_of_sky_at(s.height_m, s.up), vec3(1e-9));
     clouds_Deck last = clouds_deck(clouds_count() - 1);
     float above = smoothstep(last.base_m, last.top_m, height_m);
     irradiance *= mix(factor, vec3(1.0), above);

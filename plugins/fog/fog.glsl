@@ -86,7 +86,7 @@ void fog_on_ambient(in Surface s, inout vec3 irradiance) {
     float tau = fog_above(s.height_m * frame.height_range.z, fog_top_at(s.ground_m.xy));
     float passes = 1.0 / (1.0 + fog_gamma * tau), mu = max(frame.sun_apparent.z, 0.0);
     vec3 to_sun, light = sun_light_at(s.height_m, s.up, to_sun);
-    vec3 sun = mu * light / max(sky_light_at(s.height_m, s.up), vec3(1e-9));
+    vec3 sun = mu * light / max(light_of_sky_at(s.height_m, s.up), vec3(1e-9));
     irradiance *= passes + max(passes - exp(-tau / max(mu, 0.05)), 0.0) * sun;
 #endif
 }

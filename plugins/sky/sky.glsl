@@ -299,7 +299,7 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {
-    irradiance = sky_light_at(s.height_m, s.up);
+    irradiance = light_of_sky_at(s.height_m, s.up);
     if (sky_slopes) {
         vec3 to_sun = frame.eye_sun.xyz, to_light;
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),

@@ -46,7 +46,7 @@ void snowfall_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
 
 void snowfall_on_ambient(in Surface s, inout vec3 irradiance) {
 #if !HAS_outside
-    float open = dot(irradiance, vec3(1.0)) / max(dot(sky_light_at(s.height_m, s.up), vec3(1.0)), 1e-9);
+    float open = dot(irradiance, vec3(1.0)) / max(dot(light_of_sky_at(s.height_m, s.up), vec3(1.0)), 1e-9);
     irradiance = snowfall_irradiance() * min(open, 1.0);
 #endif
 }

@@ -20,7 +20,7 @@ layout(std140, binding = 0) uniform Frame {
                               // heights, with refraction; the others are 0. sun_light_at() has it by height
     vec4 sun_light_domain;    // of sun_light_table; x: where it begins, y: entries of it a unit, on the scale of
                               // sun_light_scale()
-    vec4 sky_irradiance;      // rgb: on level ground from the whole sky, there; sky_light_at() has it by height
+    vec4 sky_irradiance;      // rgb: on level ground from the whole sky, there; light_of_sky_at() has it by height
     vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration,
                               // w: lowest that effects move ground to [m], before exaggeration
     vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m

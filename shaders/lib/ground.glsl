@@ -73,7 +73,7 @@ vec3 sun_light_at(in float height_m, in vec3 up, out vec3 to_sun) {
 }
 
 /// Irradiance of level ground by the whole sky at a point of the ground, rgb.
-vec3 sky_light_at(in float height_m, in vec3 up) { return light_in_layer(1.0, light_row(height_m), up); }
+vec3 light_of_sky_at(in float height_m, in vec3 up) { return light_in_layer(1.0, light_row(height_m), up); }
 
 const float light_aloft_m = 16000.0;  // LightByHeight::kAloft_m
 
