@@ -64,6 +64,7 @@ RELEVO_GDAL(VSIFileFromMemBuffer);
 RELEVO_GDAL(VSIFree);
 RELEVO_GDAL(VSIFreeFilesystemPluginCallbacksStruct);
 RELEVO_GDAL(VSIGetLastErrorMsg);
+RELEVO_GDAL(VSIGetLastErrorNo);
 RELEVO_GDAL(VSIInstallPluginHandler);
 RELEVO_GDAL(VSINetworkStatsGetAsSerializedJSON);
 RELEVO_GDAL(VSIReadDirRecursive);

@@ -74,9 +74,11 @@ Presence remote_presence(const std::string& name) {
     if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_SET_ERROR_FLAG) == 0)
         return Presence::There;
     const std::string reason = VSIGetLastErrorMsg();
+    const int kind = VSIGetLastErrorNo();  // where S3 says in words what else is a code of HTTP
     // GDAL remembers what is missing, and then gives no reason.
-    if (reason.empty() || reason.ends_with(" 404")) return Presence::Missing;
-    if (reason.ends_with(" 403")) return Presence::Hidden;
+    if (reason.empty() || reason.ends_with(" 404") || kind == VSIE_AWSObjectNotFound)
+        return Presence::Missing;
+    if (reason.ends_with(" 403") || kind == VSIE_AWSAccessDenied) return Presence::Hidden;
     VSICurlPartialClearCache(name.c_str());
     refuse(name, fmt::format("cannot be asked for, {}; try again", reason));
 }
