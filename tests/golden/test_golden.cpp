@@ -97,7 +97,7 @@ class Golden : public testing::TestWithParam<Scene> {
         fmt::print("[ golden   ] {}: {:.4f} % off by more than 1/255, worst {}\n", GetParam().name,
                    100 * share, worst);
         EXPECT_LE(share, 0.0002) << taken_ << " against " << golden_;
-        EXPECT_LE(worst, 3) << taken_ << " against " << golden_;
+        EXPECT_LE(worst, 4) << taken_ << " against " << golden_;
     }
 
     const std::filesystem::path golden_ = golden_dir() / (GetParam().name + ".png");
