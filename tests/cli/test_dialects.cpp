@@ -126,7 +126,7 @@ TEST_F(DialectPicture, HolesAreTheSameDeclaredOrNot) {
     whole.value = [](int c, int r, int) {
         return ground_m(kCell * (c + 0.5), kSide - kCell * (r + 0.5));
     };
-    EXPECT_GT(image::compare(expected, picture({written("whole.tif", whole)})).worst, 30);
+    EXPECT_GT(image::compare(expected, picture({written("whole.tif", whole)})).worst, 20);
 }
 
 TEST_F(DialectPicture, TilesAreThePictureOfTheWhole) {
