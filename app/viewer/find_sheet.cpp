@@ -16,7 +16,7 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr std::size_t kMostFound = 30;
+constexpr std::size_t kMostNames = 30;
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void FindSheet::draw(glm::vec2 size_px, const EffectsModel* effects) {
             if (const auto place = geo::find_coordinates(text_))
                 found_.push_back({geo::degrees_text(*place), *place});
             else if (effects)
-                found_ = find_names(text_, *effects, kMostFound);
+                found_ = find_names(text_, *effects, kMostNames);
         }
         for (const FoundPlace& place : found_)
             if (ImGui::Selectable(printable(place.name).c_str())) choose(place.place);

@@ -15,8 +15,8 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255), kHidden = IM_COL32(255, 80, 60, 80);
-constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235);
+constexpr ImU32 kPathLine = IM_COL32(255, 80, 60, 255), kHidden = IM_COL32(255, 80, 60, 80);
+constexpr ImU32 kPathInk = IM_COL32(255, 255, 255, 235);
 
 std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
                                 const glm::dvec3& point_m) {
@@ -61,7 +61,7 @@ std::vector<std::optional<Place>> places_of(const std::vector<glm::dvec3>& line_
 }
 
 void draw_dot(ImDrawList& list, ImVec2 at) {
-    list.AddCircleFilled(at, 5, kLine);
+    list.AddCircleFilled(at, 5, kPathLine);
     list.AddCircle(at, 6, IM_COL32_WHITE, 0, 1.5f);
 }
 
@@ -81,7 +81,7 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
     for (std::size_t i = 1; i < places.size(); ++i)
         if (places[i - 1] && places[i])
             list.AddLine(places[i - 1]->at, places[i]->at,
-                         places[i - 1]->hidden || places[i]->hidden ? kHidden : kLine, 2);
+                         places[i - 1]->hidden || places[i]->hidden ? kHidden : kPathLine, 2);
     draw_closing_line(measurement, picture, size_px);
     std::optional<ImVec2> last;
     for (const glm::dvec3& corner_m : measurement.corners_m) {
@@ -95,7 +95,7 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
     const ImVec2 at{last->x + 12, last->y - 8}, extent = ImGui::CalcTextSize(length.c_str());
     list.AddRectFilled({at.x - 3, at.y - 1}, {at.x + extent.x + 3, at.y + extent.y + 1},
                        IM_COL32(0, 0, 0, 110), 3);
-    list.AddText(at, kInk, length.c_str());
+    list.AddText(at, kPathInk, length.c_str());
 }
 
 namespace {
@@ -159,7 +159,7 @@ void show_point(Measurement& measurement, ImDrawList& list, const Plot& plot) {
         ImGui::SetTooltip("%s", tr_format("after {}: no height", there).c_str());
         return;
     }
-    list.AddCircleFilled(plot.place(point.distance_m, point.place.height_m), 4, kLine);
+    list.AddCircleFilled(plot.place(point.distance_m, point.place.height_m), 4, kPathLine);
     ImGui::SetTooltip("%s", tr_format("after {}: {:.1f} m", there, point.place.height_m).c_str());
 }
 

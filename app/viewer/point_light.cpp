@@ -17,7 +17,7 @@ namespace {
 
 /// Of a drawn horizon; time step of a year [s].
 constexpr int kDirections = 3600;
-constexpr int kStep_s = 240;
+constexpr int kLightStep_s = 240;
 
 bool same_place(const geo::Geodetic& a, const geo::Geodetic& b) {
     return a.lat_rad == b.lat_rad && a.lon_rad == b.lon_rad;
@@ -117,7 +117,7 @@ class PointWork::Worker {
     std::shared_ptr<const YearPicture> year_picture() {
         if (!carpet_ || carpet_->year != wanted_.date.year ||
             carpet_->zone.name() != wanted_.zone.name())
-            carpet_ = light::carpet(light(), wanted_.date.year, wanted_.zone, kStep_s);
+            carpet_ = light::carpet(light(), wanted_.date.year, wanted_.zone, kLightStep_s);
         chart::CarpetChart chart;
         chart.carpet = &*carpet_;
         chart.place = horizon_->place();

@@ -21,7 +21,7 @@ constexpr double kCoarsePosts = 160e3, kMostPosts = 4e6;
 constexpr auto kProgressInterval = std::chrono::milliseconds(80);
 
 /// Thrown to cancel a computation.
-struct Cancelled {};
+struct OverlayCancelled {};
 
 /// A DEM resampled to fewer posts, with the outer rows and columns in place.
 dem::Heightfield thinned(const dem::Heightfield& field, double most) {
@@ -235,7 +235,7 @@ void OverlayWork::work_out(const OverlayWanted* wanted) {
         } else {
             measure(now);
         }
-    } catch (const Cancelled&) {
+    } catch (const OverlayCancelled&) {
         return;
     } catch (const std::exception& error) {
         shown.error = error.what();
@@ -264,7 +264,7 @@ void OverlayWork::measure(const OverlayWanted& now) {
         shown.raster = std::make_shared<const session::SunRaster>(
             session::sun_raster(level.posts, now.raster, {}, [&](double more) {
                 share += more;
-                if (is_cancelled()) throw Cancelled();
+                if (is_cancelled()) throw OverlayCancelled();
                 if (is_last) tell(share);
             }));
         if (is_cancelled()) return;
@@ -312,7 +312,7 @@ void OverlaySave::run(const session::SunRaster* whole) {
                                       wanted_.options.memory.posts / session::kPostsAPart,
                                       RELEVO_VERSION, [&](double more) { tell(share += more); });
         });
-    } catch (const Cancelled&) {
+    } catch (const OverlayCancelled&) {
         return;
     } catch (...) {
         failure_ = std::current_exception();
@@ -322,7 +322,7 @@ void OverlaySave::run(const session::SunRaster* whole) {
 }
 
 void OverlaySave::tell(double share) {
-    if (is_cancelled_) throw Cancelled();
+    if (is_cancelled_) throw OverlayCancelled();
     const bool is_worth_it = share - progress_ > 0.01;
     if (!is_worth_it) return;
     progress_ = share;

@@ -12,7 +12,7 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr std::array<const char*, 12> kMonths = {
+constexpr std::array<const char*, 12> kMonthNames = {
     tr_later("January"),   tr_later("February"), tr_later("March"),    tr_later("April"),
     tr_later("May"),       tr_later("June"),     tr_later("July"),     tr_later("August"),
     tr_later("September"), tr_later("October"),  tr_later("November"), tr_later("December")};
@@ -54,16 +54,17 @@ void calendar(State& state, sun::Date date) {
     // As wide for any date, so that what stands beside it stays where it is.
     // Translators: the widest date.
     const float width = ImGui::CalcTextSize(tr("30 September 2000")).x + ImGui::GetFontSize();
-    if (ImGui::Button(fmt::format("{} {} {}###date", date.day,
-                                  tr(kMonths[static_cast<std::size_t>(date.month - 1)]), date.year)
-                          .c_str(),
-                      {width, 0}))
+    if (ImGui::Button(
+            fmt::format("{} {} {}###date", date.day,
+                        tr(kMonthNames[static_cast<std::size_t>(date.month - 1)]), date.year)
+                .c_str(),
+            {width, 0}))
         ImGui::OpenPopup("calendar");
     if (!ImGui::BeginPopup("calendar")) return;
     int year = date.year, month = date.month - 1;
     const float em = ImGui::GetFontSize();
     ImGui::SetNextItemWidth(8.75f * em);
-    if (ImGui::Combo("##month", &month, tr_all(kMonths).data(), 12))
+    if (ImGui::Combo("##month", &month, tr_all(kMonthNames).data(), 12))
         set_date(state, in_year({date.year, month + 1,
                                  std::min(date.day, days_in_month(date.year, month + 1))},
                                 date.year));
@@ -173,7 +174,7 @@ void sun_panel(State& state) {
 
     int day = day_of_year(now.date);
     const int days = sun::days_between({now.date.year, 1, 1}, {now.date.year + 1, 1, 1});
-    const char* const month = tr(kMonths[static_cast<std::size_t>(now.date.month - 1)]);
+    const char* const month = tr(kMonthNames[static_cast<std::size_t>(now.date.month - 1)]);
     if (ImGui::SliderInt("##day", &day, 0, days - 1, slider_format(month, "").c_str()))
         set_date(state, date_of(now.date.year, std::clamp(day, 0, days - 1)));
     state.sun_moves = state.sun_moves || ImGui::IsItemActive();

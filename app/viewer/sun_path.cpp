@@ -16,8 +16,8 @@ constexpr double kFar_m = 1e9;
 constexpr double kLowest_deg = -4;
 
 /// Window position of a direction; nullopt behind the camera.
-std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
-                                const glm::dvec3& direction) {
+std::optional<ImVec2> direction_at_window(const Picture& picture, glm::vec2 size_px,
+                                          const glm::dvec3& direction) {
     const auto at = in_picture(picture.camera, picture.camera.eye_m + kFar_m * direction,
                                static_cast<double>(size_px.x) / size_px.y);
     if (!at || std::abs(at->x) > 4 || std::abs(at->y) > 4) return std::nullopt;
@@ -46,7 +46,7 @@ void fetch_depths(const std::vector<const SunDay*>& days, const Picture& picture
     for (const SunDay* const day : days)
         for (const SunPoint& point : day->points)
             if (point.elevation_deg >= kLowest_deg)
-                if (const auto at = at_window(picture, size_px, point.direction))
+                if (const auto at = direction_at_window(picture, size_px, point.direction))
                     if (const auto pixel = pixel_at(picture, size_px, *at))
                         pixels.push_back(*pixel);
     picture.fetch_depths(pixels);
@@ -62,8 +62,8 @@ void draw_way(const SunDay& day, const Picture& picture, glm::vec2 size_px, ImU3
     const std::vector<SunPoint>& points = day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         if (std::max(points[i].elevation_deg, points[i + 1].elevation_deg) < kLowest_deg) continue;
-        const auto a = at_window(picture, size_px, points[i].direction);
-        const auto b = at_window(picture, size_px, points[i + 1].direction);
+        const auto a = direction_at_window(picture, size_px, points[i].direction);
+        const auto b = direction_at_window(picture, size_px, points[i + 1].direction);
         if (!a || !b) continue;
         const bool seen = is_sky(picture, size_px, *a) && is_sky(picture, size_px, *b);
         list.AddLine(*a, *b, seen ? clear : hidden, seen ? width : 0.6f * width);
@@ -75,7 +75,7 @@ void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const SunPoint& point : day.points) {
         const int minute = DayMinute::of(point.utc, zone).minute;
-        const auto at = at_window(picture, size_px, point.direction);
+        const auto at = direction_at_window(picture, size_px, point.direction);
         if (minute % 60 != 0 || point.elevation_deg < kLowest_deg || !at) continue;
         const bool clear = is_sky(picture, size_px, *at);
         list.AddCircleFilled(*at, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
@@ -100,7 +100,7 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
              2.5f);
     draw_hours(state.day, state.document.zone, picture, size_px);
     const SunPoint now = sun_at(picture.utc, state.centre, state.air);
-    const auto at = at_window(picture, size_px, now.direction);
+    const auto at = direction_at_window(picture, size_px, now.direction);
     if (!at || now.elevation_deg < kLowest_deg) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const bool clear = is_sky(picture, size_px, *at);
@@ -115,8 +115,8 @@ std::optional<sun::Instant> time_at(const State& state, const Picture& picture, 
     const std::vector<SunPoint>& points = state.day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         if (points[i].elevation_deg < kLowest_deg) continue;
-        const auto a = at_window(picture, size_px, points[i].direction);
-        const auto b = at_window(picture, size_px, points[i + 1].direction);
+        const auto a = direction_at_window(picture, size_px, points[i].direction);
+        const auto b = direction_at_window(picture, size_px, points[i + 1].direction);
         if (!a || !b) continue;
         const glm::vec2 from(a->x, a->y), along(b->x - a->x, b->y - a->y);
         const float length2 = dot(along, along);

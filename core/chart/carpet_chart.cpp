@@ -9,7 +9,6 @@
 namespace relevo::chart {
 namespace {
 
-constexpr double kMargin = 28;
 constexpr double kLeft = 116, kTop = 112;  // of a sheet
 constexpr double kDayWidth = 2.8, kHourHeight = 20;
 // A panel's plot, in the panel.
@@ -132,7 +131,7 @@ void add_frame(Drawing& drawing, const Plot& area, bool is_panel) {
     if (is_panel) return;
     drawing.text({area.x - 11, bottom + kLevel}, "level horizon",
                  {.size = 12, .color = kSoft, .anchor = Anchor::End});
-    drawing.text({kMargin + 14, area.y + area.height / 2}, "local time",
+    drawing.text({kSheetMargin + 14, area.y + area.height / 2}, "local time",
                  {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
 }
 
@@ -191,14 +190,14 @@ Drawing CarpetChart::draw() const {
             "centre less than 6 degrees below the horizon.",
         "T" + horizon_definition.substr(1) + "."};
     const double keys_y = area.bottom() + 92;
-    Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
+    Drawing drawing(1160, keys_y + 22 + foot_height(1160, kSheetMargin, foot) + kSheetMargin);
     const std::string subject = fmt::format("Direct sun through {}", carpet->year);
     const std::vector<std::string> lines = title_lines(*this);
     drawing.describe(title_of(place_name, subject), lines.back());
-    add_title(drawing, kMargin, place_name, subject, lines);
+    add_title(drawing, kSheetMargin, place_name, subject, lines);
     add_plot(drawing, *carpet, area, /*is_panel=*/false);
     add_keys(drawing, keys_y);
-    add_foot(drawing, kMargin, foot);
+    add_foot(drawing, kSheetMargin, foot);
     return drawing;
 }
 

@@ -24,6 +24,7 @@ inline constexpr Color kSky{0xf5f9fc};
 inline constexpr Color kDay{0xe07b12};
 inline constexpr Color kShadow{0x7d8b99};
 inline constexpr Color kHole{0xb3261e};
+inline constexpr double kSheetMargin = 28;  // of a sheet
 inline constexpr const char* kHoleWords = "void of the DEM: the horizon may be higher";
 
 /// The sun or the moon at a moment.

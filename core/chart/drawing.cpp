@@ -28,6 +28,15 @@ constexpr std::string_view kEllipsis = "\u2026";
 
 }  // namespace
 
+Color mixed(const Color& a, const Color& b, double part) {
+    std::uint32_t rgb = 0;
+    for (unsigned shift : {0u, 8u, 16u}) {
+        const double from = a.rgb >> shift & 255, to = b.rgb >> shift & 255;
+        rgb |= static_cast<std::uint32_t>(std::lround(from + part * (to - from))) << shift;
+    }
+    return {rgb, a.opacity + part * (b.opacity - a.opacity)};
+}
+
 void Drawing::describe(const std::string& title, const std::string& description) {
     title_ = printable(title);
     description_ = printable(description);

@@ -20,6 +20,9 @@ struct Color {
     bool operator==(const Color&) const = default;
 };
 
+/// Between two colours: `a` at part 0, `b` at part 1.
+Color mixed(const Color& a, const Color& b, double part);
+
 /// How an outline is drawn and filled.
 struct Pen {
     std::optional<Color> fill = {};
@@ -47,6 +50,11 @@ struct Rect {
 
     bool operator==(const Rect&) const = default;
 };
+
+inline bool overlap(const Rect& a, const Rect& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
+           b.y < a.y + a.height;
+}
 
 /// Of a diagram in a panel of a window: without title, keys and small print, and with letters as
 /// large as otherwise.

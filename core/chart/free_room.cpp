@@ -14,11 +14,6 @@ std::size_t cells_along(double length) {
     return static_cast<std::size_t>(std::clamp(std::ceil(length / kCell), 1.0, kMostCells));
 }
 
-bool overlap(const Rect& a, const Rect& b) {
-    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
-           b.y < a.y + a.height;
-}
-
 /// The cell of a coordinate, of those along a side.
 std::size_t cell_at(double from_edge, double length, std::size_t count) {
     const double cell = std::floor(from_edge / length * static_cast<double>(count));

@@ -13,8 +13,8 @@ namespace {
 constexpr double kPadding = 10, kBarWidth = 16, kBarHeight = 150, kGap = 6, kLetters = 11,
                  kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104, kClassHeight = 20,
                  kStepHeight = 18;
-constexpr int kSteps = 75;  // of a continuous ramp
-constexpr int kLabels = 6;  // at most
+constexpr int kRampSteps = 75;  // of a continuous ramp
+constexpr int kLabels = 6;      // at most
 
 /// As few digits as tell neighbours apart.
 std::string text_of(double value, double step) {
@@ -93,11 +93,12 @@ void draw_labels(const std::vector<Label>& labels, double right, double top, Dra
 
 void draw_bar(const Ramp& ramp, double left, double top, Drawing& drawing) {
     const double low = ramp.stops.front().value, high = ramp.stops.back().value;
-    for (int k = 0; k < kSteps; ++k) {
-        const double share = (k + 0.5) / kSteps;
+    for (int k = 0; k < kRampSteps; ++k) {
+        const double share = (k + 0.5) / kRampSteps;
         Color color = ramp.at(high - share * (high - low));
-        drawing.rect({left, top + kBarHeight * k / kSteps, kBarWidth, kBarHeight / kSteps + 0.5},
-                     {.fill = color, .crisp = true});
+        drawing.rect(
+            {left, top + kBarHeight * k / kRampSteps, kBarWidth, kBarHeight / kRampSteps + 0.5},
+            {.fill = color, .crisp = true});
     }
     drawing.rect({left, top, kBarWidth, kBarHeight},
                  {.stroke = Color{0x303030, 0.6}, .width = 0.8});

@@ -17,9 +17,9 @@ constexpr double kCapital = 0.72;                 // height of digits and capita
 constexpr double kHalo = 0.15;                    // as Drawing draws it
 constexpr double kLongest = 24;                   // of a name; the rest is cut
 constexpr double kSymbol = 0.24;                  // half a symbol
-constexpr double kGap = 0.25;                     // between symbol and words
+constexpr double kSymbolGap = 0.25;               // between symbol and words
 constexpr double kStep = 1.15;                    // between two lengths of leaders
-constexpr int kSteps = 10;
+constexpr int kArcSteps = 10;
 /// Where the leader meets the words, in their width from the left.
 constexpr std::array<double, 5> kMeets = {0.5, 0.3, 0.7, 0.1, 0.9};
 
@@ -90,7 +90,7 @@ class Placer {
     bool beside(PlacedMark& mark) const {
         const double size = style_.size, width = text_width(mark.words, size);
         const double symbol = mark.kind == Symbol::None ? 0 : kSymbol * size;
-        const double aside = symbol + (kGap + kHalo) * size;
+        const double aside = symbol + (kSymbolGap + kHalo) * size;
         const double level = mark.at.y + (kAscent - kHeight / 2) * size;
         const double up = mark.at.y - aside - (kHeight - kAscent) * size;
         const double down = mark.at.y + aside + kAscent * size;
@@ -106,7 +106,7 @@ class Placer {
     /// Above, over a vertical line as short as possible.
     bool above(PlacedMark& mark) const {
         const double size = style_.size, width = text_width(mark.words, size);
-        for (int step = 0; step < kSteps; ++step) {
+        for (int step = 0; step < kArcSteps; ++step) {
             const double top = mark.at.y - style_.leader - step * kStep * size;
             for (const double meets : kMeets) {
                 const glm::dvec2 at(mark.at.x - meets * width,

@@ -14,24 +14,15 @@
 namespace relevo::chart {
 namespace {
 
-constexpr double kMargin = 28;
-constexpr double kWidth = 1500;
-constexpr Rect kSheetPlot{74, 104, kWidth - 74 - 34, 460};
+constexpr double kSheetWidth = 1500;
+constexpr Rect kSheetPlot{74, 104, kSheetWidth - 74 - 34, 460};
 // A panel's plot, in the panel.
-constexpr double kPanelLeft = 40, kPanelRight = 18, kPanelTop = 8, kPanelBottom = 48;
+constexpr double kPanoramaLeft = 40, kPanoramaRight = 18, kPanoramaTop = 8, kPanoramaBottom = 48;
 constexpr int kColumns = 1440;  // directions of the ridges
 
 constexpr Color kZenithSky{0xd3e5f3};
 constexpr Color kHorizonSky{0xfaf6ee};
-constexpr Color kRidge{0x2d352f};
-
-Color mixed(const Color& a, const Color& b, double t) {
-    const auto channel = [&](int shift) {
-        const double from = a.rgb >> shift & 255, to = b.rgb >> shift & 255;
-        return static_cast<std::uint32_t>(std::lround(from + t * (to - from))) << shift;
-    };
-    return {channel(16) | channel(8) | channel(0)};
-}
+constexpr Color kRidgeLine{0x2d352f};
 
 /// Far ground is paler and bluer: Leonardo's perspective of the air.
 Color ground_color(double nearness) {
@@ -56,8 +47,8 @@ class Panorama {
             paths_.emplace(of.horizon->place(), of.refraction, of.year, of.zone);
         middle_rad_ = of.horizon->place().lat_rad < 0 ? 0 : kPi;
         if (of.panel)
-            plot_ = {kPanelLeft, kPanelTop, of.panel->width - kPanelLeft - kPanelRight,
-                     of.panel->height - kPanelTop - kPanelBottom};
+            plot_ = {kPanoramaLeft, kPanoramaTop, of.panel->width - kPanoramaLeft - kPanoramaRight,
+                     of.panel->height - kPanoramaTop - kPanoramaBottom};
         choose_range();
         if (!of.panel) make_foot();
     }
@@ -70,13 +61,14 @@ class Panorama {
             return drawing;
         }
         const double keys_y = plot_.y + plot_.height + 62;
-        Drawing drawing(kWidth, keys_y + (paths_ && !moon() ? 50 : 30) +
-                                    foot_height(kWidth, kMargin, foot_) + kMargin);
+        Drawing drawing(kSheetWidth, keys_y + (paths_ && !moon() ? 50 : 30) +
+                                         foot_height(kSheetWidth, kSheetMargin, foot_) +
+                                         kSheetMargin);
         drawing_ = &drawing;
         add_head();
         add_plot();
         add_keys(keys_y);
-        add_foot(drawing, kMargin, foot_);
+        add_foot(drawing, kSheetMargin, foot_);
         return drawing;
     }
 
@@ -148,7 +140,7 @@ class Panorama {
             lines.push_back(
                 light_text(*of_.day, *paths_, moon() ? "Direct moonlight" : "Direct sun"));
         drawing_->describe(title_of(of_.place_name, subject), lines.back());
-        add_title(*drawing_, kMargin, of_.place_name, subject, lines);
+        add_title(*drawing_, kSheetMargin, of_.place_name, subject, lines);
     }
 
     void add_sky() {
@@ -250,7 +242,7 @@ class Panorama {
             ridge.emplace_back(all.x - 4, ridge.front().y);
             drawing_->path(std::move(ridge),
                            {.fill = ground_color(nearness(b)),
-                            .stroke = Color{kRidge.rgb, b == n - 1 ? 1.0 : 0.35},
+                            .stroke = Color{kRidgeLine.rgb, b == n - 1 ? 1.0 : 0.35},
                             .width = b == n - 1 ? 1.3 : 0.7},
                            true);
         }
@@ -317,7 +309,7 @@ class Panorama {
                            {.size = 11.5, .color = kSoft, .anchor = Anchor::End});
         }
         if (of_.panel) return;
-        drawing_->text({kMargin + 4, all.y + all.height / 2}, "elevation",
+        drawing_->text({kSheetMargin + 4, all.y + all.height / 2}, "elevation",
                        {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
         drawing_->text({all.x + all.width, all.y - 8},
                        fmt::format("azimuth from true north; elevations drawn {:.2g} times as tall",
@@ -359,7 +351,7 @@ class Panorama {
                 drawing_->circle(at, 3.4, {.fill = kPaper, .stroke = kInk, .width = 1.2});
                 labels.add(at,
                            fmt::format("{} {}", sun::name_of(event.kind), paths_->clock(event.utc)),
-                           {.size = 11.5, .color = kPaper, .halo = Color{kRidge.rgb, 0.8}}, 7,
+                           {.size = 11.5, .color = kPaper, .halo = Color{kRidgeLine.rgb, 0.8}}, 7,
                            LabelPlacer::Side::Below);
             }
         } else if (paths_) {
@@ -421,7 +413,7 @@ class Panorama {
     }
 
     void add_keys(double y) {
-        double at = kMargin;
+        double at = kSheetMargin;
         if (of_.day)
             at =
                 add_key(*drawing_, at, y, {.stroke = kDay, .width = 3.2}, long_date(of_.day->date));
@@ -436,7 +428,7 @@ class Panorama {
                                      sun::offset_text(paths_->standard_offset_s())));
             add_key(*drawing_, at, y, {.stroke = kFaint, .width = 1.1, .dash = {0.1, 3.2}},
                     "21 Jun to 21 Dec");
-            at = kMargin;
+            at = kSheetMargin;
             y += 20;
         }
         drawing_->text({at, y}, "ground within", {.size = 11.5, .color = kSoft});

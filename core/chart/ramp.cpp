@@ -88,15 +88,6 @@ constexpr std::array<NamedColor, 17> kColors{{{"white", 0xffffff},
                                               {"indigo", 0x007fff},
                                               {"teal", 0x008080}}};
 
-Color mixed(const Color& a, const Color& b, double part) {
-    std::uint32_t rgb = 0;
-    for (unsigned shift : {0u, 8u, 16u}) {
-        const double from = a.rgb >> shift & 255, to = b.rgb >> shift & 255;
-        rgb |= static_cast<std::uint32_t>(std::lround(from + part * (to - from))) << shift;
-    }
-    return {rgb, a.opacity + part * (b.opacity - a.opacity)};
-}
-
 /// A line of a colour file.
 class Line {
   public:

@@ -11,7 +11,8 @@ namespace relevo::chart {
 namespace {
 
 constexpr Color kInk{0x202020}, kPanel{0xffffff, 0.82}, kEdge{0x303030};
-constexpr double kLetters = 11, kTitle = 17, kPadding = 8, kMargin = 12, kGap = 6;
+constexpr double kStampLetters = 11, kStampTitle = 17, kStampPadding = 8, kStampMargin = 12,
+                 kStampGap = 6;
 constexpr double kLabelGap = 9;  // around labels of the graticule
 constexpr double kMostBar = 200, kMostOfWidth = 0.4;
 
@@ -21,12 +22,12 @@ Drawing lines_panel(const std::vector<std::string>& lines, double size, bool bol
     for (const std::string& line : lines)
         width = std::max(width, text_width(line, size, bold));
     const double step = size * 1.4;
-    Drawing drawing(std::ceil(width + 2 * kPadding),
-                    std::ceil(static_cast<double>(lines.size()) * step + 1.3 * kPadding));
+    Drawing drawing(std::ceil(width + 2 * kStampPadding),
+                    std::ceil(static_cast<double>(lines.size()) * step + 1.3 * kStampPadding));
     drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = kPanel});
     for (std::size_t k = 0; k < lines.size(); ++k)
-        drawing.text({kPadding, kPadding + size * 0.8 + static_cast<double>(k) * step}, lines[k],
-                     {.size = size, .color = kInk, .bold = bold});
+        drawing.text({kStampPadding, kStampPadding + size * 0.8 + static_cast<double>(k) * step},
+                     lines[k], {.size = size, .color = kInk, .bold = bold});
     return drawing;
 }
 
@@ -36,23 +37,24 @@ Drawing scale_panel(const Stamps::Scale& scale, double width_px, double unit_px)
     const ScaleBar bar = scale_bar(scale.px_per_m, most_px);
     const double length = bar.length_px / unit_px, height = 5;
     const std::string end = bar.text();
-    const double words = scale.where.empty() ? 0 : text_width(scale.where, kLetters);
-    const double left = kPadding + 3, over = text_width(end, kLetters) / 2;
-    const double top = kPadding + kLetters + 4;
-    Drawing drawing(
-        std::ceil(std::max(left + length + std::max(over, kPadding) + 2, left + words + kPadding)),
-        std::ceil(top + height + kPadding + (words > 0 ? kLetters + 6 : 0)));
+    const double words = scale.where.empty() ? 0 : text_width(scale.where, kStampLetters);
+    const double left = kStampPadding + 3, over = text_width(end, kStampLetters) / 2;
+    const double top = kStampPadding + kStampLetters + 4;
+    Drawing drawing(std::ceil(std::max(left + length + std::max(over, kStampPadding) + 2,
+                                       left + words + kStampPadding)),
+                    std::ceil(top + height + kStampPadding + (words > 0 ? kStampLetters + 6 : 0)));
     drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = kPanel});
     for (int part = 0; part < 4; ++part)
         drawing.rect({left + length * part / 4, top, length / 4, height},
                      {.fill = part % 2 == 0 ? Color{0x202020} : Color{0xffffff}, .crisp = true});
     drawing.rect({left, top, length, height}, {.stroke = kEdge, .width = 0.8});
-    drawing.text({left, top - 4}, "0", {.size = kLetters, .color = kInk, .anchor = Anchor::Middle});
+    drawing.text({left, top - 4}, "0",
+                 {.size = kStampLetters, .color = kInk, .anchor = Anchor::Middle});
     drawing.text({left + length, top - 4}, end,
-                 {.size = kLetters, .color = kInk, .anchor = Anchor::Middle});
+                 {.size = kStampLetters, .color = kInk, .anchor = Anchor::Middle});
     if (words > 0)
-        drawing.text({left, top + height + kLetters + 4}, scale.where,
-                     {.size = kLetters, .color = kInk});
+        drawing.text({left, top + height + kStampLetters + 4}, scale.where,
+                     {.size = kStampLetters, .color = kInk});
     return drawing;
 }
 
@@ -68,8 +70,8 @@ Drawing north_panel(const glm::dvec2& north) {
                  true);
     drawing.path({tip, tail - kHalf * aside, notch},
                  {.fill = Color{0xffffff}, .stroke = kInk, .width = 0.8}, true);
-    drawing.text(middle + (kArrow + 1) * north + glm::dvec2(0, kLetters * 0.36), "N",
-                 {.size = kLetters, .color = kInk, .anchor = Anchor::Middle, .bold = true});
+    drawing.text(middle + (kArrow + 1) * north + glm::dvec2(0, kStampLetters * 0.36), "N",
+                 {.size = kStampLetters, .color = kInk, .anchor = Anchor::Middle, .bold = true});
     return drawing;
 }
 
@@ -82,21 +84,16 @@ struct Panels {
     Panels(const Stamps& stamps, double width_px, double unit_px) {
         for (const Legend& one : stamps.legends)
             legends.push_back(legend(one));
-        if (!stamps.title.empty()) title = lines_panel({stamps.title}, kTitle, true);
+        if (!stamps.title.empty()) title = lines_panel({stamps.title}, kStampTitle, true);
         if (stamps.scale) scale = scale_panel(*stamps.scale, width_px, unit_px);
         if (!stamps.attribution.empty())
-            attribution =
-                lines_panel(wrapped(stamps.attribution, 0.85 * kLetters, 0.45 * width_px / unit_px),
-                            0.85 * kLetters, false);
-        if (!stamps.lines.empty()) lines = lines_panel(stamps.lines, kLetters, false);
+            attribution = lines_panel(
+                wrapped(stamps.attribution, 0.85 * kStampLetters, 0.45 * width_px / unit_px),
+                0.85 * kStampLetters, false);
+        if (!stamps.lines.empty()) lines = lines_panel(stamps.lines, kStampLetters, false);
         if (stamps.north) north = north_panel(*stamps.north);
     }
 };
-
-bool overlap(const Rect& a, const Rect& b) {
-    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
-           b.y < a.y + a.height;
-}
 
 enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
 
@@ -111,7 +108,7 @@ class Layout {
 
     /// @returns whether there was room
     bool add(const Drawing& drawing, Corner corner) {
-        const double margin = kMargin * unit_px_;
+        const double margin = kStampMargin * unit_px_;
         const double width = drawing.width() * unit_px_, height = drawing.height() * unit_px_;
         double& used = used_[static_cast<std::size_t>(corner)];
         const bool right = corner == Corner::TopRight || corner == Corner::BottomRight;
@@ -120,7 +117,7 @@ class Layout {
         if (!put(drawing, right ? picture_.width - margin - width : margin,
                  below ? picture_.height - from - height : from))
             return false;
-        used += height + kGap * unit_px_;
+        used += height + kStampGap * unit_px_;
         return true;
     }
 
@@ -177,7 +174,7 @@ void add_to_corners(const Panels& panels, Layout& layout, Missing& missing) {
 
 void add_around(const Panels& panels, const Rect& map, const image::Image8& picture, Layout& layout,
                 Missing& missing) {
-    const double unit = layout.unit_px(), margin = kMargin * unit, gap = kGap * unit;
+    const double unit = layout.unit_px(), margin = kStampMargin * unit, gap = kStampGap * unit;
     const auto put = [&](const Drawing& drawing, double x, double y, const char* name) {
         missing.note(layout.put(drawing, x, y), name);
     };
@@ -207,7 +204,7 @@ void add_around(const Panels& panels, const Rect& map, const image::Image8& pict
 /// @returns how many labels had no room
 int add_labels(const std::vector<Stamps::Label>& labels, Layout& layout, image::Image8& picture) {
     if (labels.empty()) return 0;
-    const double unit = layout.unit_px(), size = kLetters * unit;
+    const double unit = layout.unit_px(), size = kStampLetters * unit;
     Drawing drawing(picture.width, picture.height);
     int left_out = 0;
     for (const Stamps::Label& label : labels) {
@@ -257,19 +254,19 @@ Margins margins_for(const Stamps& stamps, int width_px, int height_px) {
     };
     double legends = 0, labels = 0;
     for (const Drawing& one : panels.legends)
-        legends = std::max(legends, one.width() + kGap);
+        legends = std::max(legends, one.width() + kStampGap);
     for (const Stamps::Label& label : stamps.graticule)
-        labels = std::max(labels, text_width(label.words, kLetters) + kLabelGap);
+        labels = std::max(labels, text_width(label.words, kStampLetters) + kLabelGap);
     const double right = height(panels.lines) + height(panels.attribution) +
-                         (panels.lines && panels.attribution ? kGap : 0);
+                         (panels.lines && panels.attribution ? kStampGap : 0);
     const double below = std::max({height(panels.north), height(panels.scale), right});
     const double above = height(panels.title);
     const auto px = [&](double length) { return static_cast<int>(std::ceil(length * unit)); };
-    return {.left = px(kMargin + labels),
-            .top = px(kMargin + above + (above > 0 ? kGap : 0)),
-            .right = px(kMargin + legends),
-            .bottom = px(kMargin + below + (below > 0 ? kGap : 0) +
-                         (labels > 0 ? kLetters + kLabelGap : 0))};
+    return {.left = px(kStampMargin + labels),
+            .top = px(kStampMargin + above + (above > 0 ? kStampGap : 0)),
+            .right = px(kStampMargin + legends),
+            .bottom = px(kStampMargin + below + (below > 0 ? kStampGap : 0) +
+                         (labels > 0 ? kStampLetters + kLabelGap : 0))};
 }
 
 std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,

@@ -14,7 +14,6 @@
 namespace relevo::chart {
 namespace {
 
-constexpr double kMargin = 28;
 constexpr double kWidth = 900;
 constexpr double kRadius = 350;
 constexpr Color kTerrain{0xd9d1c2, 0.8};
@@ -133,7 +132,7 @@ class Sheet {
     }
 
     void keys(double keys_y) const {
-        double x = kMargin;
+        double x = kSheetMargin;
         if (of_.day)
             x = add_key(drawing_, x, keys_y, {.stroke = kDay, .width = 3.4},
                         long_date(of_.day->date));
@@ -141,7 +140,7 @@ class Sheet {
             x = add_key(drawing_, x, keys_y,
                         {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
                         season.label);
-        x = add_key(drawing_, kMargin, keys_y + 20, {.stroke = kFaint, .width = 0.9},
+        x = add_key(drawing_, kSheetMargin, keys_y + 20, {.stroke = kFaint, .width = 0.9},
                     fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
                                 sun::offset_text(paths_.standard_offset_s())));
         x = add_key(drawing_, x, keys_y + 20, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}},
@@ -285,7 +284,7 @@ Drawing SunPathDiagram::draw() const {
     const double top = 82 + 18.0 * (day.has_value() + light.has_value());
     const glm::dvec2 center(kWidth / 2, top + 40 + kRadius);
     const double keys_y = center.y + kRadius + 66;
-    Drawing drawing(kWidth, keys_y + 34 + foot_height(kWidth, kMargin, foot) + kMargin);
+    Drawing drawing(kWidth, keys_y + 34 + foot_height(kWidth, kSheetMargin, foot) + kSheetMargin);
 
     std::vector<std::string> lines{fmt::format("{}, {}", place_text(place), zone.name())};
     const std::string subject = day ? "Path of the sun, " + long_date(day->date)
@@ -293,13 +292,13 @@ Drawing SunPathDiagram::draw() const {
     if (day) lines.push_back(events_text(*day, paths));
     if (light) lines.push_back(light_text(*light, paths));
     drawing.describe(title_of(place_name, subject), lines.front());
-    add_title(drawing, kMargin, place_name, subject, lines);
+    add_title(drawing, kSheetMargin, place_name, subject, lines);
 
     const Sheet sheet(*this, paths, drawing, center);
     sheet.sky();
     sheet.marks();
     sheet.keys(keys_y);
-    add_foot(drawing, kMargin, foot);
+    add_foot(drawing, kSheetMargin, foot);
     return drawing;
 }
 

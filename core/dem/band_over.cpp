@@ -89,7 +89,7 @@ float between(const Array2d<float>& cells, const glm::dvec2& at, bool round) {
     return weights > 0 ? static_cast<float>(sum / weights) : kNaN;
 }
 
-float nearest(const Array2d<float>& cells, const glm::dvec2& at) {
+float nearest_cell(const Array2d<float>& cells, const glm::dvec2& at) {
     const double column = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
     if (!(column >= 0 && row >= 0 && column < cells.width() && row < cells.height())) return kNaN;
     return cells.at(static_cast<int>(column), static_cast<int>(row));
@@ -206,7 +206,7 @@ BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
                 const glm::dvec2 place = places(column, row);
                 const glm::dvec2 at = (place + 0.5) / cells.shrunk - 0.5;
                 over.values.at(column, row) =
-                    over.whole ? nearest(cells.values, at) : between(cells.values, at, round);
+                    over.whole ? nearest_cell(cells.values, at) : between(cells.values, at, round);
                 if (place.x >= -0.5 && place.y >= -0.5 && place.x <= raster.columns() - 0.5 &&
                     place.y <= raster.rows() - 0.5)
                     covers = true;

@@ -29,7 +29,7 @@ std::vector<glm::dvec2> outline() {
     return points;
 }
 
-struct Range {
+struct PostRange {
     glm::dvec2 least{std::numeric_limits<double>::infinity()},
         most{-std::numeric_limits<double>::infinity()};
 
@@ -40,8 +40,8 @@ struct Range {
     }
 };
 
-[[noreturn]] void refuse(const Grid& grid, const Clip& clip, std::string_view who) {
-    Range range;
+[[noreturn]] void refuse_clip(const Grid& grid, const Clip& clip, std::string_view who) {
+    PostRange range;
     const geo::Crs& crs = clip.crs.value_or(grid.crs());
     for (const glm::dvec2& at : outline()) {
         const double column = at.x * (grid.columns() - 1), row = at.y * (grid.rows() - 1);
@@ -56,8 +56,8 @@ struct Range {
 }
 
 /// Columns and rows of a rectangle's sides, without a break where longitudes begin again.
-Range range_of(const Grid& grid, const Clip& clip) {
-    Range range;
+PostRange range_of(const Grid& grid, const Clip& clip) {
+    PostRange range;
     glm::dvec2 last(0.5 * (grid.columns() - 1), 0.5 * (grid.rows() - 1));
     for (const glm::dvec2& at : outline()) {
         const double x = clip.west + at.x * (clip.east - clip.west),
@@ -78,7 +78,7 @@ bool has_column(const Grid& grid, double from, double to) {
 
 /// Moves a range to the turn of longitude on which the grid is. @throws Error (BadInput) if a part
 /// of it is at one end of the grid's rows and the rest at the other
-void turn_to_grid(Range& range, const Grid& grid, const Clip& clip, std::string_view who) {
+void turn_to_grid(PostRange& range, const Grid& grid, const Clip& clip, std::string_view who) {
     const double turn = grid.turn_columns();
     if (turn == 0) return;
     if (range.most.x - range.least.x > turn - 1) {
@@ -121,8 +121,8 @@ Clip parse_clip(std::string_view text, std::string_view who) {
 }
 
 Window window_of(const Grid& grid, const Clip& clip, std::string_view who) {
-    Range range = range_of(grid, clip);
-    if (!(range.least.x <= range.most.x)) refuse(grid, clip, who);
+    PostRange range = range_of(grid, clip);
+    if (!(range.least.x <= range.most.x)) refuse_clip(grid, clip, who);
     turn_to_grid(range, grid, clip, who);
     const auto first = [](double least) {
         return static_cast<int>(std::ceil(std::max(least, 0.0) - kOnSide));
@@ -130,11 +130,12 @@ Window window_of(const Grid& grid, const Clip& clip, std::string_view who) {
     const auto last = [](double most, int posts) {
         return static_cast<int>(std::floor(std::min(most, posts - 1.0) + kOnSide));
     };
-    if (!(range.least.x < grid.columns() && range.least.y < grid.rows())) refuse(grid, clip, who);
+    if (!(range.least.x < grid.columns() && range.least.y < grid.rows()))
+        refuse_clip(grid, clip, who);
     const int column = first(range.least.x), row = first(range.least.y);
     const int columns = last(range.most.x, grid.columns()) - column + 1,
               rows = last(range.most.y, grid.rows()) - row + 1;
-    if (columns < 1 || rows < 1) refuse(grid, clip, who);
+    if (columns < 1 || rows < 1) refuse_clip(grid, clip, who);
     return {column, row, columns, rows};
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 16;  ///< virtual rasters of virtual rasters
+constexpr int kDeepestRaster = 16;  ///< virtual rasters of virtual rasters
 
 /// The file on this machine that a name of GDAL's leads to: "/vsizip//maps/alps.zip/alps.tif" is
 /// in /maps/alps.zip. Empty where there is none.
@@ -46,7 +46,7 @@ std::filesystem::path file_behind(std::string name) {
 class Collector {
   public:
     void add(const std::string& name, int depth) {
-        if (!seen_.insert(name).second || depth > kDeepest) return;
+        if (!seen_.insert(name).second || depth > kDeepestRaster) return;
         add_file(name);
         std::string path = name;
         Dataset dataset;

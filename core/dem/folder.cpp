@@ -197,7 +197,7 @@ void drop_parts(std::vector<RasterFile>& rasters) {
 
 namespace {
 
-std::vector<std::string> rasters_of(const std::string& path, bool aloud) {
+std::vector<std::string> found_rasters(const std::string& path, bool aloud) {
     std::error_code error;
     if (!fs::is_directory(path, error)) return {path};
     prepare_gdal();
@@ -224,12 +224,12 @@ std::vector<std::string> rasters_of(const std::string& path, bool aloud) {
 }  // namespace
 
 std::vector<std::string> rasters_of(const std::string& path) {
-    return rasters_of(path, /*aloud=*/true);
+    return found_rasters(path, /*aloud=*/true);
 }
 
 std::vector<std::string> rasters_of_quietly(const std::string& path) {
     try {
-        return rasters_of(path, /*aloud=*/false);
+        return found_rasters(path, /*aloud=*/false);
     } catch (const Error&) {
         return {};
     }

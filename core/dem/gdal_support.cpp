@@ -15,7 +15,7 @@
 namespace relevo::dem {
 namespace {
 
-constexpr GIntBig kBlockBytes = GIntBig{256} << 20;  // of GDAL's cache
+constexpr GIntBig kBlockCacheBytes = GIntBig{256} << 20;  // of GDAL's cache
 
 void to_debug_log(CPLErr, int, const char* text) {
     log::debug(fmt::format("GDAL: {}", text));
@@ -33,7 +33,7 @@ void prepare_gdal() {
         open_regular_files_only();
         // By itself it is a twentieth of the machine's memory, whatever --memory is.
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
-            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kBlockBytes));
+            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kBlockCacheBytes));
     });
 }
 
@@ -64,7 +64,7 @@ class BlockCache {
     }
 
     std::mutex mutex_;
-    std::int64_t allowed_ = kBlockBytes, held_ = 0;
+    std::int64_t allowed_ = kBlockCacheBytes, held_ = 0;
 };
 
 }  // namespace

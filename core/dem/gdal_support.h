@@ -13,6 +13,12 @@ struct CloseDataset {
 };
 using Dataset = std::unique_ptr<void, CloseDataset>;
 
+/// A feature of a layer, an OGRFeatureH, which is a void*.
+struct DestroyFeature {
+    void operator()(void* feature) const;
+};
+using Feature = std::unique_ptr<void, DestroyFeature>;
+
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
 /// keeps its cache of blocks to 256 MiB or less (unless GDAL_CACHEMAX is set), and keeps GDAL from
 /// writing to standard error: what nobody collects goes to the debug log. In a process of another

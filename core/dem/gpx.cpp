@@ -19,7 +19,7 @@ constexpr int kBlockBytes = 1 << 16;
 // Bounds of what Expat and we hold at once, whatever the file is.
 constexpr XML_Index kMostTokenBytes = 1 << 20;
 constexpr std::size_t kMostTextBytes = 1 << 16;
-constexpr std::size_t kMostLevels = 64;
+constexpr std::size_t kMostElements = 64;
 
 struct FreeParser {
     void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
@@ -136,8 +136,8 @@ class Reader {
     }
 
     void start(std::string_view name, const XML_Char** attributes) {
-        if (levels_.size() >= kMostLevels)
-            refuse(fmt::format("nested deeper than {} levels", kMostLevels));
+        if (levels_.size() >= kMostElements)
+            refuse(fmt::format("nested deeper than {} levels", kMostElements));
         if (levels_.empty() && name != "gpx")
             refuse(fmt::format("begins with <{}>, expected <gpx>; export it as GPX, GeoJSON or CSV",
                                name.substr(0, 40)));

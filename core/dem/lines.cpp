@@ -40,11 +40,6 @@ constexpr std::array kDrivers = {"ESRI Shapefile",
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-struct DestroyFeature {
-    void operator()(void* feature) const { OGR_F_Destroy(feature); }
-};
-using Feature = std::unique_ptr<void, DestroyFeature>;
-
 class LineReader {
   public:
     LineReader(const std::string& path, std::string_view who, const std::string& attribute,

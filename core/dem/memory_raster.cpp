@@ -22,7 +22,7 @@ std::string next_name() {
     return fmt::format("/vsimem/relevo/{}/heights.tif", ++number);
 }
 
-[[noreturn]] void refuse(const GdalMessages& messages, const std::string& name) {
+[[noreturn]] void refuse_raster(const GdalMessages& messages, const std::string& name) {
     VSIUnlink(name.c_str());
     failed("heights: GDAL does not take them, " + messages.failure(name));
 }
@@ -42,18 +42,18 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     prepare_gdal();
     const GdalMessages messages;
     GDALDriverH const driver = GDALGetDriverByName("GTiff");
-    if (!driver) refuse(messages, name_);
+    if (!driver) refuse_raster(messages, name_);
     const Dataset file(GDALCreate(driver, name_.c_str(), columns, rows, 1, GDT_Float32, nullptr));
     std::array<double, 6> transform = a.geotransform();
     if (!file || GDALSetGeoTransform(file.get(), transform.data()) != CE_None)
-        refuse(messages, name_);
+        refuse_raster(messages, name_);
     GDALRasterBandH const band = GDALGetRasterBand(file.get(), 1);
     GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN());
     GDALSetRasterUnitType(band, "m");
     // GDAL's interface has no const here; it reads.
     if (GDALRasterIO(band, GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns,
                      rows, GDT_Float32, 0, 0) != CE_None)
-        refuse(messages, name_);
+        refuse_raster(messages, name_);
 }
 
 MemoryRaster::MemoryRaster(MemoryRaster&& other) noexcept

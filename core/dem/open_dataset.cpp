@@ -20,6 +20,10 @@
 
 namespace relevo::dem {
 
+void DestroyFeature::operator()(void* feature) const {
+    OGR_F_Destroy(feature);
+}
+
 void CloseDataset::operator()(void* dataset) const {
     GDALClose(dataset);
 }

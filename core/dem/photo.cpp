@@ -21,7 +21,7 @@ namespace relevo::dem {
 namespace {
 
 /// Samples along a side of the image and of the DEM.
-constexpr int kSamples = 32;
+constexpr int kExtentSamples = 32;
 
 PhotoKind kind_of(GDALDatasetH dataset) {
     const int bands = GDALGetRasterCount(dataset);
@@ -67,9 +67,9 @@ bool is_in(const Grid& grid, const glm::dvec2& at) {
 /// Calls back for places all over a part of a grid, its edges included.
 template <typename Take>
 void each_sample(const glm::dvec2& first, const glm::dvec2& last, const Take& take) {
-    for (int j = 0; j <= kSamples; ++j)
-        for (int i = 0; i <= kSamples; ++i)
-            take(glm::mix(first, last, glm::dvec2(i, j) / double{kSamples}));
+    for (int j = 0; j <= kExtentSamples; ++j)
+        for (int i = 0; i <= kExtentSamples; ++i)
+            take(glm::mix(first, last, glm::dvec2(i, j) / double{kExtentSamples}));
 }
 
 /// Linear between pixels; alpha at the outermost ones is not blended with what is outside.

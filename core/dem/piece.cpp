@@ -17,8 +17,6 @@
 namespace relevo::dem {
 namespace {
 
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-
 /// @param height_m  may be where the stored numbers are
 template <typename T>
 void to_metres(const BandScale& band_scale, const T* stored, std::size_t n, float* height_m) {

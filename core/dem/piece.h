@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,9 @@
 // One raster of a DEM. Inside of the layer only.
 
 namespace relevo::dem {
+
+/// The height of a post without one.
+inline constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 /// How stored numbers become metres.
 struct BandScale {

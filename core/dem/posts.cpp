@@ -20,7 +20,7 @@
 namespace relevo::dem {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfinite_m = std::numeric_limits<float>::infinity();
 constexpr int kLeastBlock = 32;             // cells a side
 constexpr std::int64_t kMaxSlab = 1 << 22;  // posts that are read at once to go through a file
 constexpr int kSlab_rows = 512;             // those of the tallest usual blocks of files
@@ -32,7 +32,7 @@ int blocks_of(int posts, int block) {
 
 /// The highest post of a block, infinity where it has a hole.
 float highest_of(const Posts::View& view, const Window& posts) {
-    float highest_m = -kInfinity;
+    float highest_m = -kInfinite_m;
     int holes = 0;
     for (int row = posts.row; row < posts.row + posts.rows; ++row) {
         const float* heights = view.at(posts.column, row);
@@ -42,7 +42,7 @@ float highest_of(const Posts::View& view, const Window& posts) {
             holes += h != h;
         }
     }
-    return holes > 0 ? kInfinity : highest_m;
+    return holes > 0 ? kInfinite_m : highest_m;
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ void Posts::Impl::keep_thinned(const Window& slab, const HeightAt& height_at) {
 
 void Posts::Impl::settle_holes() {
     for (float& highest_m : block_highest_m)
-        if (highest_m == kInfinity) highest_m = about.statistics.max_m;
+        if (highest_m == kInfinite_m) highest_m = about.statistics.max_m;
 }
 
 void Posts::Impl::take(const Heightfield& in_memory) {
@@ -165,7 +165,7 @@ void Posts::Impl::take(const Heightfield& in_memory) {
     if (about.statistics.valid == 0) about.statistics = statistics(height_m);
     const int columns = blocks_of(height_m.width(), block),
               rows = blocks_of(height_m.height(), block);
-    block_highest_m = Array2d<float>(columns, rows, -kInfinity);
+    block_highest_m = Array2d<float>(columns, rows, -kInfinite_m);
     find_highest({height_m.data(), height_m.width(), 0, 0},
                  {0, 0, height_m.width(), height_m.height()});
     settle_holes();
@@ -189,7 +189,7 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
         spikes = {};
         content = 0;
         block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
-                                         blocks_of(grid().rows(), block), -kInfinity);
+                                         blocks_of(grid().rows(), block), -kInfinite_m);
         thinned_m = Array2d<float>(thinned(grid().columns()), thinned(grid().rows()),
                                    std::numeric_limits<float>::quiet_NaN());
         collar = go_through(std::min(max_posts / 2, kMaxSlab));
@@ -250,7 +250,7 @@ std::optional<Collar> Posts::Impl::go_through(std::int64_t slab_posts) {
             const int own_columns = slab.columns - (ends_right ? 0 : 1);
             const int own_rows = slab.rows - (ends_below ? 0 : 1);
             if (const Source::Blank blank = source->blank(slab); blank.rows == slab.rows) {
-                const float height_m = std::isnan(blank.height_m) ? kInfinity : blank.height_m;
+                const float height_m = std::isnan(blank.height_m) ? kInfinite_m : blank.height_m;
                 for_blocks(slab, [&](float& highest_m, const Window&) {
                     highest_m = std::max(highest_m, height_m);
                 });
@@ -391,7 +391,7 @@ bool Posts::in_memory() const {
 float Posts::bound_m(int first_column, int last_column, int first_row, int last_row) const {
     if (impl_->unrolled) {
         // The cell across the first column has its corners in the cells on either side.
-        float bound_m = -kInfinity;
+        float bound_m = -kInfinite_m;
         impl_->unrolled->each_piece(first_column, last_column + 2, [&](int from, int count, int) {
             bound_m = std::max(bound_m, impl_->unrolled->posts.bound_m(from, from + count - 1,
                                                                        first_row, last_row));
@@ -403,7 +403,7 @@ float Posts::bound_m(int first_column, int last_column, int first_row, int last_
         return std::clamp(cell / size, 0, blocks - 1);
     };
     const int width = highest_m.width(), height = highest_m.height();
-    float bound_m = -kInfinity;
+    float bound_m = -kInfinite_m;
     for (int row = block(first_row, height); row <= block(last_row, height); ++row)
         for (int column = block(first_column, width); column <= block(last_column, width); ++column)
             bound_m = std::max(bound_m, highest_m.at(column, row));

@@ -12,7 +12,7 @@ namespace relevo::dem {
 namespace {
 
 /// Pieces of a DEM, each way, whose posts are read to learn how far the levels are from them.
-constexpr int kSamples = 3;
+constexpr int kBlockSamples = 3;
 
 }  // namespace
 
@@ -38,10 +38,10 @@ void Pyramid::sample_errors(std::int64_t max_nodes) {
             --top;
         const glm::ivec2 count = side_of(top) >> base, side = count << base;
         const Bounds below = sampled_[static_cast<std::size_t>(base)];
-        for (int j = 0; j < kSamples; ++j) {
-            for (int i = 0; i < kSamples; ++i) {
+        for (int j = 0; j < kBlockSamples; ++j) {
+            for (int i = 0; i < kBlockSamples; ++i) {
                 const auto at = [](int room, int index) {
-                    return static_cast<int>(std::int64_t{room} * index / (kSamples - 1));
+                    return static_cast<int>(std::int64_t{room} * index / (kBlockSamples - 1));
                 };
                 const Array2d<float> read = source_->read(
                     {at(posts.x - side.x, i), at(posts.y - side.y, j), side.x, side.y}, count.x,

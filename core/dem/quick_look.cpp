@@ -37,7 +37,7 @@ int step_for(int columns, int rows, int longest) {
     return std::max(1, (std::max(columns, rows) - 1) / longest + 1);
 }
 
-constexpr double kMostPosts = 4e8;  // that are read for a look without overviews: some seconds
+constexpr double kMostPostsRead = 4e8;  // that are read for a look without overviews: some seconds
 
 /// The side of an SRTM tile with so many bytes; 0 if there is none.
 int srtm_side(std::uintmax_t bytes) {
@@ -106,11 +106,11 @@ QuickLook read(GDALDatasetH file, const std::string& path, int longest,
     if (!band) bad_input(fmt::format("{}: no band of heights", printable(path)));
     const int columns = GDALGetRasterXSize(file), rows = GDALGetRasterYSize(file);
     const int step = step_for(columns, rows, longest);
-    if (GDALGetOverviewCount(band) == 0 && double{1} * columns * rows > kMostPosts)
+    if (GDALGetOverviewCount(band) == 0 && double{1} * columns * rows > kMostPostsRead)
         bad_input(
             fmt::format("{}: {} x {} posts, expected at most {:.0f} million without overviews; "
                         "add them with gdaladdo",
-                        printable(path), columns, rows, kMostPosts / 1e6));
+                        printable(path), columns, rows, kMostPostsRead / 1e6));
     QuickLook look;
     set_spacing(file, look);
     look.column_m *= step;

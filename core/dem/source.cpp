@@ -18,12 +18,6 @@
 #include "dem/source_impl.h"
 
 namespace relevo::dem {
-namespace {
-
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
-
 void Source::Impl::crop(const Window& window) {
     grid = grid->part(window, window.columns, window.rows);
     rasters->move_origin(window.column, window.row);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,9 +11,8 @@
 namespace relevo::dem {
 namespace {
 
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 /// Reading more posts takes seconds, and shows its progress.
-constexpr double kManyPosts = 1 << 28;
+constexpr double kSlowPosts = 1 << 28;
 
 }  // namespace
 
@@ -254,7 +252,7 @@ std::int64_t Source::Impl::room_for_sums() const {
 
 Array2d<float> Source::Impl::read_means(const Window& window, int columns, int rows) const {
     std::optional<Progress> progress;
-    if (double(window.columns) * window.rows > kManyPosts)
+    if (double(window.columns) * window.rows > kSlowPosts)
         progress.emplace(about.path + ": reading",
                          static_cast<double>(rasters->count()) * window.rows);
     const Means means{window, columns, rows, progress ? &*progress : nullptr};

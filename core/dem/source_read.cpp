@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -9,8 +8,6 @@
 
 namespace relevo::dem {
 namespace {
-
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 /// A window of a piece, in its own posts.
 Window own_window(const Piece& piece, const Window& part) {

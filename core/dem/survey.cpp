@@ -12,8 +12,8 @@
 namespace relevo::dem {
 namespace {
 
-constexpr std::int64_t kLeastPosts = 1 << 18;
-constexpr std::int64_t kMaxPosts = 1 << 23;
+constexpr std::int64_t kLeastRoom = 1 << 18;
+constexpr std::int64_t kMaxRoom = 1 << 23;
 
 /// @param at  where the part's first post is
 void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
@@ -28,10 +28,10 @@ void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
 /// The columns [first, last) of rows that follow each other, each with one more row above and with
 /// one more column on each side where the DEM has them: those that have a part in what is said of
 /// posts beside them.
-class Strip {
+class SurveyStrip {
   public:
-    Strip(const Source& source, int first, int last, Survey& survey,
-          std::optional<CollarSteps>& collar_steps)
+    SurveyStrip(const Source& source, int first, int last, Survey& survey,
+                std::optional<CollarSteps>& collar_steps)
         : source_(source),
           left_(std::max(0, first - 1)),
           first_(first),
@@ -144,7 +144,7 @@ Survey survey(const Source& source, std::int64_t max_posts) {
     if (std::int64_t{columns} * rows > kSoon) refuse_endless_sides(source);
     std::optional<CollarSteps> collar_steps = collar_steps_of(source);
     // Whole rows of blocks, and of these as many columns as there is room for.
-    const std::int64_t room = std::clamp(max_posts / 4, kLeastPosts, kMaxPosts);
+    const std::int64_t room = std::clamp(max_posts / 4, kLeastRoom, kMaxRoom);
     const int block_rows =
         static_cast<int>(std::min<std::int64_t>({source.block_rows(), rows, room / 64}));
     const int strip_columns = static_cast<int>(std::min<std::int64_t>(columns, room / block_rows));
@@ -154,7 +154,7 @@ Survey survey(const Source& source, std::int64_t max_posts) {
     for (int first = 0; first < columns;) {
         const int last =
             static_cast<int>(std::min<std::int64_t>(columns, std::int64_t{first} + strip_columns));
-        Strip strip(source, first, last, result, collar_steps);
+        SurveyStrip strip(source, first, last, result, collar_steps);
         for (int row = 0; row < rows;) {
             const Source::Blank blank =
                 source.blank({std::max(0, first - 1), row,

@@ -27,17 +27,13 @@ constexpr const char* kLocation = "location";
 constexpr const char* kTileCrs = "src_srs";  // what gdaltindex's manual calls it
 
 /// Drivers that read nothing but the file and files of its name.
-constexpr std::array kDrivers = {"GPKG",       "FlatGeobuf", "ESRI Shapefile",
-                                 "GeoJSONSeq", "GeoJSON",    static_cast<const char*>(nullptr)};
+constexpr std::array kIndexDrivers = {"GPKG",           "FlatGeobuf",
+                                      "ESRI Shapefile", "GeoJSONSeq",
+                                      "GeoJSON",        static_cast<const char*>(nullptr)};
 constexpr std::array<std::string_view, 6> kEndings = {".gpkg", ".fgb",     ".shp",
                                                       ".json", ".geojson", ".geojsonl"};
 constexpr std::uint64_t kMostUnpacked = std::uint64_t{512} << 20;
 constexpr std::uint64_t kMostJson = std::uint64_t{256} << 20;
-
-struct DestroyFeature {
-    void operator()(void* feature) const { OGR_F_Destroy(feature); }
-};
-using Feature = std::unique_ptr<void, DestroyFeature>;
 
 bool is_packed(const std::string& path) {
     return lower(path).ends_with(".gz");
@@ -134,7 +130,7 @@ Vectors open_vectors(const std::string& path) {
         name = vectors.memory->name();
     }
     vectors.dataset = Dataset(GDALOpenEx(name.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY,
-                                         kDrivers.data(), nullptr, nullptr));
+                                         kIndexDrivers.data(), nullptr, nullptr));
     return vectors;
 }
 

@@ -14,9 +14,9 @@ constexpr std::uint32_t kAttribute = 12;
 constexpr std::uint64_t kMaxItems = 1'000'000;  // of a list or a name: more is no header
 
 /// A classic header, read from its beginning; after a failure every read gives 0.
-class Header {
+class TiffHeader {
   public:
-    explicit Header(const std::filesystem::path& path) : file_(path, std::ios::binary) {
+    explicit TiffHeader(const std::filesystem::path& path) : file_(path, std::ios::binary) {
         std::array<char, 4> magic{};
         file_.read(magic.data(), 4);
         version_ = magic[3];
@@ -76,7 +76,7 @@ class Header {
 }  // namespace
 
 std::uint64_t classic_netcdf_size(const std::filesystem::path& path) {
-    Header header(path);
+    TiffHeader header(path);
     const std::uint64_t records = header.count();
     std::vector<std::uint64_t> lengths(header.list(kDimension));
     for (std::uint64_t& length : lengths) {

@@ -13,19 +13,18 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "plugin";
 /// Of one file. Drivers need minutes to compile longer ones.
 constexpr std::size_t kMaxGlslBytes = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
-    bad_input(fmt::format("{}: {}:{}: {}", kWho, file, line, message));
+    bad_input(fmt::format("{}: {}:{}: {}", kPluginWho, file, line, message));
 }
 
 std::string glsl_text(const std::filesystem::path& file) {
-    std::string text = read_text(file, kWho);
+    std::string text = read_text(file, kPluginWho);
     if (text.size() > kMaxGlslBytes)
-        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", kWho, file.string(),
-                              kMaxGlslBytes >> 10, (text.size() + 1023) >> 10));
+        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", kPluginWho,
+                              file.string(), kMaxGlslBytes >> 10, (text.size() + 1023) >> 10));
     return text;
 }
 
@@ -230,7 +229,7 @@ void check_texts(const Effect& effect) {
                 bad_input(
                     fmt::format("{}: {}: texts: {} is a parameter of the plugin's GLSL too; "
                                 "rename one of them",
-                                kWho, effect.manifest.file.string(), text.address));
+                                kPluginWho, effect.manifest.file.string(), text.address));
 }
 
 void check_marks(const Effect& effect) {
@@ -346,7 +345,7 @@ void check_hooks(const Effect& effect) {
         bad_input(
             fmt::format("{}: {}: no hook, module, marks or instances, so it does nothing; define a "
                         "function such as {}_on_albedo",
-                        kWho, effect.manifest.file.string(), effect.id()));
+                        kPluginWho, effect.manifest.file.string(), effect.id()));
 }
 
 }  // namespace

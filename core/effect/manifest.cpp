@@ -17,7 +17,6 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "plugin";
 constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
@@ -96,8 +95,9 @@ class ManifestReader {
 
     Manifest run() {
         const std::string file = manifest_.file.string();
-        const json::Value root = json::parse(kWho, file, read_text(manifest_.file, kWho));
-        json::ObjectReader object(kWho, file, "", root);
+        const json::Value root =
+            json::parse(kPluginWho, file, read_text(manifest_.file, kPluginWho));
+        json::ObjectReader object(kPluginWho, file, "", root);
         const json::Value& format = object.need("format");
         if (format.kind != json::Value::Kind::Number || format.number != kFormat)
             object.fail(format.line, "format",
@@ -195,7 +195,7 @@ class ManifestReader {
     }
 
     void texture(const std::string& name, const json::Value& value) {
-        json::ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
+        json::ObjectReader object(kPluginWho, manifest_.file.string(), "textures." + name, value);
         const std::size_t kind = object.choice(
             "kind", {"2d", "2d-array", "3d", "table", "cube", "raster", "lines", "field"});
         if (kind == 7)
@@ -256,21 +256,22 @@ class ManifestReader {
 
     void passes(json::ObjectReader& object) {
         named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
-            json::ObjectReader entry(kWho, manifest_.file.string(), "passes." + name, value);
+            json::ObjectReader entry(kPluginWho, manifest_.file.string(), "passes." + name, value);
             manifest_.passes.push_back(read_pass(entry, manifest_.id, name));
         });
         complete_passes(object, manifest_.passes);
     }
 
     void instances(json::ObjectReader& object) {
-        named(
-            object, "instances", "meshes", [&](const std::string& name, const json::Value& value) {
-                json::ObjectReader entry(kWho, manifest_.file.string(), "instances." + name, value);
-                manifest_.instances.push_back(read_instance_set(
-                    entry, manifest_.id, name,
-                    [&](const json::ObjectReader& level, const std::string& key,
-                        const std::string& file) { return data_file(level, key, file); }));
-            });
+        named(object, "instances", "meshes",
+              [&](const std::string& name, const json::Value& value) {
+                  json::ObjectReader entry(kPluginWho, manifest_.file.string(), "instances." + name,
+                                           value);
+                  manifest_.instances.push_back(read_instance_set(
+                      entry, manifest_.id, name,
+                      [&](const json::ObjectReader& level, const std::string& key,
+                          const std::string& file) { return data_file(level, key, file); }));
+              });
         if (manifest_.instances.size() > kMaxInstanceSets)
             object.fail(object.line_of("instances"), "instances",
                         fmt::format("expected at most {} but got {}", kMaxInstanceSets,
@@ -287,7 +288,7 @@ class ManifestReader {
 
     void marks(json::ObjectReader& object) {
         named(object, "marks", "marks", [&](const std::string& name, const json::Value& value) {
-            json::ObjectReader entry(kWho, manifest_.file.string(), "marks." + name, value);
+            json::ObjectReader entry(kPluginWho, manifest_.file.string(), "marks." + name, value);
             manifest_.marks.push_back(read_marks(entry, manifest_.id, name));
         });
     }
@@ -332,7 +333,7 @@ class ManifestReader {
     }
 
     shader::TextParam text(const std::string& name, const json::Value& value) {
-        json::ObjectReader object(kWho, manifest_.file.string(), "texts." + name, value);
+        json::ObjectReader object(kPluginWho, manifest_.file.string(), "texts." + name, value);
         shader::TextParam text;
         text.address = manifest_.id + '.' + name;
         text.is_file = object.choice("kind", {"text", "file"}, 0) == 1;
@@ -348,7 +349,7 @@ class ManifestReader {
     void displaces(json::ObjectReader& object) {
         const json::Value* const value = object.take("displaces");
         if (!value) return;
-        json::ObjectReader bound(kWho, manifest_.file.string(), "displaces", *value);
+        json::ObjectReader bound(kPluginWho, manifest_.file.string(), "displaces", *value);
         DisplaceSpec& spec = manifest_.displaces.emplace();
         spec.line = value->line;
         spec.down = length(bound, "down_m", 0);
@@ -361,7 +362,7 @@ class ManifestReader {
     void invents(json::ObjectReader& object) {
         const json::Value* const value = object.take("invents");
         if (!value) return;
-        json::ObjectReader said(kWho, manifest_.file.string(), "invents", *value);
+        json::ObjectReader said(kPluginWho, manifest_.file.string(), "invents", *value);
         Invention& invention = manifest_.invents.emplace();
         invention.line = value->line;
         invention.what = said.string("what");

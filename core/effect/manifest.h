@@ -17,6 +17,9 @@
 
 namespace relevo::effect {
 
+/// What messages about the files of a plugin begin with.
+inline constexpr std::string_view kPluginWho = "plugin";
+
 /// A texture of a plugin. The sampler `<id>_<name>` reads it.
 struct TextureSpec {
     /// Table and Cube are read by read_table() and read_cube().

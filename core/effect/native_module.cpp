@@ -16,10 +16,8 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "plugin";
-
-[[noreturn]] void fail(const std::filesystem::path& library, std::string_view what) {
-    bad_input(fmt::format("{}: {}: {}", kWho, library.string(), what));
+[[noreturn]] void refuse_library(const std::filesystem::path& library, std::string_view what) {
+    bad_input(fmt::format("{}: {}: {}", kPluginWho, library.string(), what));
 }
 
 const void* log_service(const relevo_host*, const char* name, uint32_t version) {
@@ -35,10 +33,11 @@ class PrivateCopy {
   public:
     explicit PrivateCopy(const std::filesystem::path& library) {
         if (folder_.path().empty())
-            fail(library, "it is loaded already, and no folder for a copy can be created");
+            refuse_library(library,
+                           "it is loaded already, and no folder for a copy can be created");
         std::error_code error;
         std::filesystem::copy_file(library, file(library), error);
-        if (error) fail(library, fmt::format("it cannot be copied, {}", error.message()));
+        if (error) refuse_library(library, fmt::format("it cannot be copied, {}", error.message()));
     }
 
     std::filesystem::path file(const std::filesystem::path& library) const {
@@ -83,7 +82,7 @@ std::filesystem::path module_file(const Manifest& manifest) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(own, ignored)) return own;
     if (std::filesystem::is_regular_file(shipped, ignored)) return shipped;
-    bad_input(fmt::format("{}: {}: module {} is in neither {} nor {}; build it", kWho,
+    bad_input(fmt::format("{}: {}: module {} is in neither {} nor {}; build it", kPluginWho,
                           manifest.file.string(), manifest.module, own.string(), shipped.string()));
 }
 
@@ -94,7 +93,7 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
         if (marks.from.empty()) module.mark_lists_.push_back(marks.name);
     const std::string fault =
         try_module(library, manifest.id, manifest.folder, values, module.mark_lists_);
-    if (!fault.empty()) fail(library, fault);
+    if (!fault.empty()) refuse_library(library, fault);
 
     module.folder_ = manifest.folder;
     // Of libraries that were loaded later an exit destroys what they have before it comes to our
@@ -103,7 +102,7 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
     module.process_ = std::make_unique<ModuleInProcess>(manifest.id, library);
     const ModuleCall call(*module.process_, "registration");
     module.handle_ = {open_library(library), Close{module.process_.get()}};
-    if (!module.handle_) fail(library, fmt::format("it cannot be loaded: {}", dlerror()));
+    if (!module.handle_) refuse_library(library, fmt::format("it cannot be loaded: {}", dlerror()));
     const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
         dlsym(module.handle_.get(), "relevo_plugin_register"));
     static const relevo_host host{sizeof(relevo_host), RELEVO_ABI_VERSION, &log_service,
@@ -115,7 +114,7 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
     } catch (...) {
         good = false;
     }
-    if (!good) fail(library, "its registration succeeded in the trial, but then failed");
+    if (!good) refuse_library(library, "its registration succeeded in the trial, but then failed");
     module.process_->set_address(reinterpret_cast<const void*>(registration));
     return module;
 }

@@ -11,7 +11,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "plugins new";
+constexpr std::string_view kNewPluginWho = "plugins new";
 
 /// Replaces @ID@ and @NAME@.
 std::string filled(std::string text, const std::string& id) {
@@ -150,19 +150,20 @@ PluginFiles template_of(const NewPlugin& plugin) {
 
 void check(const NewPlugin& plugin, const Registry& registry) {
     if (const std::string fault = fault_of_id(plugin.id); !fault.empty())
-        bad_input(fmt::format("{}: {}: {}", kWho, plugin.id, fault));
+        bad_input(fmt::format("{}: {}: {}", kNewPluginWho, plugin.id, fault));
     if (const Effect* const taken = registry.find(plugin.id))
-        bad_input(fmt::format("{}: {}: this id is taken by {}; choose another", kWho, plugin.id,
-                              taken->manifest.folder.string()));
+        bad_input(fmt::format("{}: {}: this id is taken by {}; choose another", kNewPluginWho,
+                              plugin.id, taken->manifest.folder.string()));
     if (plugin.copied.empty()) return;
     if (plugin.native)
-        bad_usage(fmt::format("{}: --native and --from exclude each other; use one", kWho));
-    const Effect& effect = registry.effect(plugin.copied, kWho);
+        bad_usage(
+            fmt::format("{}: --native and --from exclude each other; use one", kNewPluginWho));
+    const Effect& effect = registry.effect(plugin.copied, kNewPluginWho);
     if (!effect.manifest.module.empty())
         bad_input(
             fmt::format("{}: {}: a native plugin cannot be copied; write --native for a new "
                         "one",
-                        kWho, plugin.copied));
+                        kNewPluginWho, plugin.copied));
 }
 
 /// Creates a folder, which must be new.
@@ -171,11 +172,11 @@ void make_folder(const std::filesystem::path& folder) {
     if (folder.has_parent_path()) std::filesystem::create_directories(folder.parent_path(), error);
     const bool is_new = !error && std::filesystem::create_directory(folder, error);
     if (!is_new && (!error || error == std::errc::file_exists))
-        bad_input(fmt::format("{}: {}: exists already; choose another id or --into", kWho,
+        bad_input(fmt::format("{}: {}: exists already; choose another id or --into", kNewPluginWho,
                               folder.string()));
     if (error)
-        bad_input(fmt::format("{}: {}: the folder cannot be created, {}", kWho, folder.string(),
-                              error.message()));
+        bad_input(fmt::format("{}: {}: the folder cannot be created, {}", kNewPluginWho,
+                              folder.string(), error.message()));
 }
 
 }  // namespace
@@ -197,16 +198,17 @@ std::vector<std::filesystem::path> write_new_plugin(const NewPlugin& plugin,
                                                     const Registry& registry) {
     namespace fs = std::filesystem;
     check(plugin, registry);
-    const PluginFiles files = plugin.copied.empty()
-                                  ? template_of(plugin)
-                                  : copied_plugin(plugin.id, registry.effect(plugin.copied, kWho));
+    const PluginFiles files =
+        plugin.copied.empty()
+            ? template_of(plugin)
+            : copied_plugin(plugin.id, registry.effect(plugin.copied, kNewPluginWho));
     const fs::path folder = into / plugin.id;
     make_folder(folder);
     std::vector<fs::path> written;
     try {
         for (const auto& [name, text] : files) {
             written.push_back(folder / name);
-            write_text(written.back(), text, /*overwrite=*/false, kWho);
+            write_text(written.back(), text, /*overwrite=*/false, kNewPluginWho);
         }
     } catch (const Error&) {
         std::error_code ignored;

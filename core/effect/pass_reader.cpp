@@ -23,7 +23,7 @@ constexpr std::size_t kMaxPasses = 32, kMaxPassBytes = std::size_t{256} << 20;
 constexpr double kMinPassScale = 1.0 / 64;
 /// Of a fixed number of work groups: as many as texels of the largest textures of fixed size.
 constexpr double kMaxInvocations = 1 << 27;
-constexpr std::string_view kFrame = "frame";
+constexpr std::string_view kWholeFrame = "frame";
 
 /// Keys that only some kinds have.
 struct KindKey {
@@ -244,15 +244,15 @@ void complete_passes(const json::ObjectReader& object, std::vector<PluginPass>& 
     for (PluginPass& pass : passes) {
         bytes += bytes_of(pass);
         if (pass.over_name.empty()) continue;
-        if (pass.over_name == kFrame) {
+        if (pass.over_name == kWholeFrame) {
             pass.over = {};
             continue;
         }
         const auto other = std::ranges::find(passes, pass.over_name, &PluginPass::name);
         if (other == passes.end())
             object.fail(pass.line, "passes." + pass.name + ".over",
-                        fmt::format("expected \"{}\" or the name of a pass but got \"{}\"", kFrame,
-                                    pass.over_name));
+                        fmt::format("expected \"{}\" or the name of a pass but got \"{}\"",
+                                    kWholeFrame, pass.over_name));
         pass.over = other->size;
     }
     if (passes.size() > kMaxPasses || bytes > kMaxPassBytes)

@@ -14,7 +14,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "preset";
+constexpr std::string_view kPresetWho = "preset";
 
 std::filesystem::path presets_dir() {
     return share_dir() / "presets";
@@ -26,7 +26,7 @@ std::filesystem::path find_preset(const std::string& name) {
     if (!contains(names, name)) {
         const std::optional<std::string> near = nearest(name, names);
         bad_input(fmt::format(
-            "{}: {}: no such preset; {}", kWho, name,
+            "{}: {}: no such preset; {}", kPresetWho, name,
             near ? fmt::format("did you mean {}?", *near)
                  : fmt::format("there are {}", names.empty()
                                                    ? std::string("none")
@@ -98,8 +98,8 @@ Preset load_preset(const std::string& name_or_path) {
     Preset preset;
     preset.name = path.stem().string();
     preset.file = path.string();
-    const json::Value root = json::parse(kWho, preset.file, read_text(path, kWho));
-    json::ObjectReader object(kWho, preset.file, "", root);
+    const json::Value root = json::parse(kPresetWho, preset.file, read_text(path, kPresetWho));
+    json::ObjectReader object(kPresetWho, preset.file, "", root);
     preset.description = object.string("description", "");
     if (object.take("only")) preset.switches.only = object.strings("only");
     preset.switches.enable = object.strings("enable");

@@ -14,7 +14,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effects";
+constexpr std::string_view kSelectionWho = "effects";
 
 class Selector {
   public:
@@ -61,7 +61,9 @@ class Selector {
     }
 
   private:
-    const Effect& effect(const std::string& id) const { return registry_.effect(id, kWho); }
+    const Effect& effect(const std::string& id) const {
+        return registry_.effect(id, kSelectionWho);
+    }
 
     /// Features that an effect needs and the DEM lacks, for messages.
     static std::optional<std::string> lacking(const Effect& effect, const GroundWords& ground) {
@@ -103,8 +105,8 @@ class Selector {
                 if (ids != &switches.disable || !registry_.is_broken(id)) effect(id);
         for (const std::string& id : switches.disable)
             if (contains(switches.enable, id) || contains(only, id))
-                bad_input(
-                    fmt::format("{}: {}: expected it either on or off but got both", kWho, id));
+                bad_input(fmt::format("{}: {}: expected it either on or off but got both",
+                                      kSelectionWho, id));
         check_order(switches.order);
     }
 
@@ -112,7 +114,7 @@ class Selector {
         for (auto id = order.begin(); id != order.end(); ++id) {
             if (*id != kOverlay && !registry_.is_broken(*id)) effect(*id);
             if (std::find(order.begin(), id, *id) != id)
-                bad_input(fmt::format("{}: order: {} is named twice", kWho, *id));
+                bad_input(fmt::format("{}: order: {} is named twice", kSelectionWho, *id));
         }
     }
 
@@ -225,8 +227,8 @@ class Selector {
     }
 
     std::string refusal(const std::string& id, const std::string& reason) const {
-        return fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho, id,
-                           reason, named_by(id));
+        return fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kSelectionWho,
+                           id, reason, named_by(id));
     }
 
     void refuse_named(const std::string& id, const std::string& reason, const std::string& word) {
@@ -300,8 +302,8 @@ class Selector {
             }
             if (ids.size() > 1)
                 bad_input(fmt::format(
-                    "{}: {}: expected one provider of this exclusive hook but got {}; add {}", kWho,
-                    hook.name, fmt::join(ids, " and "), fmt::join(mends, " or ")));
+                    "{}: {}: expected one provider of this exclusive hook but got {}; add {}",
+                    kSelectionWho, hook.name, fmt::join(ids, " and "), fmt::join(mends, " or ")));
         }
     }
 
@@ -387,8 +389,8 @@ class Selector {
                 fmt::format("{} after {} ({})", path[i], other, before(path[i]).at(other)));
             files.push_back(effect(path[i]).manifest.file.string());
         }
-        bad_input(fmt::format("{}: {}: their order is circular: {}; change \"after\" in {}", kWho,
-                              fmt::join(path, " and "), fmt::join(links, ", "),
+        bad_input(fmt::format("{}: {}: their order is circular: {}; change \"after\" in {}",
+                              kSelectionWho, fmt::join(path, " and "), fmt::join(links, ", "),
                               fmt::join(files, " or ")));
     }
 

@@ -12,10 +12,8 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "plugin";
-
-[[noreturn]] void fail(const std::filesystem::path& file, std::string_view what) {
-    bad_input(fmt::format("{}: {}: {}", kWho, file.string(), what));
+[[noreturn]] void refuse_texture(const std::filesystem::path& file, std::string_view what) {
+    bad_input(fmt::format("{}: {}: {}", kPluginWho, file.string(), what));
 }
 
 PixelFormat format_of(const image::Image8& picture, bool srgb) {
@@ -27,7 +25,8 @@ PixelFormat format_of(const image::Image8& picture, bool srgb) {
 image::TextureData decode(const std::filesystem::path& file, const TextureSpec& spec) {
     const image::Image8 picture = image::read(file);
     if (picture.height % spec.slices != 0)
-        fail(file, fmt::format("{} rows do not make {} slices", picture.height, spec.slices));
+        refuse_texture(file,
+                       fmt::format("{} rows do not make {} slices", picture.height, spec.slices));
     const int rows = picture.height / spec.slices;
     image::TextureData data(format_of(picture, spec.srgb), picture.width, rows, spec.slices, 1, 1);
     std::span<std::byte> texels = data.writable_level(0);
@@ -60,17 +59,18 @@ void check_kind(const std::filesystem::path& file, const TextureSpec& spec,
                 const image::TextureData& data) {
     const bool volume = spec.kind == TextureSpec::Kind::D3;
     if (data.layers() > 1 || (data.depth() > 1 && !volume))
-        fail(file, fmt::format("expected a file of kind {} for textures.{} but got {}",
-                               volume ? "3d" : "2d", spec.name, shape_of(data)));
+        refuse_texture(file, fmt::format("expected a file of kind {} for textures.{} but got {}",
+                                         volume ? "3d" : "2d", spec.name, shape_of(data)));
     if (spec.slices > 1 && data.depth() != spec.slices)
-        fail(file, fmt::format("expected {} slices, as the manifest says, but got {}", spec.slices,
-                               data.depth()));
+        refuse_texture(file, fmt::format("expected {} slices, as the manifest says, but got {}",
+                                         spec.slices, data.depth()));
     const bool colours = data.format() == PixelFormat::Srgb8A8;
     const bool numbers = data.format() == PixelFormat::RGBA8;
     if (spec.srgb ? numbers : colours)
-        fail(file,
-             fmt::format("expected texels of encoding {} for textures.{} but got {}",
-                         spec.srgb ? "srgb" : "linear", spec.name, spec.srgb ? "linear" : "srgb"));
+        refuse_texture(
+            file,
+            fmt::format("expected texels of encoding {} for textures.{} but got {}",
+                        spec.srgb ? "srgb" : "linear", spec.name, spec.srgb ? "linear" : "srgb"));
 }
 
 void check_alike(const TextureSpec& spec, const std::vector<image::TextureData>& layers) {
@@ -85,8 +85,8 @@ void check_alike(const TextureSpec& spec, const std::vector<image::TextureData>&
             return fmt::format("{} x {} texels of {} bytes in {} levels", data.width(),
                                data.height(), layout_of(data.format()).bytes(), data.levels());
         };
-        fail(spec.files[i], fmt::format("expected {} as in {} but got {}", texels(first),
-                                        spec.files.front().string(), texels(layer)));
+        refuse_texture(spec.files[i], fmt::format("expected {} as in {} but got {}", texels(first),
+                                                  spec.files.front().string(), texels(layer)));
     }
 }
 
@@ -119,13 +119,15 @@ void check_limits(const LoadedTexture& texture, const TextureLimits& limits) {
     if (texture.spec.files.empty()) return;
     const std::filesystem::path& file = texture.spec.files.front();
     if (longest_px > most_px)
-        fail(file, fmt::format("expected at most {} texels a side, as this device takes, but got "
-                               "{}",
-                               most_px, shape_of(first)));
+        refuse_texture(
+            file, fmt::format("expected at most {} texels a side, as this device takes, but got "
+                              "{}",
+                              most_px, shape_of(first)));
     if (texture.spec.kind == TextureSpec::Kind::D2Array &&
         texture.layers.size() > static_cast<std::size_t>(limits.layers))
-        fail(file, fmt::format("expected at most {} layers, as this device takes, but got {}",
-                               limits.layers, texture.layers.size()));
+        refuse_texture(file,
+                       fmt::format("expected at most {} layers, as this device takes, but got {}",
+                                   limits.layers, texture.layers.size()));
 }
 
 }  // namespace relevo::effect

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -49,19 +48,18 @@ struct Transformation {
     }
 };
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Global grids with posts on the poles overshoot 90 degrees by rounding.
 constexpr double kPoleSlack_deg = 1e-7;
 // Rasters count longitudes from Greenwich, from the date line, or on past a turn; nothing counts
 // two turns.
-constexpr double kMaxLon_deg = 720;
+constexpr double kMaxTurnedLon_deg = 720;
 
 Geodetic nowhere() {
     return {kNaN, kNaN, 0};
 }
 
 Geodetic checked_deg(double lon_deg, double lat_deg) {
-    if (!(std::abs(lat_deg) <= 90 + kPoleSlack_deg && std::abs(lon_deg) <= kMaxLon_deg))
+    if (!(std::abs(lat_deg) <= 90 + kPoleSlack_deg && std::abs(lon_deg) <= kMaxTurnedLon_deg))
         return nowhere();
     return geodetic_deg(std::clamp(lat_deg, -90.0, 90.0), lon_deg);
 }
@@ -243,7 +241,7 @@ struct Crs::Impl {
         if (!geographic) return true;
         const double unit_deg = degrees(axis.unit_si);
         return std::abs(y) * unit_deg <= 90 + kPoleSlack_deg &&
-               std::abs(x) * unit_deg <= kMaxLon_deg;
+               std::abs(x) * unit_deg <= kMaxTurnedLon_deg;
     }
 
     Geodetic place(PJ* pj, double x, double y) const {

@@ -61,7 +61,7 @@ struct FormatInfo {
     bool is_float() const { return layout_of(format).kind == ChannelKind::Float; }
 };
 
-constexpr std::array kFormats{
+constexpr std::array kVulkanFormats{
     FormatInfo{PixelFormat::R8, 9, "VK_FORMAT_R8_UNORM"},
     FormatInfo{PixelFormat::RG8, 16, "VK_FORMAT_R8G8_UNORM"},
     FormatInfo{PixelFormat::RGBA8, 37, "VK_FORMAT_R8G8B8A8_UNORM"},
@@ -73,7 +73,7 @@ constexpr std::array kFormats{
 };
 
 const FormatInfo& info(PixelFormat format) {
-    for (const FormatInfo& each : kFormats)
+    for (const FormatInfo& each : kVulkanFormats)
         if (each.format == format) return each;
     throw std::logic_error("ktx: a format without an entry");
 }
@@ -169,7 +169,7 @@ Header Reader::header() const {
 const FormatInfo& Reader::format(const Header& h) const {
     if (h.supercompression != 0)
         bad(fmt::format("supercompression scheme {}, expected none (0)", h.supercompression));
-    for (const FormatInfo& f : kFormats)
+    for (const FormatInfo& f : kVulkanFormats)
         if (f.vk_format == h.vk_format) {
             if (h.type_size != f.channel_bytes())
                 bad(fmt::format("type size of {}, expected {} but got {}", f.name,
@@ -177,7 +177,7 @@ const FormatInfo& Reader::format(const Header& h) const {
             return f;
         }
     std::string known;
-    for (const FormatInfo& f : kFormats)
+    for (const FormatInfo& f : kVulkanFormats)
         known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", f.vk_format, f.name);
     bad(fmt::format("texel format {}, expected one of {}", h.vk_format, known));
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using dem::Dataset;
 
-std::string escaped(const std::string& text) {
+std::string escaped_xml(const std::string& text) {
     char* const made = CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML);
     std::string result = made;
     VSIFree(made);
@@ -35,7 +35,7 @@ std::string source_text(const std::string& name, const dem::Window& tile, const 
         "<SourceBand>{}</SourceBand><SourceProperties RasterXSize=\"{}\" RasterYSize=\"{}\" "
         "DataType=\"{}\" BlockXSize=\"512\" BlockYSize=\"512\"/>"
         "<SrcRect xOff=\"0\" yOff=\"0\" {}/><DstRect xOff=\"{}\" yOff=\"{}\" {}/></SimpleSource>",
-        escaped(name), band, tile.columns, tile.rows, type, size, tile.column - all.column,
+        escaped_xml(name), band, tile.columns, tile.rows, type, size, tile.column - all.column,
         tile.row - all.row, size);
 }
 

@@ -14,7 +14,7 @@ namespace relevo::render {
 namespace {
 
 /// Margin around the DEM's heights for aspects and shifted limits [m].
-constexpr double kMargin_m = 3000;
+constexpr double kAround_m = 3000;
 /// Bounds against outliers of a DEM [m].
 constexpr double kLowest_m = -600, kHighest_m = 9000;
 
@@ -63,8 +63,8 @@ climate::Box box_of(const dem::Grid& grid, const geo::Geodetic& origin) {
 ClimateVolume::ClimateVolume(const climate::ClimateMap& map, const dem::Grid& grid,
                              const geo::LocalFrame& frame, double lowest_m, double highest_m)
     : table_(map, box_of(grid, frame.origin()),
-             std::clamp(lowest_m - kMargin_m, kLowest_m, kHighest_m - kMargin_m),
-             std::clamp(highest_m + kMargin_m, kLowest_m + kMargin_m, kHighest_m)),
+             std::clamp(lowest_m - kAround_m, kLowest_m, kHighest_m - kAround_m),
+             std::clamp(highest_m + kAround_m, kLowest_m + kAround_m, kHighest_m)),
       texture_(gl::TextureKind::D3, gl::Format::RGBA16F,
                {table_.columns(), table_.rows(), 2 * table_.heights()}, 1, kClimateTexture) {
     texture_.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);

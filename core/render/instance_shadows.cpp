@@ -8,10 +8,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/units.h"
+
 namespace relevo::render {
 namespace {
 
-constexpr double kDay_s = 86400;
 constexpr double kFiner = 4;  // sides of neighbouring maps
 /// Highest points that devices draw are 255 px; the highest crown may have fewer texels.
 constexpr double kMostTexels = 200;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPositionBinding = 0, kBlockBinding = 1, kNormalBinding = 2;
 constexpr int kBlockInput = 1, kNormalInput = 15;
-constexpr int kComponents = 4;  // of a vector
+constexpr int kVectorComponents = 4;  // of a vector
 
 // Share of the distance by which an instance may change its mesh sooner or later: kDetailJitter of
 // instance.vert.glsl, half of it either way.
@@ -82,9 +82,9 @@ struct Instances::Batch {
 };
 
 Instances::Set::Set(const shader::InstanceSet& of) : set(of), mesh(of) {
-    array.attributes(kPositionBinding, mesh.positions, 0, 1, kComponents, false);
-    array.attributes(kNormalBinding, mesh.normals, kNormalInput, 1, kComponents, false);
-    array.attributes(kBlockBinding, kBlockInput, kBlockVectors, kComponents, true);
+    array.attributes(kPositionBinding, mesh.positions, 0, 1, kVectorComponents, false);
+    array.attributes(kNormalBinding, mesh.normals, kNormalInput, 1, kVectorComponents, false);
+    array.attributes(kBlockBinding, kBlockInput, kBlockVectors, kVectorComponents, true);
     array.hold(kBlockBinding);
     array.indices(mesh.indices);
 }

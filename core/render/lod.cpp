@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,7 +14,6 @@
 namespace relevo::render {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using geo::kEquatorialRadius_m;
 using geo::kFlattening;
 

@@ -31,7 +31,7 @@
 namespace relevo::render {
 namespace {
 
-constexpr unsigned kFrameBinding = 0;
+constexpr unsigned kFrameBlockBinding = 0;
 
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -285,7 +285,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         matrix[3][3] = 1;
         block.view_projection = glm::mat4(matrix);
         frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
+        frame_block.bind_uniform(kFrameBlockBinding);
 
         const gl::Framebuffer& framebuffer = textures.depth_framebuffer(target);
         DrawState drawing{

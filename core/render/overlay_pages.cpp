@@ -15,7 +15,7 @@ namespace relevo::render {
 namespace {
 
 /// Factor of the angle of a pixel between attempts.
-constexpr double kCoarser = 1.2;
+constexpr double kCoarserPixel = 1.2;
 /// Pixels are measured by depth, which is less than distance in the corners of the frame.
 constexpr double kCorner = 0.7;
 
@@ -82,7 +82,7 @@ void OverlayPages::visit(TileTree& tree, const LodView& view, double angle, cons
 bool OverlayPages::prepare(TileTree& tree, const LodView& view, Loading loading,
                            bool deterministic) {
     std::vector<TileKey> pages;
-    for (double angle = view.tolerance;; angle *= kCoarser) {
+    for (double angle = view.tolerance;; angle *= kCoarserPixel) {
         pages.clear();
         visit(tree, view, angle, {texels_.levels - 1, {0, 0}}, pages);
         if (static_cast<int>(pages.size()) <= cache_.slots()) break;

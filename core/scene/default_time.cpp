@@ -15,7 +15,7 @@ namespace {
 constexpr int kMinutesApart = 5;
 /// The best light, and the deviations that cost the same.
 constexpr double kBestElevation_deg = 28, kBestAside_deg = 70;
-constexpr double kGlobeElevation_deg = 60;  // in the middle of the map
+constexpr double kBestGlobeElevation_deg = 60;  // in the middle of the map
 constexpr double kElevationScale_deg = 30, kAsideScale_deg = 80;
 /// Margin of the limits, for the error of a declination that is constant over the day.
 constexpr double kInside_deg = 0.5;
@@ -86,7 +86,8 @@ DefaultTime DefaultDay::estimate(double camera_deg) const {
     const auto cost_of = [&](const Hour& hour) {
         // In the afternoon: light from the left, as on maps.
         if (globe_)
-            return std::abs(hour.elevation_deg - kGlobeElevation_deg) + (hour.hours < 12 ? 5 : 0);
+            return std::abs(hour.elevation_deg - kBestGlobeElevation_deg) +
+                   (hour.hours < 12 ? 5 : 0);
         return cost(hour.elevation_deg, wrapped_deg(hour.azimuth_deg - camera_deg));
     };
     const Hour* best = &hours_.front();

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kWho = "job";
-
 /// "expected 96 values, as sweep[0].times has, but got 95; ..."
 std::string unlike(std::size_t expected, const std::string& path, std::size_t got) {
     return fmt::format(
@@ -52,7 +50,7 @@ class Expansion {
         resolve_times();
         if (result_.shots.empty())
             bad_input(fmt::format(
-                "{}: {}: no picture is left: none of its events happens; the first: {}", kWho,
+                "{}: {}: no picture is left: none of its events happens; the first: {}", kJobWho,
                 job_.file, result_.left_out.empty() ? "" : result_.left_out.front()));
         name_all(names);
         return std::move(result_);
@@ -60,7 +58,7 @@ class Expansion {
 
   private:
     [[noreturn]] void fail(int line, const std::string& path, const std::string& what) const {
-        bad_input(fmt::format("{}: {}:{}: {}: {}", kWho, job_.file, line, path, what));
+        bad_input(fmt::format("{}: {}:{}: {}: {}", kJobWho, job_.file, line, path, what));
     }
 
     NameTemplate name_template() const {
@@ -100,7 +98,7 @@ class Expansion {
     [[noreturn]] void too_many(const std::string& count) const {
         bad_input(
             fmt::format("{}: {}: the job has {} pictures, more than {}; add --yes to allow them",
-                        kWho, job_.file, count, most_));
+                        kJobWho, job_.file, count, most_));
     }
 
     void sweep(const Draft& draft) {
@@ -226,7 +224,7 @@ class Expansion {
         if (draft.date && text.empty())
             bad_input(fmt::format(
                 "{}: {}: dates need a time of day or an event; add \"at\" to them, or time.at",
-                kWho, job_.file));
+                kJobWho, job_.file));
         const std::string own_date = is_whole(spec.at) ? spec.at.substr(0, 10) : "";
         const std::string date = draft.date           ? sun::to_string(*draft.date)
                                  : !spec.date.empty() ? spec.date
@@ -239,7 +237,7 @@ class Expansion {
                 bad_input(
                     fmt::format("{}: {}: {}: a time of day needs a date; give dates or "
                                 "time.date",
-                                kWho, job_.file, text));
+                                kJobWho, job_.file, text));
             text = fmt::format("{}T{}", date, padded_clock(text));
         } else if (!text.empty() && sun::is_event_time(text)) {
             if (!sun::parse_event_time(text).date) spec.date = date;
@@ -308,7 +306,8 @@ class Expansion {
     }
 
     [[noreturn]] void bad_output(const std::string& what) const {
-        if (!job_.output_given) bad_input(fmt::format("{}: {}: output: {}", kWho, job_.file, what));
+        if (!job_.output_given)
+            bad_input(fmt::format("{}: {}: output: {}", kJobWho, job_.file, what));
         fail(job_.output_line, "output", what);
     }
 

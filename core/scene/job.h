@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,6 +18,9 @@
 
 /// Many pictures from one file: docs/jobs.md.
 namespace relevo::scene {
+
+/// What messages about a job begin with.
+inline constexpr std::string_view kJobWho = "job";
 
 /// One picture of a job on its way: a scene, and what tells it from the others.
 struct Draft {

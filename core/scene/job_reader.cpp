@@ -20,8 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using json::ObjectReader;
 
-constexpr std::string_view kWho = "job";
-constexpr int kFormat = 1;
+constexpr int kJobFormat = 1;
 
 /// "haze+no-sky": effects in a name.
 std::string name_of(const effect::Switches& switches) {
@@ -45,16 +44,16 @@ class JobReader {
     JobReader(std::string file, fs::path folder)
         : file_(std::move(file)),
           folder_(std::move(folder)),
-          reader_(kWho, file_, folder_, SceneReader::Dates::Later) {}
+          reader_(kJobWho, file_, folder_, SceneReader::Dates::Later) {}
 
     Job run(const std::string& text, const std::function<void(Scene&)>& change) {
-        json_ = std::make_shared<const json::Value>(json::parse(kWho, file_, text));
-        ObjectReader object(kWho, file_, "", *json_);
+        json_ = std::make_shared<const json::Value>(json::parse(kJobWho, file_, text));
+        ObjectReader object(kJobWho, file_, "", *json_);
         const json::Value& format = object.need("format");
-        if (format.kind != json::Value::Kind::Number || format.number != kFormat)
+        if (format.kind != json::Value::Kind::Number || format.number != kJobFormat)
             object.fail(format.line, "format",
                         fmt::format("expected {}, the format that this program reads, but got {}",
-                                    kFormat, json::describe(format)));
+                                    kJobFormat, json::describe(format)));
         object.string("$schema", "");  // which editors look for
         job_.file = file_;
         job_.text = text;
@@ -93,9 +92,9 @@ class JobReader {
             if (other.kind == axis.kind)
                 bad_input(
                     fmt::format("{}: {}:{}: {}: expected one axis of its kind but there is {}",
-                                kWho, file_, axis.line, axis.path, other.path));
+                                kJobWho, file_, axis.line, axis.path, other.path));
         if (axis.values.empty() && !axis.range && !axis.motion)
-            bad_input(fmt::format("{}: {}:{}: {}: expected values but the list is empty", kWho,
+            bad_input(fmt::format("{}: {}:{}: {}: expected values but the list is empty", kJobWho,
                                   file_, axis.line, axis.path));
         const Draft before = probe_;
         for (auto value = axis.values.rbegin(); value != axis.values.rend(); ++value) {
@@ -109,7 +108,7 @@ class JobReader {
     const std::vector<json::Value>& items(const json::Value& value, const std::string& path,
                                           const char* what) const {
         if (value.kind != json::Value::Kind::Array)
-            bad_input(fmt::format("{}: {}:{}: {}: expected a list of {} but got {}", kWho, file_,
+            bad_input(fmt::format("{}: {}:{}: {}: expected a list of {} but got {}", kJobWho, file_,
                                   value.line, path, what, json::describe(value)));
         return value.items;
     }
@@ -211,8 +210,8 @@ class JobReader {
             for (const json::Value& item : value.items) {
                 const std::string at = fmt::format("{}[{}]", path, axis.values.size());
                 if (item.kind != json::Value::Kind::String || item.text != printable(item.text))
-                    bad_input(fmt::format("{}: {}:{}: {}: expected a time but got {}", kWho, file_,
-                                          item.line, at, json::describe(item)));
+                    bad_input(fmt::format("{}: {}:{}: {}: expected a time but got {}", kJobWho,
+                                          file_, item.line, at, json::describe(item)));
                 json::Value wrapped;
                 wrapped.kind = json::Value::Kind::Object;
                 wrapped.line = item.line;
@@ -366,7 +365,7 @@ class JobReader {
             along.pitch_deg = object.number("pitch", 0, -90, 90, false);
         }
         object.finish();
-        for (const dem::NamedPlace& place : dem::read_points(file, kWho, crs)) {
+        for (const dem::NamedPlace& place : dem::read_points(file, kJobWho, crs)) {
             Standpoint eye{place.at.place, place.at.above_ground};
             if (!place.at.has_height) {
                 eye.place.height_m = height_m;
@@ -482,7 +481,8 @@ class JobReader {
 }  // namespace
 
 Job read_job(const fs::path& path, const std::function<void(Scene&)>& change) {
-    return read_job_text(read_text(path.string(), kWho), path.string(), path.parent_path(), change);
+    return read_job_text(read_text(path.string(), kJobWho), path.string(), path.parent_path(),
+                         change);
 }
 
 Job read_job_text(const std::string& text, const std::string& file, const fs::path& folder,

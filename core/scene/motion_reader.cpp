@@ -14,7 +14,6 @@ using json::ObjectReader;
 
 namespace {
 
-constexpr std::string_view kWho = "job";
 constexpr double kLongest_s = 1e6;
 
 /// The views of a flight: cameras that begin as the scene's.
@@ -40,7 +39,7 @@ std::vector<geo::Geodetic> read_places(ObjectReader& object, const std::string& 
     std::vector<geo::Geodetic> places;
     const std::string crs = object.string("crs", "");
     const int number = static_cast<int>(object.number("line", 0, 1, dem::kMostPlaces, true));
-    for (const dem::NamedPlace& place : dem::read_line(file, kWho, crs, number).places)
+    for (const dem::NamedPlace& place : dem::read_line(file, kJobWho, crs, number).places)
         places.push_back(place.at.place);
     return places;
 }

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using json::ObjectReader;
 using nlohmann::ordered_json;
 
-constexpr std::string_view kWho = "scene";
+constexpr std::string_view kSceneWho = "scene";
 constexpr int kFormat = 1;
 
 /// Instead of a folder, which no folder is called: names are written as they are.
@@ -256,12 +256,12 @@ Effects merge(Effects effects, const Effects& change) {
 }
 
 Scene read_scene(const fs::path& path) {
-    return read_scene_text(read_text(path, kWho), path.string(), path.parent_path());
+    return read_scene_text(read_text(path, kSceneWho), path.string(), path.parent_path());
 }
 
 Scene read_scene_text(const std::string& text, const std::string& file, const fs::path& folder) {
-    const json::Value root = json::parse(kWho, file, text);
-    ObjectReader object(kWho, file, "", root);
+    const json::Value root = json::parse(kSceneWho, file, text);
+    ObjectReader object(kSceneWho, file, "", root);
     const json::Value& format = object.need("format");
     if (format.kind != json::Value::Kind::Number || format.number != kFormat)
         object.fail(format.line, "format",
@@ -270,7 +270,7 @@ Scene read_scene_text(const std::string& text, const std::string& file, const fs
     object.need("dem");
     object.string("$schema", "");  // which editors look for
     Scene scene;
-    SceneReader(kWho, file, folder).take(object, "", scene);
+    SceneReader(kSceneWho, file, folder).take(object, "", scene);
     object.finish();
     return scene;
 }

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "chart/drawing.h"
 #include "image/image.h"
+#include "session/image_parts.h"
 #include "session/shot_session.h"
 #include "session/srgb16.h"
 
@@ -68,11 +69,6 @@ glm::ivec2 size_within(const image::Image8& picture, const glm::ivec2& cell) {
     return glm::max(
         glm::ivec2(std::lround(scale * picture.width), std::lround(scale * picture.height)),
         glm::ivec2(1));
-}
-
-void put(const image::Image8& part, const glm::ivec2& corner, image::Image8& sheet) {
-    for (int y = 0; y < part.height; ++y)
-        std::copy_n(part.row(y), 3 * part.width, sheet.row(corner.y + y) + 3 * corner.x);
 }
 
 void add_cell(const SheetLayout& layout, std::size_t number, const image::Image8& picture,

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,11 +7,11 @@
 #include "dem/load.h"
 #include "render/ground.h"
 #include "session/session.h"
+#include "session/stopwatch.h"
 
 namespace relevo::session {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Voids = dem::Pyramid::Voids;
 
 /// @param known  water that was found before; null: it is found
@@ -61,10 +60,6 @@ std::shared_ptr<LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
                          scene.holes == dem::Holes::Cut ? Voids::Kept : Voids::Filled,
                          known ? &known->bounds : nullptr));
     return dem;
-}
-
-double milliseconds_since(Clock::time_point began) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
 
 /// The cache, which keeps large DEMs of which only means are in memory.

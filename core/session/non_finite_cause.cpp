@@ -15,7 +15,7 @@ using shader::HookFunction;
 using shader::Snippet;
 
 /// A hook's function in a file.
-struct Place {
+struct HookPlace {
     const Snippet* snippet;
     const HookFunction* hook;
 
@@ -35,7 +35,7 @@ int pixels_with(const FaultyPicture& picture, const Snippet* replaced, const Sni
     return renderer.non_finite().count;
 }
 
-int pixels_without(const FaultyPicture& picture, const Place& place) {
+int pixels_without(const FaultyPicture& picture, const HookPlace& place) {
     Snippet without = *place.snippet;
     std::erase_if(without.hooks,
                   [&](const HookFunction& hook) { return hook.name == place.hook->name; });
@@ -44,14 +44,14 @@ int pixels_without(const FaultyPicture& picture, const Place& place) {
 }
 
 /// The name of the hook's argument of type Surface that it may write; else empty.
-std::string surface_of(const Place& place) {
+std::string surface_of(const HookPlace& place) {
     for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
         if (argument.type == "Surface" && argument.qualifier == "inout") return argument.name;
     return {};
 }
 
 /// The value that a hook without a Surface to write makes; empty: what it returns.
-std::string output_of(const Place& place) {
+std::string output_of(const HookPlace& place) {
     for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
         if (argument.qualifier == "inout") return argument.name;
     return {};
@@ -71,7 +71,7 @@ std::vector<std::string> members_in(const shader::Source& source) {
 }
 
 /// The file with a hook that leaves one member of its Surface unchanged.
-Snippet keeping(const Place& place, const std::string& surface, const std::string& member) {
+Snippet keeping(const HookPlace& place, const std::string& surface, const std::string& member) {
     const shader::Source& source = place.snippet->source;
     const shader::Item& item = place.item();
     std::string text = source.text;
@@ -89,7 +89,7 @@ Snippet keeping(const Place& place, const std::string& surface, const std::strin
 }
 
 /// The first line of a hook that writes a value, such as `s.diffuse`; 0: none.
-int line_of_write(const Place& place, const std::string& variable, const std::string& member) {
+int line_of_write(const HookPlace& place, const std::string& variable, const std::string& member) {
     constexpr std::array<std::string_view, 5> kWriting = {"=", "+=", "-=", "*=", "/="};
     const shader::Source& source = place.snippet->source;
     const shader::Item& item = place.item();
@@ -141,7 +141,7 @@ std::optional<NonFiniteCause> pass_at_fault(const FaultyPicture& picture, const 
     return cause;
 }
 
-NonFiniteCause cause_at(const FaultyPicture& picture, const Place& place, int without) {
+NonFiniteCause cause_at(const FaultyPicture& picture, const HookPlace& place, int without) {
     NonFiniteCause cause{place.snippet->file, place.hook->line, place.hook->name, {}};
     const std::string surface = surface_of(place);
     std::string variable = output_of(place), member;
@@ -169,12 +169,12 @@ NonFiniteCause cause_at(const FaultyPicture& picture, const Place& place, int wi
 }  // namespace
 
 std::optional<NonFiniteCause> find_cause(const FaultyPicture& picture, const std::string& id) {
-    std::optional<Place> worst;
+    std::optional<HookPlace> worst;
     int fewest = picture.pixels;
     for (const Snippet* snippet : picture.effects.loaded.selection.snippets()) {
         if (snippet->id != id) continue;
         for (const HookFunction& hook : snippet->hooks) {
-            const Place place{snippet, &hook};
+            const HookPlace place{snippet, &hook};
             const int without = pixels_without(picture, place);
             if (without >= fewest) continue;
             fewest = without;

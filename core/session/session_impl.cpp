@@ -1,6 +1,5 @@
 #include "session/session_impl.h"
 
-#include <chrono>
 #include <future>
 #include <utility>
 
@@ -11,17 +10,12 @@
 #include "session/non_finite.h"
 #include "session/picture_maker.h"
 #include "session/standing.h"
+#include "session/stopwatch.h"
 #include "session/words.h"
 #include "sun/zone_of_place.h"
 
 namespace relevo::session {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point began) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
 
 /// @param source  null: it is opened
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene,

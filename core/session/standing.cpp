@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/units.h"
 
 namespace relevo::session {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Height on the drawn triangles at (column, row). Next to voids, the mean of the cell's posts if
 /// the nearest one has a height: ground is cut half-way to a void. Else NaN.

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kMaxTurns = 10000;
 
-class Reader {
+class LoopReader {
   public:
-    explicit Reader(const Source& source) : source_(source) {}
+    explicit LoopReader(const Source& source) : source_(source) {}
 
     std::vector<int> run() {
         std::vector<int> lines;
@@ -138,7 +138,7 @@ class Reader {
 }  // namespace
 
 std::vector<int> open_loops(const Source& source) {
-    return Reader(source).run();
+    return LoopReader(source).run();
 }
 
 }  // namespace relevo::shader

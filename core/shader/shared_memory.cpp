@@ -14,22 +14,22 @@ struct TypeSize {
     std::string_view name;
     std::size_t bytes;
 };
-constexpr std::array<TypeSize, 16> kTypes{{{"float", 4},
-                                           {"int", 4},
-                                           {"uint", 4},
-                                           {"bool", 4},
-                                           {"vec2", 8},
-                                           {"ivec2", 8},
-                                           {"uvec2", 8},
-                                           {"vec3", 16},
-                                           {"ivec3", 16},
-                                           {"uvec3", 16},
-                                           {"vec4", 16},
-                                           {"ivec4", 16},
-                                           {"uvec4", 16},
-                                           {"mat2", 16},
-                                           {"mat3", 48},
-                                           {"mat4", 64}}};
+constexpr std::array<TypeSize, 16> kTypeSizes{{{"float", 4},
+                                               {"int", 4},
+                                               {"uint", 4},
+                                               {"bool", 4},
+                                               {"vec2", 8},
+                                               {"ivec2", 8},
+                                               {"uvec2", 8},
+                                               {"vec3", 16},
+                                               {"ivec3", 16},
+                                               {"uvec3", 16},
+                                               {"vec4", 16},
+                                               {"ivec4", 16},
+                                               {"uvec4", 16},
+                                               {"mat2", 16},
+                                               {"mat3", 48},
+                                               {"mat4", 64}}};
 
 /// A whole number above 0, "16" or "16u".
 std::optional<std::size_t> whole(std::string_view text) {
@@ -69,7 +69,7 @@ class Declaration {
     }
 
     std::size_t type_bytes(std::string_view type) const {
-        for (const TypeSize& known : kTypes)
+        for (const TypeSize& known : kTypeSizes)
             if (known.name == type) return known.bytes;
         fail(fmt::format(
             "expected shared memory of float, int, uint, bool, vectors or matrices but got {}",

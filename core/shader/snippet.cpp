@@ -10,8 +10,6 @@
 namespace relevo::shader {
 namespace {
 
-constexpr std::string_view kHasPrefix = "HAS_";
-
 std::vector<std::string> hook_names() {
     std::vector<std::string> names;
     for (const Hook& hook : hooks())

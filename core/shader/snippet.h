@@ -10,6 +10,9 @@
 
 namespace relevo::shader {
 
+/// Names that snippets test by #ifdef begin with this.
+inline constexpr std::string_view kHasPrefix = "HAS_";
+
 /// A hook function that a snippet defines.
 struct HookFunction {
     const Hook* hook;

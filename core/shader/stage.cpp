@@ -14,7 +14,6 @@
 namespace relevo::shader {
 namespace {
 
-constexpr std::string_view kHasPrefix = "HAS_";
 constexpr std::string_view kHookPrefix = "hook_";
 
 std::string bare_name(const std::string& file) {

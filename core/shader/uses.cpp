@@ -13,9 +13,9 @@ constexpr std::array<std::string_view, 17> kNotTypes = {
     "return",  "else", "do",      "case",   "in",   "out",     "inout",  "const",        "highp",
     "mediump", "lowp", "precise", "struct", "flat", "uniform", "smooth", "noperspective"};
 
-class Reader {
+class UseReader {
   public:
-    Reader(const Source& source, const Item& item, const std::vector<bool>& active)
+    UseReader(const Source& source, const Item& item, const std::vector<bool>& active)
         : source_(source), item_(item), active_(active) {}
 
     Uses run() {
@@ -157,7 +157,7 @@ class Reader {
 }  // namespace
 
 Uses uses_of(const Source& source, const Item& item, const std::vector<bool>& active) {
-    return Reader(source, item, active).run();
+    return UseReader(source, item, active).run();
 }
 
 }  // namespace relevo::shader

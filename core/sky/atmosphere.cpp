@@ -12,7 +12,6 @@
 namespace relevo::sky {
 namespace {
 
-constexpr std::size_t kCount = kWavelengths;
 constexpr int kViewSteps = 40;
 
 /// Directions over which light at a place is summed, by elevation; those around are even.
@@ -56,7 +55,7 @@ void add(const Coefficients& air, const Brought& brought, double sine, const Sun
     const float phase = smooth_phase(air, ray_sun_cosine(sine, sun));
     const auto weight = static_cast<float>(solid_angle);
     const auto level = static_cast<float>(std::max(sine, 0.0));
-    for (std::size_t k = 0; k < kCount; ++k) {
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
         const float radiance =
             weight * (brought.air[k] + phase * brought.aerosol[k] + air.albedo * brought.ground[k]);
         for (std::size_t c = 0; c < kHarmonics; ++c)
@@ -97,7 +96,7 @@ void add(DiffuseTable& to, const DiffuseTable& order, const Factor& factor) {
         for (int column = 0; column < DiffuseTable::kSuns; ++column) {
             Diffuse& sum = to.at(row, column);
             const Diffuse& one = order.at(row, column);
-            for (std::size_t k = 0; k < kCount; ++k) {
+            for (std::size_t k = 0; k < kWavelengths; ++k) {
                 const float times = factor(row, column, k);
                 for (std::size_t c = 0; c < kHarmonics; ++c)
                     sum.moments[c][k] += times * one.moments[c][k];
@@ -160,7 +159,7 @@ Spectrum Atmosphere::scattered_in(const View& view, double distance_m) const {
     const Brought one = brought(view.height_m, view.sine, std::span(&sun, 1), distance_m).front();
     const double phase = aerosol_phase(ray_sun_cosine(view.sine, sun));
     Spectrum radiance{};
-    for (std::size_t k = 0; k < kCount; ++k)
+    for (std::size_t k = 0; k < kWavelengths; ++k)
         radiance[k] =
             kPi * (one.air[k] + phase * one.aerosol[k] + coefficients_.albedo * one.ground[k]);
     return radiance;
@@ -184,7 +183,7 @@ Spectrum Atmosphere::sunlight(const SunRays& rays, double elevation_rad) const {
         const auto column = rays.towards(elevation_rad + kSunRadius_rad * std::cos(angle));
         if (!column) continue;
         const double weight = 2 * std::sin(angle) * std::sin(angle) / (kStrips + 1);
-        for (std::size_t k = 0; k < kCount; ++k)
+        for (std::size_t k = 0; k < kWavelengths; ++k)
             mean[k] += weight * passed(column->rayleigh_m * coefficients_.rayleigh[k] +
                                        column->aerosol_m * coefficients_.aerosol[k] +
                                        column->ozone_m * coefficients_.ozone[k]);
@@ -198,7 +197,7 @@ Spectrum Atmosphere::sky_irradiance(double height_m, double sun_sine) const {
     const double h = std::max(height_m, 0.0);
     const Values passed = sky::sunlight(coefficients_, coefficients_.aerosol_taken, h, sun_sine);
     const Values direct = sky::sunlight(coefficients_, coefficients_.aerosol, h, sun_sine);
-    for (std::size_t k = 0; k < kCount; ++k)
+    for (std::size_t k = 0; k < kWavelengths; ++k)
         level[k] += (passed[k] - direct[k]) * std::max(sun_sine, 0.0);
     return level;
 }

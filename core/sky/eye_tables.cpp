@@ -15,7 +15,6 @@
 namespace relevo::sky {
 namespace {
 
-constexpr std::size_t kCount = kWavelengths;
 /// Steps along rays. From high up, rays pass the Earth's shadow far away, where steps are long.
 int view_steps(double height_m) {
     return 24 + static_cast<int>(48 * std::clamp(height_m / 40e3, 0.0, 1.0));
@@ -23,9 +22,9 @@ int view_steps(double height_m) {
 
 /// colour_of() in single precision.
 glm::vec3 colour(const Values& values) {
-    static const std::array<glm::vec3, kCount> kWeights = [] {
-        std::array<glm::vec3, kCount> weights{};
-        for (std::size_t k = 0; k < kCount; ++k) {
+    static const std::array<glm::vec3, kWavelengths> kWeights = [] {
+        std::array<glm::vec3, kWavelengths> weights{};
+        for (std::size_t k = 0; k < kWavelengths; ++k) {
             Spectrum one{};
             one[k] = 1;
             weights[k] = glm::vec3(colour_of(one));
@@ -33,7 +32,7 @@ glm::vec3 colour(const Values& values) {
         return weights;
     }();
     glm::vec3 sum(0);
-    for (std::size_t k = 0; k < kCount; ++k)
+    for (std::size_t k = 0; k < kWavelengths; ++k)
         sum += values[k] * kWeights[k];
     return sum;
 }

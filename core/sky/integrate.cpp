@@ -11,8 +11,6 @@
 namespace relevo::sky {
 namespace {
 
-constexpr std::size_t kCount = kWavelengths;
-
 /// Share of a species' scattering in harmonics of degree l: by the phase function's moment.
 constexpr std::array<float, 3> kRayleighMoments{1, 0, 0.1f};
 std::array<float, 3> aerosol_moments(const Coefficients& air) {
@@ -52,7 +50,7 @@ class Scattered {
         const auto& b = node(at.first + 1);
         for (std::size_t c = 0; c < kHarmonics; ++c) {
             const float first = (1 - at.share) * direction[c], second = at.share * direction[c];
-            for (std::size_t k = 0; k < kCount; ++k)
+            for (std::size_t k = 0; k < kWavelengths; ++k)
                 to.air[k] += first * a[c][k] + second * b[c][k];
         }
     }
@@ -66,7 +64,7 @@ class Scattered {
         const auto& high = table_.at(row_.first + 1, column).moments;
         for (std::size_t c = 0; c < kHarmonics; ++c) {
             const auto l = static_cast<std::size_t>(kDegree[c]);
-            for (std::size_t k = 0; k < kCount; ++k)
+            for (std::size_t k = 0; k < kWavelengths; ++k)
                 values[c][k] =
                     (low[c][k] + row_.share * (high[c][k] - low[c][k])) *
                     (kRayleighMoments[l] * step_.rayleigh[k] + aerosol_[l] * step_.aerosol[k]);
@@ -98,7 +96,7 @@ Step step_of(const Coefficients& air, const Rays& rays, double from_m, double to
         static_cast<float>(std::max(rayleigh_density(step.height_m) - kAtTop, 0.0)) * length;
     const auto dust = static_cast<float>(aerosol_density(step.height_m)) * length;
     const auto ozone = static_cast<float>(ozone_density(step.height_m)) * length;
-    for (std::size_t k = 0; k < kCount; ++k) {
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
         const float by_gas = gas * air.rayleigh[k], by_dust = dust * air.aerosol[k];
         const float depth = by_gas + dust * air.aerosol_taken[k] + ozone * air.ozone[k];
         const float share = passed(depth);
@@ -121,7 +119,7 @@ void add_sunlight(const Coefficients& air, const Step& step, double sun_sine, do
                   Brought& to) {
     const Values light = sunlight(air, air.aerosol_taken, step.height_m, sun_sine);
     const auto phase = static_cast<float>(rayleigh_phase(cosine));
-    for (std::size_t k = 0; k < kCount; ++k) {
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
         to.air[k] += phase * light[k] * step.rayleigh[k];
         to.aerosol[k] += light[k] * step.aerosol[k];
     }
@@ -140,10 +138,10 @@ void add_ground(const Coefficients& air, const Sources& sources, const Rays& ray
     }
     if (sources.diffuse) {
         const Values level = sources.diffuse->level(0, sun);
-        for (std::size_t k = 0; k < kCount; ++k)
+        for (std::size_t k = 0; k < kWavelengths; ++k)
             light[k] += level[k];
     }
-    for (std::size_t k = 0; k < kCount; ++k)
+    for (std::size_t k = 0; k < kWavelengths; ++k)
         to.ground[k] = through[k] * light[k] * static_cast<float>(1 / kPi);
 }
 
@@ -159,7 +157,7 @@ Coefficients coefficients(const Air& air) {
     const Extinction full = extinction(air);
     Coefficients made{};
     made.forward = forward_share(air);
-    for (std::size_t k = 0; k < kCount; ++k) {
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
         made.rayleigh[k] = static_cast<float>(full.rayleigh[k]);
         made.aerosol[k] = static_cast<float>(full.aerosol[k]);
         made.ozone[k] = static_cast<float>(full.ozone[k]);
@@ -175,7 +173,7 @@ Values sunlight(const Coefficients& air, const Values& aerosol, double height_m,
     if (share <= 0) return Values{};
     const Column column = Columns::shared().towards(height_m, sun_sine);
     Values light;
-    for (std::size_t k = 0; k < kCount; ++k)
+    for (std::size_t k = 0; k < kWavelengths; ++k)
         light[k] = share * passed(column.rayleigh_m * air.rayleigh[k] +
                                   column.aerosol_m * aerosol[k] + column.ozone_m * air.ozone[k]);
     return light;

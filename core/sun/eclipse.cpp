@@ -140,7 +140,6 @@ struct RoughPlaces {
     double earth_rotation_rad;
 
     explicit RoughPlaces(Instant utc) {
-        constexpr double kUnixEpoch_jd = 2440587.5;
         const double utc_d = (utc - Instant()) / kDay_s;  // TT and UT1 are within minutes of it
         double helio[2][3], bary[2][3], body[2][3];
         eraEpv00(kUnixEpoch_jd, utc_d, helio, bary);

@@ -16,7 +16,7 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr const char* kWho = "time";
+constexpr const char* kTimeWho = "time";
 constexpr double kLongestOffset_s = 366 * kDay_s;
 
 struct Name {
@@ -38,7 +38,7 @@ constexpr std::array kNames{Name{"sunrise", EventKind::Sunrise},
                             Name{"last-light", std::nullopt, true}};
 
 [[noreturn]] void refuse(const std::string& text, std::string_view what) {
-    bad_input(fmt::format("{}: {}: {}", kWho, text, what));
+    bad_input(fmt::format("{}: {}: {}", kTimeWho, text, what));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ EventTime parse_event_time(std::string_view text) {
     if (const std::size_t at = rest.find('@'); at != std::string_view::npos)
         time.place = geo::parse_place(rest.substr(at + 1), "--time");
 
-    FieldReader reader(time.text, kWho);
+    FieldReader reader(time.text, kTimeWho);
     if (const auto date = reader.date()) {
         time.date = date;
         if (!reader.take(' ') && !reader.take('T'))

@@ -38,7 +38,6 @@ double phase_longitude_rad(const Epoch& epoch, const SolarEphemeris& axes) {
 
 /// Also outside of 1900-2100, by the month that moon_age_d() looks back.
 double phase_longitude_rad(Instant utc) {
-    constexpr double kUnixEpoch_jd = 2440587.5;
     const double utc_s = utc - Instant{};
     Epoch epoch;
     epoch.tt_jd[0] = kUnixEpoch_jd;

@@ -16,11 +16,8 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr double kUnixEpoch_jd = 2440587.5;
-
 /// The Julian date of the instant plus seconds, in two parts: midnight, and the fraction of a day.
 void set_julian_date(Instant instant, double plus_s, double jd[2]) {
-    constexpr std::int64_t kDay_us = 86'400'000'000;
     const std::int64_t us = instant.unix_us();
     const std::int64_t day = (us >= 0 ? us : us - (kDay_us - 1)) / kDay_us;
     jd[0] = kUnixEpoch_jd + static_cast<double>(day);

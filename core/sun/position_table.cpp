@@ -17,8 +17,6 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr std::int64_t kDay_us = 86'400'000'000;
-constexpr double kUnixEpoch_jd = 2440587.5;
 constexpr double kJ2000_days = 10957.5;  // since 1970-01-01T00
 constexpr int kMoonNodesPerDay = 4;
 // One node more on each side than the interpolation needs.

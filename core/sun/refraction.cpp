@@ -19,7 +19,7 @@ constexpr double kZeroCelsius_k = 273.15;
 constexpr double kGas_j_per_kmol_k = 8314.36;
 constexpr double kDryAir_kg_per_kmol = 28.9644;
 constexpr double kWater_kg_per_kmol = 18.0152;
-constexpr double kEarthRadius_m = 6'378'120;
+constexpr double kModelRadius_m = 6'378'120;
 constexpr double kTropopause_m = 11'000;
 constexpr double kTop_m = 80'000;
 constexpr double kWaterExponent = 18.36;  // of temperature, in the pressure of water vapour
@@ -52,7 +52,7 @@ class Shells {
         const double p = a.air.pressure_hpa;
         temperature_k_ = a.air.temperature_c + kZeroCelsius_k;
         lapse_ = a.lapse_k_per_m;
-        observer_m_ = kEarthRadius_m + a.height_m;
+        observer_m_ = kModelRadius_m + a.height_m;
         const double gravity =
             9.784 * (1 - 0.0026 * std::cos(2 * a.latitude_rad) - 0.00000028 * a.height_m);
         const double um2 = a.wavelength_um * a.wavelength_um;
@@ -76,7 +76,7 @@ class Shells {
         dry_slope_ = (gamma - 1) * lapse_ * dry_ / temperature_k_;
         wet_slope_ = (kWaterExponent - 1) * lapse_ * wet_ / temperature_k_;
 
-        tropopause_m_ = kEarthRadius_m + std::max(kTropopause_m, a.height_m);
+        tropopause_m_ = kModelRadius_m + std::max(kTropopause_m, a.height_m);
         tropopause_k_ = temperature_at(tropopause_m_);
         n_tropopause_ = troposphere(tropopause_m_).n;
     }
@@ -103,7 +103,7 @@ class Shells {
             return std::asin(std::min(1.0, invariant / (n * r)));
         };
         const double z_tropopause = zenith_at(tropopause_m_, n_tropopause_);
-        const double top_m = kEarthRadius_m + kTop_m;
+        const double top_m = kModelRadius_m + kTop_m;
         const double z_top = zenith_at(top_m, stratosphere(top_m).n);
         double sum = integral(invariant, z_top, z_tropopause, top_m,
                               [this](double r) { return stratosphere(r); });
@@ -243,8 +243,8 @@ Refraction Refraction::integrated(const Atmosphere& atmosphere) {
     // the sun's lower edge; lower down, rays would run through air that nobody has.
     constexpr double kBelow_m = 500;
     const double dip_rad =
-        std::acos((kEarthRadius_m + std::min(0.0, atmosphere.height_m) - kBelow_m) /
-                  (kEarthRadius_m + atmosphere.height_m));
+        std::acos((kModelRadius_m + std::min(0.0, atmosphere.height_m) - kBelow_m) /
+                  (kModelRadius_m + atmosphere.height_m));
     Refraction result;
     result.model_ = Model::Table;
     Table& apparent = result.of_apparent_;

@@ -14,8 +14,8 @@ namespace {
 
 // Between samples the body's elevation has at most one extreme, except within a degree of the pole
 // at the equinoxes, where two may lie closer: between them it then changes by less than 0.1 arcsec.
-constexpr double kSample_s = 1800;
-constexpr double kRoot_s = 1e-4;
+constexpr double kPathSample_s = 1800;
+constexpr double kPathRoot_s = 1e-4;
 constexpr double kExtreme_s = 0.5;
 
 /// The highest (or, with sign -1, lowest) point of f between a and c.
@@ -28,7 +28,7 @@ double extreme(F&& f, double a, double c, double sign) {
 
 SkyPath::SkyPath(const PositionTable& table, const TimeSpan& span, const Observer& observer)
     : table_(table), span_(span), observer_(observer) {
-    const int steps = std::max(4, static_cast<int>(std::ceil(span.length_s() / kSample_s)));
+    const int steps = std::max(4, static_cast<int>(std::ceil(span.length_s() / kPathSample_s)));
     std::vector<Sample> coarse;
     for (int i = 0; i <= steps; ++i)
         coarse.push_back(sample(span.length_s() * i / steps));
@@ -80,7 +80,8 @@ Crossings SkyPath::crossings(const std::function<double(double)>& threshold_rad)
     for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
         const double a = height(samples[i]), b = height(samples[i + 1]);
         if ((b > 0) == above) continue;
-        const double t = sign_change(height_at, samples[i].t_s, a, samples[i + 1].t_s, b, kRoot_s);
+        const double t =
+            sign_change(height_at, samples[i].t_s, a, samples[i + 1].t_s, b, kPathRoot_s);
         above = b > 0;
         (above ? found.rising_s : found.setting_s).push_back(t);
         if (above)
@@ -100,7 +101,7 @@ void SkyPath::add_transits(std::vector<Event>& events) const {
         const Sample &a = samples_[i], &b = samples_[i + 1];
         if ((a.east_au > 0) == (b.east_au > 0)) continue;
         add(events, a.east_au > 0 ? EventKind::Transit : EventKind::LowerTransit,
-            sign_change(east, a.t_s, a.east_au, b.t_s, b.east_au, kRoot_s));
+            sign_change(east, a.t_s, a.east_au, b.t_s, b.east_au, kPathRoot_s));
     }
 }
 

@@ -15,10 +15,8 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::int64_t kMinute_us = 60 * kSecond_us;
 constexpr std::int64_t kHour_us = 60 * kMinute_us;
-constexpr std::int64_t kDay_us = 24 * kHour_us;
 
 // What four digits hold; far within what the calendar of the library counts.
 constexpr int kFirstWritten = 1, kLastWritten = 9999;

@@ -5,12 +5,17 @@
 #include <string>
 #include <string_view>
 
+#include "base/units.h"
+
 /// Time as people write it and as the sun needs it.
 namespace relevo::sun {
 
 inline constexpr int kFirstYear = 1900;  ///< first year the sun's ephemeris is good for
 inline constexpr int kLastYear = 2100;   ///< last such year
-inline constexpr double kDay_s = 86400;
+using relevo::kDay_s;
+inline constexpr std::int64_t kSecond_us = 1'000'000;
+inline constexpr std::int64_t kDay_us = 86'400 * kSecond_us;
+inline constexpr double kUnixEpoch_jd = 2440587.5;  ///< Julian date of 1970-01-01
 
 /// A day of the Gregorian calendar.
 struct Date {

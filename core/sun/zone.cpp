@@ -18,7 +18,6 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr const char* kDatabase = "/usr/share/zoneinfo";
 
 /// The zone that was probably meant: right but for the case of letters, or the city alone, or the
@@ -56,7 +55,7 @@ bool is_abbreviation(std::string_view text) {
 /// The rule for times after the last change listed in a zone's file, a POSIX TZ text: its last
 /// line (RFC 8536, 3.3).
 std::string rule_after_the_last_change(const std::string& name) {
-    std::ifstream file(std::string(kDatabase) + "/" + name, std::ios::binary);
+    std::ifstream file(fmt::format("{}/{}", kDatabase, name), std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
     if (bytes.size() < 2 || bytes.back() != '\n') return {};
     const std::size_t before = bytes.rfind('\n', bytes.size() - 2);
@@ -231,7 +230,7 @@ TimeSpan Zone::day(Date date) const {
 }
 
 std::string zone_database_version() {
-    std::ifstream file(std::string(kDatabase) + "/tzdata.zi");
+    std::ifstream file(fmt::format("{}/tzdata.zi", kDatabase));
     std::string line;
     std::getline(file, line);
     constexpr std::string_view kLabel = "# version ";

@@ -14,7 +14,7 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr const char* kWho = "time zone";
+constexpr const char* kZoneWho = "time zone";
 constexpr const char* kRemedy = "; install Relevo again, or pass --tz Europe/Zurich";
 constexpr const char* kAuto = "auto";
 constexpr const char* kSolar = "solar";
@@ -58,12 +58,12 @@ class ZoneMapReader {
 
   private:
     [[noreturn]] void damaged(const char* what = "damaged") const {
-        bad_input(fmt::format("{}: {}: {}{}", kWho, path_, what, kRemedy));
+        bad_input(fmt::format("{}: {}: {}{}", kZoneWho, path_, what, kRemedy));
     }
 
     static std::string bytes_of(const std::filesystem::path& path) {
         try {
-            return read_text(path, kWho);
+            return read_text(path, kZoneWho);
         } catch (const Error& error) {
             bad_input(error.what() + std::string(kRemedy));
         }

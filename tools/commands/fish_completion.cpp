@@ -11,7 +11,7 @@ namespace relevo::commands {
 namespace {
 
 /// A text inside of single quotes.
-std::string in_quotes(std::string_view text) {
+std::string in_fish_quotes(std::string_view text) {
     std::string result;
     for (const char c : text) {
         if (c == '\'' || c == '\\') result += '\\';
@@ -38,7 +38,7 @@ std::string value_of(const Option& option) {
         case Kind::Zone:
             return " -x -a \"$__relevo_zones\"";
         case Kind::Words:
-            return " -x -a " + in_quotes(words);
+            return " -x -a " + in_fish_quotes(words);
         case Kind::Lists:
             return fmt::format(" -x -a '(__fish_append , {})'", words);
         default:
@@ -51,13 +51,13 @@ void add_lines(const Command& command, std::string& text) {
     const std::string condition = fmt::format("-n '__relevo_is \"{}\"'", words);
     for (const Command& inner : command.commands)
         text += fmt::format("complete -c relevo {} -a {} -d {}\n", condition,
-                            inner.name.substr(command.name.size() + 1), in_quotes(inner.text));
+                            inner.name.substr(command.name.size() + 1), in_fish_quotes(inner.text));
     for (const Option& option : command.options) {
         std::string names;
         for (const std::string& name : option.names)
             names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
         text += fmt::format("complete -c relevo {}{} -d {}{}\n", condition, names,
-                            in_quotes(option.text), value_of(option));
+                            in_fish_quotes(option.text), value_of(option));
     }
     for (const Command& inner : command.commands)
         add_lines(inner, text);
@@ -65,7 +65,7 @@ void add_lines(const Command& command, std::string& text) {
 
 void list_groups(const Command& command, std::vector<std::string>& names) {
     for (const Command& inner : command.commands) {
-        names.push_back(in_quotes(inner.name.substr(7)));
+        names.push_back(in_fish_quotes(inner.name.substr(7)));
         list_groups(inner, names);
     }
 }

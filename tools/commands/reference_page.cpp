@@ -12,7 +12,7 @@ namespace relevo::commands {
 namespace {
 
 /// A text without Markdown.
-std::string escaped(std::string_view text) {
+std::string escaped_markdown(std::string_view text) {
     std::string result;
     for (const char c : text) {
         if (c == '*' || c == '_' || c == '<' || c == '[' || c == '`') result += '\\';
@@ -28,17 +28,17 @@ void add_options(const std::vector<const Option*>& options, std::string& text) {
         const std::string value =
             option->value.empty() ? "" : (names.empty() ? "" : " ") + option->value;
         text += fmt::format("`{}{}`{}\n: {}{}.\n\n", names, value, option->many ? " ..." : "",
-                            escaped(option->text), option->needed ? " (required)" : "");
+                            escaped_markdown(option->text), option->needed ? " (required)" : "");
     }
 }
 
 }  // namespace
 
 std::string reference_page(const Command& command) {
-    std::string text = fmt::format("# {}\n\n{}.\n\n", command.name, escaped(command.text));
+    std::string text = fmt::format("# {}\n\n{}.\n\n", command.name, escaped_markdown(command.text));
     for (const Command& inner : command.commands)
-        text +=
-            fmt::format("- [{}]({}.md): {}\n", inner.name, manual_name(inner), escaped(inner.text));
+        text += fmt::format("- [{}]({}.md): {}\n", inner.name, manual_name(inner),
+                            escaped_markdown(inner.text));
     if (!command.commands.empty()) text += "\n";
     std::vector<const Option*> arguments;
     for (const Option& positional : command.positionals)

@@ -17,7 +17,7 @@ namespace {
 
 // The sky turns by 15.041 arcsec/s, the sun along the ecliptic by 0.04 more; refraction shortens
 // ways.
-constexpr double kFastest_rad_s = 15.1 * kArcsecond_rad;
+constexpr double kFastestWay_rad_s = 15.1 * kArcsecond_rad;
 constexpr double kNear_s = 30;
 constexpr double kClosest_s = 0.05;
 
@@ -122,7 +122,7 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
     double before_rad = kPi, here_rad = approach.separation_rad(0);
     while (t_s < length_s) {
         const double step_s =
-            std::max(kNear_s, (here_rad - options.tolerance_rad) / kFastest_rad_s - kNear_s);
+            std::max(kNear_s, (here_rad - options.tolerance_rad) / kFastestWay_rad_s - kNear_s);
         const double next_s = std::min(t_s + step_s, length_s);
         const double next_rad = approach.separation_rad(next_s);
         if (here_rad <= before_rad && here_rad < next_rad) {

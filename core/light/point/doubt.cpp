@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -13,9 +12,8 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The sun turns by 0.0042 degrees a second, faster only where it stands high.
-constexpr double kStep_s = 30;
+constexpr double kDoubtStep_s = 30;
 
 /// Where the sun or the moon stands on days that are in order: those that follow each other without
 /// a gap, as the days of a year do and eclipses do not, have one table.
@@ -71,7 +69,7 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
     const auto walk = [&](const sun::PositionTable& table, const sun::Instant& from,
                           const sun::Instant& to, const auto& visit) {
         const double length_s = to - from;
-        const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kStep_s)));
+        const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kDoubtStep_s)));
         double before_index = 0, before_rad = 0;
         for (int i = 0; i <= steps; ++i) {
             const glm::dvec3 sun =

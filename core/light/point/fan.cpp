@@ -13,9 +13,9 @@ namespace {
 
 // With 32 directions, interpolation through eight of them is off by 2.3e-9 of the distance: the
 // 8th-order term of a sine, (pi/16)^8 * (1*3*5*7)^2 / 2^8 / 8!.
-constexpr int kDirections = 32;
+constexpr int kFanDirections = 32;
 constexpr int kPoints = 8;
-constexpr double kStep_rad = 2 * kPi / kDirections;
+constexpr double kStep_rad = 2 * kPi / kFanDirections;
 
 constexpr double kStraight = 2e-6;  // of the distance: 0.0001 degrees
 constexpr double kStraight_cells = 1e-5;
@@ -42,8 +42,9 @@ glm::dvec2 interpolated(const std::vector<glm::dvec2>& samples, int before,
                         const std::array<double, kPoints>& w) {
     glm::dvec2 sum(0);
     for (int i = 0; i < kPoints; ++i)
-        sum += w[static_cast<std::size_t>(i)] *
-               samples[static_cast<std::size_t>((before + i - 3 + kDirections) % kDirections)];
+        sum +=
+            w[static_cast<std::size_t>(i)] *
+            samples[static_cast<std::size_t>((before + i - 3 + kFanDirections) % kFanDirections)];
     return sum;
 }
 
@@ -57,7 +58,7 @@ Fan::Fan(const dem::Grid& grid, const geo::Geodetic& place, const glm::dvec2& st
       spacing_m_(grid.post_spacing_m()),
       longest_m_(longest_m) {
     if (few) return;
-    Ring first{0, true, std::vector<glm::dvec2>(kDirections, start_)};
+    Ring first{0, true, std::vector<glm::dvec2>(kFanDirections, start_)};
     Ring last = ring(longest_m);
     rings_.push_back(first);
     refine(first, last, 0);
@@ -70,11 +71,11 @@ glm::dvec2 Fan::post(double azimuth_rad, double distance_m) const {
 
 Fan::Ring Fan::ring(double distance_m) const {
     Ring ring{distance_m, true, {}};
-    for (int i = 0; i < kDirections; ++i)
+    for (int i = 0; i < kFanDirections; ++i)
         ring.posts.push_back(post(i * kStep_rad, distance_m));
     // Around a pole, or at the edge of what the CRS expresses, the samples do not join smoothly.
     const auto middle = weights(0.5);
-    for (int i = 0; i < kDirections && ring.smooth; i += 4) {
+    for (int i = 0; i < kFanDirections && ring.smooth; i += 4) {
         const glm::dvec2 apart =
             (interpolated(ring.posts, i, middle) - post((i + 0.5) * kStep_rad, distance_m)) *
             spacing_m_;
@@ -89,7 +90,7 @@ bool Fan::is_off(const glm::dvec2& apart, double distance_m) const {
 }
 
 bool Fan::straight(const Ring& from, const Ring& middle, const Ring& to) const {
-    for (std::size_t i = 0; i < kDirections; ++i) {
+    for (std::size_t i = 0; i < kFanDirections; ++i) {
         const glm::dvec2 apart = (from.posts[i] + to.posts[i]) / 2.0 - middle.posts[i];
         if (!finite(apart)) continue;  // the line ends before
         if (is_off(apart, middle.distance_m)) return false;
@@ -130,8 +131,8 @@ void Fan::trace(double azimuth_rad, std::vector<TracePoint>& line) const {
         return;
     }
     const double turns = azimuth_rad / (2 * kPi);
-    const double direction = (turns - std::floor(turns)) * kDirections;
-    const int before = std::min(static_cast<int>(direction), kDirections - 1);
+    const double direction = (turns - std::floor(turns)) * kFanDirections;
+    const int before = std::min(static_cast<int>(direction), kFanDirections - 1);
     const auto w = weights(direction - before);
     line.clear();
     line.push_back({start_, 0});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,8 +14,6 @@
 
 namespace relevo::light {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double snapped(double index) {
     const double nearest = std::round(index);

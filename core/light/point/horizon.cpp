@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,8 +17,6 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNear_posts = 1.5;  // of a target, that do not hide it
 
 // Of the eye above the ground, as sun::RiseRule has it: the sun is refracted by the air at the

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -21,7 +20,6 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStep_s = 10;  // from sample to sample; the sun takes 0.04 degrees for it
 constexpr double kMostSamples = 1'000'000;
 constexpr double kSharp_s = 0.1, kSharp_m = 0.1;  // of a change of light
@@ -30,7 +28,7 @@ constexpr double kAirLevel_m = 100;  // between which refraction is linear, to 0
 // No horizon is lower: ground at 31 km over the deepest sea, under arcs that bend upwards by the
 // Earth's own curvature, has it 9 degrees down.
 constexpr double kLowestHorizon_rad = radians(-10);
-constexpr int kDirections = 1440;  // of ridges that may lie beyond the DEM
+constexpr int kRidgeDirections = 1440;  // of ridges that may lie beyond the DEM
 
 /// A walk by samples, which may be fractions: `at(0)` is its beginning, `at(count())` its end. Time
 /// and distance grow together, so that neither a rest nor a jump is passed over.
@@ -216,8 +214,8 @@ class LightFinder {
     /// Keeps terrain beyond the DEM that could hide sun which is taken to shine.
     void add(OpenSector sector) {
         const int k = static_cast<int>(
-            std::lround(sector.from_azimuth_rad / (2 * kPi) * kDirections) % kDirections);
-        sector.from_azimuth_rad = sector.to_azimuth_rad = 2 * kPi * k / kDirections;
+            std::lround(sector.from_azimuth_rad / (2 * kPi) * kRidgeDirections) % kRidgeDirections);
+        sector.from_azimuth_rad = sector.to_azimuth_rad = 2 * kPi * k / kRidgeDirections;
         const std::lock_guard lock(mutex_);
         open_.try_emplace(k, sector).first->second.include(sector);
     }

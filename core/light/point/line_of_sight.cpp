@@ -6,10 +6,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/units.h"
+
 namespace relevo::light {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kChunk_cells = 32;
 
 /// One line of sight over the grid, followed outwards.

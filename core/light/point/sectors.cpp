@@ -8,8 +8,6 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Runs of directions for which something holds, as first and last index; the last run may go on
 /// through north.
 std::vector<std::pair<std::size_t, std::size_t>> runs_of(const std::vector<bool>& holds) {

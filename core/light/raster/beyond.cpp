@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,8 +20,6 @@ namespace {
 
 constexpr int kSide = 24;  // posts that are looked from, each way
 constexpr int kNear = 32;  // posts away that every post is looked at, so that ridges close by count
-constexpr double kDay_s = 86400;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A post that is looked from.
 struct Eye {

@@ -21,18 +21,18 @@ constexpr double kLoosest_rad = radians(12);
 /// Whose tables are made and uploaded together: those of a tile take up to 5 MB.
 constexpr std::size_t kMostDeviceTiles = 32;
 
-struct Division {
+struct DividedField {
     std::vector<SunTile> tiles;
     double error_rad = 0;
 };
 
-Division division_of(const SunField& sun) {
+DividedField division_of(const SunField& sun) {
     const Window all = sun.terrain().window();
     for (double tolerance_rad = kSunTolerance_rad;; tolerance_rad *= kLooser) {
         const bool last = tolerance_rad * kLooser > kLoosest_rad;
         try {
             const std::size_t most = last ? static_cast<std::size_t>(-1) : kMostTiles;
-            Division division{divide(sun, all, all, tolerance_rad, most), 0};
+            DividedField division{divide(sun, all, all, tolerance_rad, most), 0};
             if (division.tiles.size() > most) continue;
             if (tolerance_rad > kSunTolerance_rad) division.error_rad = tolerance_rad;
             return division;
@@ -51,7 +51,7 @@ Clearances::Found Clearances::each(const geo::Geodetic& place, const SunOverDem&
                                    const Use& use) const {
     const SunField field(terrain_, place, sun);
     if (field.is_night()) return {true, 0};
-    const Division division = division_of(field);
+    const DividedField division = division_of(field);
     const Window all = terrain_.window();
     const WindowHeights heights(terrain_.posts(), all);
     const double radius_rad = sun.semidiameter_rad;
@@ -88,7 +88,7 @@ Clearances::Found Clearances::each_sweep(const geo::Geodetic& place, const SunOv
                                          const UseSweep& use) const {
     const SunField field(terrain_, place, sun);
     if (field.is_night()) return {true, 0};
-    const Division division = division_of(field);
+    const DividedField division = division_of(field);
     std::vector<SunTile> lit;
     for (const SunTile& tile : division.tiles)
         if (!tile.is_night && !common(tile.posts.window, terrain_.window()).is_empty())

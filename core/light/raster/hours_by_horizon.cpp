@@ -13,7 +13,6 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kDay_s = 86400, kHour_s = 3600;
 constexpr double kTolerance_rad = radians(0.1);  // of suns that are put together anyway
 
 /// Where a post's horizon is in a direction's tables.

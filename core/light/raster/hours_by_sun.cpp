@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/units.h"
 #include "light/raster/irradiation.h"
 #include "light/raster/post_loops.h"
 #include "light/raster/shadow_heights.h"
@@ -13,8 +14,7 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kHour_s = 3600;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kDark_m = -1;  // the clearance of all posts before the first sun
 
 /// What is known of the posts of a part up to a sun.
@@ -99,7 +99,7 @@ class LightSoFar {
 void add_hours_by_sun(const SunPlan& plan, sun::Instant begin, double length_s, const Window& part,
                       const SunHoursOptions& options, SunHours& result) {
     if (options.spells) {
-        result.first_h = result.last_h = Array2d<float>(part.columns, part.rows, kNaN);
+        result.first_h = result.last_h = Array2d<float>(part.columns, part.rows, kUnknown);
         result.spells = Array2d<float>(part.columns, part.rows, 0);
     }
     LightSoFar light(plan, part, options, result);

@@ -14,7 +14,6 @@ namespace relevo::light {
 namespace {
 
 constexpr double kNode_m = 50e3;  // from node to node
-constexpr double kHour_s = 3600, kDay_s = 86400;
 
 /// Of the air over the sea, as ClearSky has it.
 double pressure(double height_m) {

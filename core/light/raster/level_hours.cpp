@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "base/parallel_for.h"
+#include "base/units.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 
 namespace relevo::light {
 namespace {
-
-constexpr double kDay_s = 86400, kHour_s = 3600;
 
 /// Over one place: elevations are linear from one moment to the next.
 double hours_over(const SunTerrain& terrain, const sun::PositionTable& table, sun::Instant begin,

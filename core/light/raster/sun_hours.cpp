@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "light/point/edge_ground.h"
 #include "light/raster/hours_by_horizon.h"
 #include "light/raster/hours_by_sun.h"
@@ -16,8 +17,6 @@
 
 namespace relevo::light {
 namespace {
-
-constexpr double kDay_s = 86400, kHour_s = 3600;
 
 void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options) {
     if (!(end > begin))
