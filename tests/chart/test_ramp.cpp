@@ -12,7 +12,7 @@
 #include "chart/ramp.h"
 #include "support/support.h"
 
-namespace relevo::chart {
+namespace relevo::chart::test_ramp {
 namespace {
 
 using test::error_of;
@@ -248,4 +248,4 @@ TEST(Legend, ARingHasEastOnTheRightAndNorthAbove) {
 }
 
 }  // namespace
-}  // namespace relevo::chart
+}  // namespace relevo::chart::test_ramp

@@ -16,7 +16,7 @@
 #include "support/support.h"
 
 /// `relevo export`, from file to file.
-namespace relevo::test {
+namespace relevo::test::test_export {
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,4 +226,4 @@ TEST(ExportVerb, CoordinatesOfHighGroundAreAsExactAsTheErrorNeeds) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_export

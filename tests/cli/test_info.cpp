@@ -10,7 +10,7 @@
 #include "dem/fixture.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_info {
 namespace {
 
 std::filesystem::path dir() {
@@ -507,4 +507,4 @@ TEST(DoctorVerb, SaysWhereItsDataAreNot) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_info

@@ -9,7 +9,7 @@
 
 /// Mistakes of those who have not read the docs. Each message alone is enough to go on, so each is
 /// here as a whole.
-namespace relevo::test {
+namespace relevo::test::test_newcomer {
 namespace {
 
 std::filesystem::path dir() {
@@ -180,4 +180,4 @@ TEST(Newcomer, Places) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_newcomer

@@ -14,7 +14,7 @@
 #include "support/support.h"
 
 /// What plans say of tiles with --halo, and of a DEM of which most tiles are missing.
-namespace relevo::test {
+namespace relevo::test::test_plan_halo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ TEST(Plan, OfACountryOfWhichAFewTilesAreThereIsOfThese) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_plan_halo

@@ -11,7 +11,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_plugin_tutorial {
 namespace {
 
 /// A fenced block of the document: "sh", or "glsl" with the name of a file.
@@ -73,4 +73,4 @@ TEST(PluginTutorial, DoesWhatItSays) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_plugin_tutorial

@@ -14,7 +14,7 @@
 #include "dem/index_fixture.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_remote_index {
 namespace {
 
 using testing::HasSubstr;
@@ -142,4 +142,4 @@ INSTANTIATE_TEST_SUITE_P(RemoteIndex, BadRemoteTile, testing::ValuesIn(bad_answe
                          [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_remote_index

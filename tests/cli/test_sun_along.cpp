@@ -9,7 +9,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_along {
 namespace {
 
 using nlohmann::json;
@@ -240,4 +240,4 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_along

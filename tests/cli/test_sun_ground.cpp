@@ -13,7 +13,7 @@
 
 /// The verbs under `relevo sun` where the ground is not what a figure needs: holes, edges, heights
 /// and eyes that no landscape has; and values that mean nothing.
-namespace relevo::test {
+namespace relevo::test::test_sun_ground {
 namespace {
 
 using nlohmann::json;
@@ -445,4 +445,4 @@ TEST(Values, ThatMeanNothingAreErrorsNotResults) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_ground

@@ -15,7 +15,7 @@
 
 /// What verbs print of a raster that is made in several parts, beside what stands in the raster;
 /// and of days that are no 24 hours.
-namespace relevo::test {
+namespace relevo::test::test_sun_parts {
 namespace {
 
 std::string out(const std::string& name) {
@@ -163,4 +163,4 @@ TEST(SunParts, AGridAzimuthIsOverTheGroundOnAMapInDegrees) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_parts

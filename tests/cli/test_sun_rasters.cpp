@@ -17,7 +17,7 @@
 #include "support/support.h"
 
 /// `relevo sun hours`, `sky-view` and `horizons`, from file to file.
-namespace relevo::test {
+namespace relevo::test::test_sun_rasters {
 namespace {
 
 double value_at(GDALDataset& dataset, int band, int column, int row) {
@@ -504,4 +504,4 @@ TEST(SunHours, OneThreadAndManyGiveTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_rasters

@@ -18,7 +18,7 @@
 #include "support/support.h"
 
 /// `relevo sun shadow`, from file to file.
-namespace relevo::test {
+namespace relevo::test::test_sun_shadow {
 namespace {
 
 std::vector<float> values_of(GDALDataset& dataset, int band = 1) {
@@ -274,4 +274,4 @@ TEST(SunShadow, WhatMeansNothingIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_shadow

@@ -9,7 +9,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_verbs {
 namespace {
 
 using nlohmann::json;
@@ -434,4 +434,4 @@ TEST(BadSunInput, UnknownEventsAndDatesOfThem) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_verbs

@@ -15,7 +15,7 @@
 #include "support/support.h"
 
 /// The folder of a run's tiles, and the names that a plan writes.
-namespace relevo::test {
+namespace relevo::test::test_tile_folder {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST_F(TasksOfAJob, NamesOfScriptsAreCheckedBeforeAnyWork) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_tile_folder

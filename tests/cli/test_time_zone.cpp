@@ -9,7 +9,7 @@
 #include "support/support.h"
 
 // --tz auto, solar, and none at all.
-namespace relevo::test {
+namespace relevo::test::test_time_zone {
 namespace {
 
 using nlohmann::json;
@@ -220,4 +220,4 @@ TEST(TimeZone, ThatTheComputerLacksIsTheHourOfTheLongitudeAndAWarning) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_time_zone

@@ -15,7 +15,7 @@
 namespace relevo::test {
 namespace {
 
-void must(bool condition, const char* what) {
+void must_index(bool condition, const char* what) {
     if (!condition) failed(std::string("write_index: ") + what);
 }
 
@@ -34,7 +34,7 @@ void add_row(OGRLayerH layer, const IndexRow& row, const IndexLayer& how) {
         OGR_G_AddGeometryDirectly(polygon, ring);
         OGR_F_SetGeometryDirectly(feature, polygon);
     }
-    must(OGR_L_CreateFeature(layer, feature) == OGRERR_NONE, "a row");
+    must_index(OGR_L_CreateFeature(layer, feature) == OGRERR_NONE, "a row");
     OGR_F_Destroy(feature);
 }
 
@@ -45,15 +45,15 @@ std::string write_index(const std::filesystem::path& path, const std::string& dr
     GDALAllRegister();
     const GDALDatasetH dataset = GDALCreate(GDALGetDriverByName(driver.c_str()), path.c_str(), 0, 0,
                                             0, GDT_Unknown, nullptr);
-    must(dataset, "cannot be created");
+    must_index(dataset, "cannot be created");
     OGRSpatialReferenceH srs = nullptr;
     if (!how.crs.empty()) {
         srs = OSRNewSpatialReference(nullptr);
         OSRSetAxisMappingStrategy(srs, OAMS_TRADITIONAL_GIS_ORDER);
-        must(OSRSetFromUserInput(srs, how.crs.c_str()) == OGRERR_NONE, "crs");
+        must_index(OSRSetFromUserInput(srs, how.crs.c_str()) == OGRERR_NONE, "crs");
     }
     const OGRLayerH layer = GDALDatasetCreateLayer(dataset, "index", srs, wkbPolygon, nullptr);
-    must(layer, "layer");
+    must_index(layer, "layer");
     bool any_crs = false;
     for (const IndexRow& row : rows)
         any_crs = any_crs || !row.crs.empty();
@@ -61,13 +61,13 @@ std::string write_index(const std::filesystem::path& path, const std::string& dr
         if (*name == '\0') continue;
         const OGRFieldDefnH field = OGR_Fld_Create(name, OFTString);
         OGR_Fld_SetWidth(field, 200);
-        must(OGR_L_CreateField(layer, field, TRUE) == OGRERR_NONE, "field");
+        must_index(OGR_L_CreateField(layer, field, TRUE) == OGRERR_NONE, "field");
         OGR_Fld_Destroy(field);
     }
-    must(OGR_L_StartTransaction(layer) == OGRERR_NONE, "transaction");
+    must_index(OGR_L_StartTransaction(layer) == OGRERR_NONE, "transaction");
     for (const IndexRow& row : rows)
         add_row(layer, row, how);
-    must(OGR_L_CommitTransaction(layer) == OGRERR_NONE, "transaction");
+    must_index(OGR_L_CommitTransaction(layer) == OGRERR_NONE, "transaction");
     GDALClose(dataset);
     if (srs) OSRDestroySpatialReference(srs);
     return path.string();
@@ -76,7 +76,7 @@ std::string write_index(const std::filesystem::path& path, const std::string& dr
 IndexRow row_of(const std::string& raster) {
     GDALAllRegister();
     const GDALDatasetH dataset = GDALOpen(raster.c_str(), GA_ReadOnly);
-    must(dataset, "no raster");
+    must_index(dataset, "no raster");
     std::array<double, 6> g{};
     GDALGetGeoTransform(dataset, g.data());
     IndexRow row{raster,
@@ -91,7 +91,7 @@ std::string packed(const std::string& path) {
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     const std::string name = path + ".gz";
     VSILFILE* const to = VSIFOpenL(("/vsigzip/" + name).c_str(), "wb");
-    must(to && VSIFWriteL(bytes.data(), 1, bytes.size(), to) == bytes.size(), "packing");
+    must_index(to && VSIFWriteL(bytes.data(), 1, bytes.size(), to) == bytes.size(), "packing");
     VSIFCloseL(to);
     return name;
 }
@@ -99,7 +99,7 @@ std::string packed(const std::string& path) {
 void claim_rows(const std::string& geopackage, long long rows) {
     const GDALDatasetH dataset =
         GDALOpenEx(geopackage.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE, nullptr, nullptr, nullptr);
-    must(dataset, "no GeoPackage");
+    must_index(dataset, "no GeoPackage");
     GDALDatasetExecuteSQL(
         dataset, fmt::format("UPDATE gpkg_ogr_contents SET feature_count = {}", rows).c_str(),
         nullptr, nullptr);

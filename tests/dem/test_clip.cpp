@@ -4,7 +4,7 @@
 #include "dem/clip.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_clip {
 namespace {
 
 /// 10 x 8 posts, 100 m apart, of which the first is at 500000, 5200000.
@@ -76,4 +76,4 @@ TEST(Clip, IsRefusedAcrossTheEndsOfTheRows) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_clip

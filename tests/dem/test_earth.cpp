@@ -10,7 +10,7 @@
 
 // Rasters that are not all on the Earth.
 
-namespace relevo::dem {
+namespace relevo::dem::test_earth {
 namespace {
 
 using test::Raster;
@@ -114,4 +114,4 @@ TEST(OffTheGlobe, GridsOnTheEarthHaveNoSuchHoles) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_earth

@@ -12,7 +12,7 @@
 #include "dem/load.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_errors {
 namespace {
 
 using test::Raster;
@@ -426,4 +426,4 @@ TEST(LoadError, WhatGdalSaysIsInTheDebugLog) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_errors

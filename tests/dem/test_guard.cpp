@@ -19,7 +19,7 @@
 
 // What a file from others must not make the program do.
 
-namespace relevo::dem {
+namespace relevo::dem::test_guard {
 namespace {
 
 using test::Raster;
@@ -262,4 +262,4 @@ TEST(Guard, TheNetOfOneNameIsNotThatOfAFile) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_guard

@@ -17,7 +17,7 @@
 #include "dem/window_index.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_index_mosaic {
 namespace {
 
 using test::error_of;
@@ -490,4 +490,4 @@ TEST(IndexMosaic, OfSeveralFilesTheFirstErrorIsSaid) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_index_mosaic

@@ -10,7 +10,7 @@
 #include "dem/load.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_load {
 namespace {
 
 using test::Raster;
@@ -403,4 +403,4 @@ TEST(Load, HgtIsAboveEgm96) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_load

@@ -12,7 +12,7 @@
 #include "dem/load.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_mosaic {
 namespace {
 
 using test::add_overviews;
@@ -379,4 +379,4 @@ TEST(Crop, WithoutPostsOrWithNonsenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_mosaic

@@ -8,7 +8,7 @@
 #include "dem/photo.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_photo {
 namespace {
 
 using test::error_of;
@@ -206,4 +206,4 @@ TEST(Photo, WhatCannotBeLaidOnTheGroundIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_photo

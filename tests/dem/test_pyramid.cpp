@@ -9,7 +9,7 @@
 #include "dem/pyramid.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_pyramid {
 namespace {
 
 float plane_m(int column, int row) {
@@ -321,4 +321,4 @@ TEST(Pyramid, VoidsOfLevelsThatAreReadLieBetweenTheMeansAroundThem) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_pyramid

@@ -8,7 +8,7 @@
 #include "dem/source.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_read {
 namespace {
 
 using test::Raster;
@@ -247,4 +247,4 @@ TEST(Read, MeansOfWhatIsHardlyStoredAreThoseOfItsPosts) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_read

@@ -11,7 +11,7 @@
 #include "dem/survey.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_survey {
 namespace {
 
 using test::Raster;
@@ -184,4 +184,4 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_survey

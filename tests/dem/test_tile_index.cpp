@@ -11,7 +11,7 @@
 #include "dem/tile_index.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_tile_index {
 namespace {
 
 using test::claim_rows;
@@ -435,4 +435,4 @@ TEST(TileIndex, LiesOfStacAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_tile_index

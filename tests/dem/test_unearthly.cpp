@@ -10,7 +10,7 @@
 #include "dem/summary.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_unearthly {
 namespace {
 
 using test::error_of;
@@ -183,4 +183,4 @@ TEST(Unearthly, NoRealDemIsRefusedButThatInCentimetres) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_unearthly

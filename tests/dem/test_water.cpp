@@ -8,7 +8,7 @@
 #include "dem/water.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_water {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
@@ -292,4 +292,4 @@ TEST(FillHoles, CutFillsNone) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_water

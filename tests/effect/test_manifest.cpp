@@ -13,7 +13,7 @@
 #include "effect/plugins.h"
 #include "shader/source.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_manifest {
 namespace {
 
 using relevo::test::error_of;
@@ -455,4 +455,4 @@ TEST(Manifest, NoIdIsWhatCoresNamesBeginWith) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_manifest

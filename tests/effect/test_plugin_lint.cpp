@@ -5,7 +5,7 @@
 #include "effect/plugin_lint.h"
 #include "effect/plugins.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_plugin_lint {
 namespace {
 
 using ::testing::ElementsAre;
@@ -149,4 +149,4 @@ TEST(PluginLint, OfBundledPluginsFindsNothing) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_plugin_lint

@@ -6,7 +6,7 @@
 #include "geo/geodetic.h"
 #include "support/support.h"
 
-namespace relevo::geo {
+namespace relevo::geo::test_geodetic {
 namespace {
 
 constexpr double kEquatorialRadius_m = 6378137;     // WGS 84, NIMA TR8350.2, table 3.1
@@ -138,4 +138,4 @@ TEST(ParsePlace, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::geo
+}  // namespace relevo::geo::test_geodetic

@@ -4,7 +4,7 @@
 #include "maps.h"
 #include "support/support.h"
 
-namespace relevo::ground {
+namespace relevo::ground::test_maps {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -168,4 +168,4 @@ TEST(Srgb, EncodesAsTheStandardSays) {
 }
 
 }  // namespace
-}  // namespace relevo::ground
+}  // namespace relevo::ground::test_maps

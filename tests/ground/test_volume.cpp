@@ -4,7 +4,7 @@
 #include "support/support.h"
 #include "volume.h"
 
-namespace relevo::ground {
+namespace relevo::ground::test_volume {
 namespace {
 
 const image::TextureData& volume() {
@@ -104,4 +104,4 @@ TEST(PerlinVolume, IsTheSameOnEveryRun) {
 }
 
 }  // namespace
-}  // namespace relevo::ground
+}  // namespace relevo::ground::test_volume

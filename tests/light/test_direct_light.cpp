@@ -11,7 +11,7 @@
 #include "sun/position.h"
 #include "sun/position_table.h"
 
-namespace relevo::light {
+namespace relevo::light::test_direct_light {
 namespace {
 
 using sun::Date;
@@ -449,4 +449,4 @@ TEST(DirectLight, SaysHowItWasMadeAndWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_direct_light

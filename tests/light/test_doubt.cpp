@@ -7,7 +7,7 @@
 #include "light/point/carpet.h"
 #include "light/point/doubt.h"
 
-namespace relevo::light {
+namespace relevo::light::test_doubt {
 namespace {
 
 using sun::Zone;
@@ -210,4 +210,4 @@ TEST(Doubt, SectorsFollowEachOtherThroughNorth) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_doubt

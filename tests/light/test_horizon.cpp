@@ -13,7 +13,7 @@
 #include "light/point/horizon.h"
 #include "light/point/sectors.h"
 
-namespace relevo::light {
+namespace relevo::light::test_horizon {
 namespace {
 
 using test::bundled;
@@ -571,4 +571,4 @@ TEST(TerrainHorizon, SaysHowItWasMade) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_horizon

@@ -14,7 +14,7 @@
 #include "sun/position.h"
 #include "sun/zone.h"
 
-namespace relevo::light {
+namespace relevo::light::test_irradiation {
 namespace {
 
 constexpr double kLinke = 3, kAlbedo = 0.2;
@@ -144,4 +144,4 @@ TEST(Irradiation, OfAWideDemIsThatOfEachOfItsPlaces) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_irradiation

@@ -17,7 +17,7 @@
 #include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_round_earth {
 namespace {
 
 constexpr int kColumns = 4320, kRows = 48;  // five minutes from post to post
@@ -159,4 +159,4 @@ TEST(RoundTheEarth, ALastColumnThatIsTheFirstOneAgainChangesNothing) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_round_earth

@@ -16,7 +16,7 @@
 #include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_sun_hours {
 namespace {
 
 using sun::Instant;
@@ -370,4 +370,4 @@ TEST(SunHours, WhatItCannotDoIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_sun_hours

@@ -18,7 +18,7 @@
 #include "light/sweep/sweep.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_sweep {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
@@ -478,4 +478,4 @@ TEST(Sweep, OneRowOrOneColumnIsGroundToo) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_sweep

@@ -10,7 +10,7 @@
 #include "output/tile_plan.h"
 #include "support/support.h"
 
-namespace relevo::output {
+namespace relevo::output::test_tile_plan {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,4 +161,4 @@ TEST(TilePlan, PostsThatAreKnownAreThoseOfTheDem) {
 }
 
 }  // namespace
-}  // namespace relevo::output
+}  // namespace relevo::output::test_tile_plan

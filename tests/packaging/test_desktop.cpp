@@ -9,7 +9,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_desktop {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST_F(FileTypes, AreFoundByContentWhereEndingsAreShared) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_desktop

@@ -8,7 +8,7 @@
 #include "drawn.h"
 #include "light/fields.h"
 
-namespace relevo::render {
+namespace relevo::render::test_climate_volume {
 namespace {
 
 using test::Drawn;
@@ -128,4 +128,4 @@ TEST(ClimateVolume, BoxesHoldTheWholeGridOnce) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_climate_volume

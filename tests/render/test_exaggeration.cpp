@@ -9,7 +9,7 @@
 #include "drawn.h"
 #include "light/fields.h"
 
-namespace relevo::render {
+namespace relevo::render::test_exaggeration {
 namespace {
 
 using test::Drawn;
@@ -182,4 +182,4 @@ TEST(Exaggeration, GroundIsDrawnAsGroundAsHighIs) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_exaggeration

@@ -11,7 +11,7 @@
 #include "render/ground.h"
 #include "scene/framing.h"
 
-namespace relevo::render {
+namespace relevo::render::test_ground {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
@@ -180,4 +180,4 @@ TEST(Outside, IsBesideTheGroundOrHighAboveIt) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_ground

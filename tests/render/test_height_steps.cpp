@@ -12,7 +12,7 @@
 #include "render/programs.h"
 #include "shader/core_texts.h"
 
-namespace relevo::render {
+namespace relevo::render::test_height_steps {
 namespace {
 
 using test::Drawn;
@@ -303,4 +303,4 @@ TEST(HeightSteps, NeedRoomBesideTheVaryings) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_height_steps

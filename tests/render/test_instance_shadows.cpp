@@ -12,7 +12,7 @@
 #include "light/fields.h"
 #include "render/instance_sites.h"
 
-namespace relevo::render {
+namespace relevo::render::test_instance_shadows {
 namespace {
 
 using test::Drawn;
@@ -222,4 +222,4 @@ TEST(InstanceShadows, MoveWithTheSun) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_instance_shadows

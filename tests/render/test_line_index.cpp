@@ -10,7 +10,7 @@
 #include "render/line_index.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_line_index {
 namespace {
 
 constexpr double kSpacing_m = 10;
@@ -235,4 +235,4 @@ TEST(LineIndex, TakesTwoThousandLinesOnOnePlace) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_line_index

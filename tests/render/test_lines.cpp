@@ -10,7 +10,7 @@
 #include "light/fields.h"
 #include "render/eye_post.h"
 
-namespace relevo::render {
+namespace relevo::render::test_lines {
 namespace {
 
 using test::Drawn;
@@ -245,4 +245,4 @@ TEST(Lines, HaveTheirAttributeAndTheDistanceOnTheGround) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_lines

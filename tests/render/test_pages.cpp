@@ -8,7 +8,7 @@
 #include "light/fields.h"
 #include "render/pages.h"
 
-namespace relevo::render {
+namespace relevo::render::test_pages {
 namespace {
 
 /// A bowl on the equator, where a UTM grid runs along the axes: of a height that is quadratic in
@@ -55,4 +55,4 @@ TEST(NormalPage, IsOfDifferencesToBothSides) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_pages

@@ -9,7 +9,7 @@
 #include "drawn.h"
 #include "effect/effect.h"
 
-namespace relevo::render {
+namespace relevo::render::test_plugin_passes {
 namespace {
 
 using ::testing::HasSubstr;
@@ -241,4 +241,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_plugin_passes

@@ -11,7 +11,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_repeats {
 namespace {
 
 constexpr int kColumns = 40, kRows = 30;
@@ -102,4 +102,4 @@ TEST(Repeats, CellsHaveTheirNumbersFromEveryEye) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_repeats

@@ -18,7 +18,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_contour_heights {
 namespace {
 
 /// A label in a picture.
@@ -282,4 +282,4 @@ TEST(ContourHeights, KeepOffFlatGroundAndWater) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_contour_heights

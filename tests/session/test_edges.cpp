@@ -15,7 +15,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_edges {
 namespace {
 
 /// Values of DataLayer::Ids.
@@ -138,4 +138,4 @@ TEST(Edges, AlongWallsRimsAndWaterFewPixelsJump) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_edges

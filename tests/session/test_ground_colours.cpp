@@ -18,7 +18,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_ground_colours {
 namespace {
 
 constexpr int kSide = 129;
@@ -299,4 +299,4 @@ TEST(ExaggeratedPicture, IsThatOfGroundAsHigh) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_ground_colours

@@ -9,7 +9,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_hostile {
 namespace {
 
 std::string error_of(const scene::Scene& scene) {
@@ -53,4 +53,4 @@ TEST(Hostile, ADemOfThousandsOfKilometresIsRefusedByFileAndOption) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_hostile

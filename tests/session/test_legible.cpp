@@ -21,7 +21,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_legible {
 namespace {
 
 constexpr int kSide_px = 320, kWide_px = 16;
@@ -343,4 +343,4 @@ TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_legible

@@ -10,7 +10,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_margin {
 namespace {
 
 scene::Scene scene_of(int width_px, int height_px) {
@@ -107,4 +107,4 @@ TEST(Margin, RefusesPicturesWithoutRoom) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_margin

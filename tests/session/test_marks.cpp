@@ -17,7 +17,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_marks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -364,4 +364,4 @@ TEST(Marks, AHundredThousandTakeBoundedTime) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_marks

@@ -17,7 +17,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_module_marks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ TEST(Marks, KeepOutOfTheRoomOfStamps) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_module_marks

@@ -14,7 +14,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_overlay {
 namespace {
 
 std::string jacksboro() {
@@ -135,4 +135,4 @@ TEST(Overlay, LiesAtItsOwnPosts) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_overlay

@@ -21,7 +21,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_panorama {
 namespace {
 
 constexpr double kEye_m = 700;  // above the DEM's zero
@@ -253,4 +253,4 @@ INSTANTIATE_TEST_SUITE_P(Effects, PanoramaParts,
                          });
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_panorama

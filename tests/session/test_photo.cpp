@@ -23,7 +23,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_photo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -301,4 +301,4 @@ TEST(WidePhoto, OfMorePixelsThanTheLimitCoversAllOfItsGround) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_photo

@@ -17,7 +17,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_session {
 namespace {
 
 /// Two effects of the test's own: a film over the ground with a parameter, and one with a static
@@ -473,4 +473,4 @@ TEST(Words, TakeTheZoneOfTheNearestPlaceThatIsNamed) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_session

@@ -9,7 +9,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_show {
 namespace {
 
 /// A low sun, with the light that core finds by place.
@@ -94,4 +94,4 @@ TEST(Show, ShadowMapsAreOfTheGroundAndTheSunThatAreShown) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_show

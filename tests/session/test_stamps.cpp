@@ -13,7 +13,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_stamps {
 namespace {
 
 scene::Scene scene_of(double azimuth_deg, double elevation_deg) {
@@ -232,4 +232,4 @@ TEST(Stamps, FollowASceneThatIsShownNext) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_stamps

@@ -16,7 +16,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_standing {
 namespace {
 
 constexpr double kEye_m = 2;
@@ -264,4 +264,4 @@ TEST(Standing, NoEyeIsUnderTheDrawnGroundOfRealDems) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_standing

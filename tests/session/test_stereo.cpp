@@ -13,7 +13,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_stereo {
 namespace {
 
 constexpr int kWidth_px = 1200, kHeight_px = 500;
@@ -154,4 +154,4 @@ TEST(Stereo, AnaglyphOfGreyIsGreyAndShowsEachEyeInItsColour) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_stereo

@@ -2,7 +2,7 @@
 
 #include "shader/driver_log.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_driver_log {
 namespace {
 
 const LineMap kLines = {{"", "", 0},
@@ -65,4 +65,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_driver_log

@@ -3,7 +3,7 @@
 #include "shader/growth.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_growth {
 namespace {
 
 using test::error_of;
@@ -98,4 +98,4 @@ TEST(Growth, ArraysThatNoDriverHoldsAreRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_growth

@@ -4,7 +4,7 @@
 #include "shader/tokenizer.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_tokenizer {
 namespace {
 
 using ::testing::ElementsAre;
@@ -100,4 +100,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_tokenizer

@@ -14,7 +14,7 @@
 #include "sky/path.h"
 #include "sky/shipped.h"
 
-namespace relevo::sky {
+namespace relevo::sky::test_eye_tables {
 namespace {
 
 const Atmosphere& clean() {
@@ -284,4 +284,4 @@ TEST(Night, KeepsItsBlueDownToTheHorizon) {
 }
 
 }  // namespace
-}  // namespace relevo::sky
+}  // namespace relevo::sky::test_eye_tables

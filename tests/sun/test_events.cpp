@@ -11,7 +11,7 @@
 #include "sun/position.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_events {
 namespace {
 
 Date date_of(std::string_view text) {
@@ -538,4 +538,4 @@ TEST(Events, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_events

@@ -6,7 +6,7 @@
 #include "sun/rise_rule.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_rise_rule {
 namespace {
 
 const Zone kZurich = Zone::named("Europe/Zurich");
@@ -80,4 +80,4 @@ TEST(RiseRule, AnImpossibleEyeIsAnError) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_rise_rule

@@ -15,7 +15,7 @@
 #include "tables.h"
 
 // Which time zone a place is in, by the map that comes along (data/README.md).
-namespace relevo::sun {
+namespace relevo::sun::test_zone_of_place {
 namespace {
 
 using geo::geodetic_deg;
@@ -324,4 +324,4 @@ TEST(IsWallTime, SaysWhatNeedsAZone) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_zone_of_place

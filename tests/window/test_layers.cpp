@@ -216,7 +216,7 @@ TEST(SunFigures, AreWrittenAsByTheCommandLine) {
 namespace relevo {
 namespace {
 
-constexpr glm::ivec4 kGround{400, 120, 640, 560};
+constexpr glm::ivec4 kGroundPixels{400, 120, 640, 560};
 
 class LayersInWindow : public Viewer {
   protected:
@@ -248,7 +248,7 @@ TEST_F(LayersInWindow, AnOverlayOfAnotherTimeHasNoShadowsUnlessAskedFor) {
     std::filesystem::remove(folder_ / "relevo-1.png");
     std::filesystem::remove(folder_ / "captured.png");
     open_with_hours({"--overlay-opacity", "0.4", "--stamp", "date", "--overlay-shadows"});
-    EXPECT_GT(count_other(without, display_.screen(), kGround), 5000);
+    EXPECT_GT(count_other(without, display_.screen(), kGroundPixels), 5000);
 }
 
 // The panel: order, shadows, hidden and removed layers are those of the scene that is saved.

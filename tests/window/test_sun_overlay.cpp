@@ -17,7 +17,7 @@
 namespace relevo::viewer {
 namespace {
 
-std::string jacksboro() {
+std::string bundled_path() {
     return (test::source_dir() / "data/dem/jacksboro.tif").string();
 }
 
@@ -74,14 +74,14 @@ TEST(SunOverlay, HasTheFiguresOfTheCommandLine) {
     const auto file = test::scratch_dir() / "sun.tif";
     OverlayWork work([] {});
     for (const auto& [choice, verb, title, unit] : cases) {
-        const OverlayWanted wanted = of(jacksboro(), choice);
+        const OverlayWanted wanted = of(bundled_path(), choice);
         work.want(wanted);
         const auto shown = end_of(work);
         ASSERT_EQ(shown->error, "");
         EXPECT_TRUE(shown->is_whole());
         EXPECT_EQ(shown->overlay.legend->title, title);
         EXPECT_EQ(shown->overlay.legend->unit, unit);
-        run(fmt::format("sun {} {} -o {} --overwrite", verb, jacksboro(), file.string()));
+        run(fmt::format("sun {} {} -o {} --overwrite", verb, bundled_path(), file.string()));
         const dem::BandOver band = dem::read_band_over(wanted.dem->field.grid, file.string(), 1);
         // Where places are looked up figures are mixed with a millionth of their neighbours'.
         const session::Overlay read =
@@ -106,14 +106,15 @@ TEST(SunOverlay, HasTheFiguresOfTheCommandLine) {
 
 TEST(SunOverlay, APointsHoursAreThoseOfItsDay) {
     OverlayWork work([] {});
-    const OverlayWanted wanted = of(jacksboro(), kDay);
+    const OverlayWanted wanted = of(bundled_path(), kDay);
     work.want(wanted);
     const auto shown = end_of(work);
     const geo::Geodetic place = wanted.dem->field.grid.place(150, 200);
     const auto csv = test::scratch_dir() / "day.json";
     run(fmt::format(
         "sun day {} --at {:.9f},{:.9f} --date 2026-12-24 --tz America/New_York --json > {}",
-        jacksboro(), place.lat_rad * 180 / M_PI, place.lon_rad * 180 / M_PI, csv.string() + " #"));
+        bundled_path(), place.lat_rad * 180 / M_PI, place.lon_rad * 180 / M_PI,
+        csv.string() + " #"));
     const auto day = nlohmann::json::parse(read_text(csv, "test"));
     // A ray of its own against a sweep: 2 minutes.
     EXPECT_NEAR(shown->value_at(place), day["direct_sun_h"].get<double>(), 2 / 60.0);
@@ -123,8 +124,8 @@ TEST(SunOverlay, APointsHoursAreThoseOfItsDay) {
 std::string larger_dem() {
     const auto file = test::scratch_dir("dem") / "larger.tif";
     const std::string command =
-        fmt::format("{} {} 800 700 {}", (test::build_dir() / "bin/make_dem").string(), jacksboro(),
-                    file.string());
+        fmt::format("{} {} 800 700 {}", (test::build_dir() / "bin/make_dem").string(),
+                    bundled_path(), file.string());
     EXPECT_EQ(std::system(command.c_str()), 0);
     return file.string();
 }
@@ -225,7 +226,7 @@ TEST(SunOverlay, IsSavedOfEveryPostAlsoWhereMemoryHasFewer) {
 
 TEST(SunOverlay, SaysWhyThereIsNone) {
     OverlayWork work([] {});
-    OverlayWanted wanted = of(jacksboro(), kDay);
+    OverlayWanted wanted = of(bundled_path(), kDay);
     wanted.file = scene::Overlay{.file = "/no/such.tif"};
     work.want(wanted);
     EXPECT_THAT(end_of(work)->error, testing::HasSubstr("/no/such.tif"));
