@@ -9,6 +9,7 @@
 #include "base/files_in_use.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "base/percent.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "output/stac.h"
@@ -59,6 +60,9 @@ void run(const Arguments& arguments) {
         bad_input(fmt::format("merge: {}: has no {}; expected a folder that --tiles has made",
                               printable(arguments.folder), output::kPlanFile));
     if (!arguments.base.empty() && arguments.stac.empty()) bad_usage("--href-base: needs --stac");
+    if (arguments.base.starts_with("file:") && !path_of_file_uri(arguments.base))
+        bad_usage(fmt::format("--href-base: {}: expected file:/// and an absolute path",
+                              printable(arguments.base)));
     FilesInUse files;
     files.add_input(fs::path(arguments.folder) / output::kPlanFile, "the plan");
     std::vector<OutputFile*> results;

@@ -20,9 +20,8 @@ struct Arguments {
 
 /// The path of "file:///home/me/an%20alp.hgt"; other names stay.
 std::string path_of(std::string_view name) {
-    constexpr std::string_view kFile = "file://";
-    if (!name.starts_with(kFile)) return std::string(name);
-    return percent_decoded(name.substr(kFile.size()));
+    const auto path = path_of_file_uri(name);
+    return path ? percent_decoded(*path) : std::string(name);
 }
 
 void thumbnail(const Arguments& arguments) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
+
 namespace relevo {
 namespace {
 
@@ -13,18 +15,26 @@ int value_of_digit(char c) {
     return -1;
 }
 
-}  // namespace
-
-std::string percent_encoded(std::string_view path) {
-    constexpr std::string_view kPlain = "-._~/";
+/// @param plain  what stays, with letters and digits of ASCII
+std::string encoded_but_for(std::string_view plain, std::string_view text) {
     std::string result;
-    for (const char c : path) {
+    for (const char c : text) {
         const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
-                              (c >= 'A' && c <= 'Z') || kPlain.find(c) != kPlain.npos;
+                              (c >= 'A' && c <= 'Z') || plain.find(c) != plain.npos;
         result +=
             is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
     return result;
+}
+
+}  // namespace
+
+std::string percent_encoded(std::string_view path) {
+    return encoded_but_for("-._~/", path);
+}
+
+std::string percent_encoded_url(std::string_view url) {
+    return encoded_but_for("-._~/:?@!$&'()*+,;=%", url);
 }
 
 std::string percent_decoded(std::string_view text) {
@@ -37,6 +47,17 @@ std::string percent_decoded(std::string_view text) {
         if (is_code) i += 2;
     }
     return result;
+}
+
+std::optional<std::string_view> path_of_file_uri(std::string_view uri) {
+    constexpr std::string_view kScheme = "file:", kHost = "//localhost";
+    if (!equal_ignoring_case(uri.substr(0, kScheme.size()), kScheme)) return std::nullopt;
+    uri.remove_prefix(kScheme.size());
+    if (equal_ignoring_case(uri.substr(0, kHost.size()), kHost))
+        uri.remove_prefix(kHost.size());
+    else if (uri.starts_with("///"))
+        uri.remove_prefix(2);
+    return uri.starts_with('/') && !uri.starts_with("//") ? std::optional(uri) : std::nullopt;
 }
 
 }  // namespace relevo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,7 +10,15 @@ namespace relevo {
 /// ASCII, '-', '.', '_', '~' and '/'.
 std::string percent_encoded(std::string_view path);
 
+/// A URL as RFC 3986 allows it: what no URL has, a blank or '#' among it, as "%20"; the rest, and
+/// so what is encoded already, stays.
+std::string percent_encoded_url(std::string_view url);
+
 /// The reverse: "%20" becomes a blank. A '%' without two hexadecimal digits stays.
 std::string percent_decoded(std::string_view text);
+
+/// The path of "file:///data/a.tif", "file://localhost/data/a.tif" or "file:/data/a.tif" (RFC
+/// 8089), encoded as it is there; nullopt for other names, and for files of other computers.
+std::optional<std::string_view> path_of_file_uri(std::string_view uri);
 
 }  // namespace relevo

@@ -91,15 +91,14 @@ std::string resolved_location(const std::string& folder, const std::string& loca
     if (starts("http://") || starts("https://")) return "/vsicurl/" + location;
     if (starts("s3://")) return "/vsis3/" + location.substr(5);
     if (starts("gs://")) return "/vsigs/" + location.substr(5);
-    if (starts("file:///")) return location.substr(7);
+    if (const auto path = path_of_file_uri(location)) return std::string(*path);
     if (location.starts_with('/') || has_scheme(location) || folder.empty()) return location;
     return location.starts_with("./") ? resolved_location(folder, location.substr(2))
                                       : folder + "/" + location;
 }
 
 std::string resolved_uri(const std::string& folder, const std::string& uri) {
-    constexpr std::string_view kFile = "file://";
-    if (uri.starts_with(kFile)) return percent_decoded(std::string_view(uri).substr(kFile.size()));
+    if (const auto path = path_of_file_uri(uri)) return percent_decoded(*path);
     if (has_scheme(uri) || uri.starts_with("/vsi") || folder.find("/vsicurl") != folder.npos)
         return resolved_location(folder, uri);
     std::string name = percent_decoded(uri);

@@ -177,8 +177,9 @@ std::string href_of(const fs::path& collection, const fs::path& tile, const std:
     const auto starts = [&](const char* scheme) { return base.starts_with(scheme); };
     const std::string name = tile.filename().string(), slash = base.ends_with('/') ? "" : "/";
     if (starts("s3://") || starts("gs://") || starts("/vsi")) return base + slash + name;
-    const bool is_url = base.find("://") != std::string::npos;
-    return (is_url ? base : percent_encoded(base)) + slash + percent_encoded(name);
+    const bool is_url = base.find("://") != std::string::npos || starts("file:");
+    return (is_url ? percent_encoded_url(base) : percent_encoded(base)) + slash +
+           percent_encoded(name);
 }
 
 /// @param href  of the tile's file

@@ -25,5 +25,21 @@ TEST(Percent, PathsOfUrisAreEncodedAndDecoded) {
         EXPECT_EQ(percent_decoded(text), expected);
 }
 
+TEST(Percent, OfUrlsOnlyWhatTheyCannotHaveIsEncoded) {
+    EXPECT_EQ(percent_encoded_url("https://a.org:80/x%20y/~b?key=1&z"),
+              "https://a.org:80/x%20y/~b?key=1&z");
+    EXPECT_EQ(percent_encoded_url("file:///my tiles/\xc3\xbc#1"), "file:///my%20tiles/%C3%BC%231");
+}
+
+TEST(Percent, FilesOfThisComputerHaveSeveralUris) {
+    for (const char* uri : {"file:///data/a%20b", "file:/data/a%20b", "file://localhost/data/a%20b",
+                            "FILE://LocalHost/data/a%20b"})
+        EXPECT_EQ(path_of_file_uri(uri), "/data/a%20b") << uri;
+    for (const char* other :
+         {"file://server/data/a", "file://data/a", "file:a", "file:////server/a",
+          "file://localhosts/a", "file:", "/data/a", "https://a.org/a", ""})
+        EXPECT_EQ(path_of_file_uri(other), std::nullopt) << other;
+}
+
 }  // namespace
 }  // namespace relevo

@@ -150,7 +150,8 @@ TEST_F(TileFolder, AStacCollectionOfOddNamesIsReadBack) {
         EXPECT_EQ(run.status, 0) << run.err;
         return nlohmann::json::parse(read_text(stac, "test"))["features"];
     };
-    for (const Words& base : {Words{}, Words{"--href-base", tiles.string()}}) {
+    for (const Words& base : {Words{}, Words{"--href-base", tiles.string()},
+                              Words{"--href-base", "file://" + tiles.string()}}) {
         const nlohmann::json features = merge(base);
         ASSERT_EQ(features.size(), 4u);
         EXPECT_EQ(
@@ -168,6 +169,9 @@ TEST_F(TileFolder, AStacCollectionOfOddNamesIsReadBack) {
     }
     EXPECT_EQ(merge({"--href-base", "https://a.org/x%20y"})[0]["assets"]["data"]["href"],
               "https://a.org/x%20y/a%20b.tif");
+    expect_failure(
+        {"merge", tiles.string(), "--stac", stac, "--overwrite", "--href-base", "file://tiles"}, 2,
+        "--href-base: file://tiles: expected file:/// and an absolute path");
     EXPECT_EQ(merge({"--href-base", "s3://bucket/x"})[0]["assets"]["data"]["href"],
               "s3://bucket/x/a b.tif");
 }

@@ -375,6 +375,8 @@ TEST(TileIndex, HrefsOfStacAreUris) {
     EXPECT_EQ(location("a%3Ab.tif"), here + "/a:b.tif");
     EXPECT_EQ(location("/data/a%20b.tif"), "/data/a b.tif");
     EXPECT_EQ(location("file:///data/a%20b.tif"), "/data/a b.tif");
+    EXPECT_EQ(location("file://localhost/data/a%20b.tif"), "/data/a b.tif");
+    EXPECT_EQ(location("file://server/a.tif"), "file://server/a.tif") << "of another computer";
     // Of the net, addresses stay, and so do keys of buckets.
     EXPECT_EQ(location("https://a.org/a%20b.tif"), "/vsicurl/https://a.org/a%20b.tif");
     EXPECT_EQ(location("s3://bucket/a%20b.tif"), "/vsis3/bucket/a%20b.tif");
