@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "dem/opened_files.h"
 #include "dem/source.h"
 
 namespace relevo::dem {
@@ -16,6 +17,8 @@ std::string text_of(const LoadOptions& options);
 /// the net, heights in memory, virtual rasters among more than 16 rasters or in an index, and an
 /// index that is not alone.
 /// @param paths  as Source::open() takes them
-std::optional<std::string> state_of_files(std::span<const std::string> paths);
+/// @param since  nullopt also if a file may have changed since then; null: that does not matter
+std::optional<std::string> state_of_files(std::span<const std::string> paths,
+                                          const OpenedFiles* since = nullptr);
 
 }  // namespace relevo::dem

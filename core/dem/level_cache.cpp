@@ -163,16 +163,16 @@ std::vector<CachedDem> cached_dems(const CacheFolder& folder) {
     return dems;
 }
 
-LevelCache::LevelCache(std::span<const std::string> paths, const LoadOptions& options, Holes holes,
-                       CacheFolder folder)
+LevelCache::LevelCache(const OpenedFiles& opened, std::span<const std::string> paths,
+                       const LoadOptions& options, Holes holes, CacheFolder folder)
     : paths_(paths.begin(), paths.end()),
       options_(options),
       holes_(holes),
       folder_(std::move(folder)),
-      key_(options.cached ? key() : std::nullopt) {}
+      key_(options.cached ? key(&opened) : std::nullopt) {}
 
-std::optional<std::string> LevelCache::key() const {
-    const std::optional<std::string> state = state_of_files(paths_);
+std::optional<std::string> LevelCache::key(const OpenedFiles* since) const {
+    const std::optional<std::string> state = state_of_files(paths_, since);
     if (!state || state->size() > kLongestKey / 2) return std::nullopt;
     return fmt::format("levels {} of relevo {}, GDAL {}\nholes {}\nsample {}\n{}{}", kFormat,
                        RELEVO_VERSION, gdal_version(), static_cast<int>(holes_),
@@ -213,7 +213,7 @@ void LevelCache::write(const Heightfield& field, const Pyramid& pyramid, const W
         folder_.write(name_of(*key_, field.reduction), bytes, [&](CacheWriter& file) {
             file.write_text(*key_);
             write_levels(file, field, pyramid.tile_bounds(), water);
-            return key() == key_;
+            return key(nullptr) == key_;
         });
     if (!failure.empty())
         log::info(fmt::format("{}: averaged levels are not kept, {}", folder_.folder().string(),

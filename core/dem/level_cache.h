@@ -44,11 +44,13 @@ class LevelCache {
     /// DEMs with fewer posts are not cached: opening them takes well under a second.
     static constexpr std::int64_t kLeastPosts = std::int64_t{1} << 25;
 
-    /// Of no use, unless LoadOptions::cached is set and changes of all files can be seen.
+    /// Of no use, unless LoadOptions::cached is set and changes of all files can be seen, and none
+    /// has changed since they were opened.
+    /// @param opened  Source::opened_files()
     /// @param paths, options  as Source::open() was called with
     /// @param holes  how voids are drawn, on which bounds and water depend
-    LevelCache(std::span<const std::string> paths, const LoadOptions& options, Holes holes,
-               CacheFolder folder);
+    LevelCache(const OpenedFiles& opened, std::span<const std::string> paths,
+               const LoadOptions& options, Holes holes, CacheFolder folder);
 
     /// Whether read() is likely to find something.
     bool has(int reduction) const;
@@ -61,7 +63,7 @@ class LevelCache {
     void write(const Heightfield& field, const Pyramid& pyramid, const Water& water) const;
 
   private:
-    std::optional<std::string> key() const;
+    std::optional<std::string> key(const OpenedFiles* since) const;
     static std::string name_of(const std::string& key, int reduction);
 
     std::vector<std::string> paths_;

@@ -35,7 +35,7 @@ Source Source::open(const std::string& path, const LoadOptions& options) {
 Source Source::open(std::span<const std::string> given, const LoadOptions& options) {
     if (given.empty()) bad_input("no DEM given; name one or more files");
     allow_blocks(options.memory.block_bytes);
-    auto impl = std::make_unique<Impl>();
+    auto impl = std::make_unique<Impl>(given);
     impl->work_bytes = options.memory.work_bytes;
     impl->block_bytes = options.memory.block_bytes;
     OpenRasters opened = open_rasters(given, options);
@@ -58,6 +58,10 @@ const Grid& Source::grid() const {
 
 const Description& Source::description() const {
     return impl_->about;
+}
+
+const OpenedFiles& Source::opened_files() const {
+    return impl_->files;
 }
 
 Array2d<float> Source::read(const Window& window, int columns, int rows) const {

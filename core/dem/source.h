@@ -8,6 +8,7 @@
 #include "base/memory_budget.h"
 #include "dem/encoding.h"
 #include "dem/heightfield.h"
+#include "dem/opened_files.h"
 #include "dem/placement.h"
 
 namespace relevo::dem {
@@ -65,6 +66,7 @@ class Source {
 
     const Grid& grid() const;                ///< of all posts
     const Description& description() const;  ///< all but the statistics
+    const OpenedFiles& opened_files() const;
 
     /// Heights in metres of a window, NaN for holes.
     ///

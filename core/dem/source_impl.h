@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "dem/cell_parts.h"
@@ -15,6 +17,9 @@ namespace relevo::dem {
 const Resolution& coarsest_level(const Piece& piece, double columns_each, double rows_each);
 
 struct Source::Impl {
+    explicit Impl(std::span<const std::string> paths) : files(paths) {}
+
+    OpenedFiles files;  // first: made before they are opened
     std::optional<Rasters> rasters;
     std::optional<Grid> grid;
     Description about;

@@ -63,11 +63,11 @@ std::shared_ptr<LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
 }
 
 /// The cache, which keeps large DEMs of which only means are in memory.
-dem::LevelCache cache_of(const dem::Grid& grid, int reduction, const scene::Scene& scene) {
+dem::LevelCache cache_of(const dem::Source& source, int reduction, const scene::Scene& scene) {
     dem::LoadOptions options = scene.dem;
-    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
+    const std::int64_t posts = std::int64_t{source.grid().columns()} * source.grid().rows();
     options.cached = options.cached && reduction > 1 && posts >= dem::LevelCache::kLeastPosts;
-    return {scene.dems, options, scene.holes, dem::user_level_cache()};
+    return {source.opened_files(), scene.dems, options, scene.holes, dem::user_level_cache()};
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
     const dem::Grid& grid = source->grid();
     const MemoryBudget memory = scene.dem.memory.for_pictures();
     const int reduction = dem::reduction_of(grid, memory);
-    const dem::LevelCache cache = cache_of(grid, reduction, scene);
+    const dem::LevelCache cache = cache_of(*source, reduction, scene);
     std::optional<dem::Levels> known = cache.read(grid, reduction);
     dem::Heightfield field =
         dem::load(*source, memory, known ? std::move(known->height_m) : Array2d<float>());
@@ -98,7 +98,7 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
     const dem::Grid& grid = source->grid();
     if (std::int64_t{grid.columns()} * grid.rows() <= kManyPosts) return nullptr;
     const int reduction = dem::reduction_of(grid, scene.dem.memory.for_pictures());
-    if (cache_of(grid, reduction, scene).has(reduction)) return nullptr;
+    if (cache_of(*source, reduction, scene).has(reduction)) return nullptr;
     std::optional<dem::Heightfield> field = dem::load_quickly(*source, kPreviewPosts);
     if (!field || dem::is_refused(*field, scene.dem)) return nullptr;
     auto dem = loaded_dem(std::move(source), std::move(*field), scene);

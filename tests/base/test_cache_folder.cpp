@@ -127,6 +127,14 @@ TEST_F(CacheFolderTest, SaysWhatPreventsIt) {
     std::ofstream(place_ / "levels") << "no folder";
     EXPECT_NE(store(folder_, "a", 5), "");
     fs::remove(place_ / "levels");
+    // Also for the user root.
+    EXPECT_THAT(
+        store({"/sys/relevo", 100000}, "a", 5),
+        testing::AnyOf("Operation not permitted", "Permission denied", "Read-only file system"));
+    constexpr std::int64_t kMore = std::int64_t{1} << 60;  // than disks have
+    EXPECT_EQ(
+        CacheFolder(place_ / "levels", kMore).write("a", kMore, [](CacheWriter&) { return true; }),
+        "the disk would have less than 1 GiB left");
     if (geteuid() != 0) {
         fs::permissions(place_, fs::perms::owner_read | fs::perms::owner_exec);
         EXPECT_THAT(store(folder_, "a", 5), testing::HasSubstr("Permission denied"));

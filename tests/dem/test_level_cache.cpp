@@ -3,6 +3,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <cpl_vsi.h>
 #include <gtest/gtest.h>
@@ -19,6 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using test::folder;
 using test::Raster;
+
+/// What is written from now on has a later time of change than what was written before.
+void wait_for_a_tick() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
 
 /// Hills with a lake, a sea and voids.
 std::string hills(const std::string& name = "hills.tif") {
@@ -54,12 +60,20 @@ struct Drawn {
     Drawn(const std::string& path, const LoadOptions& given)
         : paths{path},
           options(given),
-          source(Source::open(path, given)),
+          source(opened(path, given)),
           field(load(source, given.memory)),
           water(find_water(field.height_m, field.grid)),
           pyramid(Pyramid::of(field, &source, given.memory)) {}
 
-    LevelCache cache() const { return {paths, options, Holes::Fill, place()}; }
+    static Source opened(const std::string& path, const LoadOptions& options) {
+        wait_for_a_tick();
+        return Source::open(path, options);
+    }
+    LevelCache cache() const {
+        return {source.opened_files(), paths, options, Holes::Fill, place()};
+    }
+    void keep() const { cache().write(field, pyramid, water); }
+    bool is_kept() const { return cache().read(source.grid(), field.reduction).has_value(); }
     static CacheFolder place() { return {folder() / "cache", std::int64_t{1} << 26}; }
 };
 
@@ -125,7 +139,8 @@ TEST(LevelCache, WhatChangesHeightsIsAnotherEntry) {
     drawn.cache().write(drawn.field, drawn.pyramid, drawn.water);
     const auto finds = [&](const LoadOptions& options, const std::string& of, int reduction = 4) {
         const std::vector<std::string> paths{of};
-        return LevelCache(paths, options, Holes::Fill, Drawn::place())
+        wait_for_a_tick();
+        return LevelCache(OpenedFiles(paths), paths, options, Holes::Fill, Drawn::place())
             .read(drawn.source.grid(), reduction)
             .has_value();
     };
@@ -181,22 +196,58 @@ TEST(LevelCache, ADemOfAnArchiveIsNotAnother) {
 
 TEST(LevelCache, AChangedDemIsReadAgain) {
     const std::string path = hills();
-    const Drawn drawn(path, options_of());
-    drawn.cache().write(drawn.field, drawn.pyramid, drawn.water);
-    ASSERT_TRUE(drawn.cache().read(drawn.source.grid(), 4));
-    // The same bytes, a nanosecond later.
-    fs::last_write_time(path, fs::last_write_time(path) + std::chrono::nanoseconds(1));
-    EXPECT_FALSE(drawn.cache().read(drawn.source.grid(), 4));
-    const LevelCache before = drawn.cache();
-    fs::last_write_time(path, fs::last_write_time(path) + std::chrono::nanoseconds(1));
+    const Drawn first(path, options_of());
+    first.keep();
+    ASSERT_TRUE(first.is_kept());
+    const auto touch = [&] {  // the same bytes, a nanosecond later
+        fs::last_write_time(path, fs::last_write_time(path) + std::chrono::nanoseconds(1));
+    };
+    touch();
+    const Drawn second(path, options_of());
+    EXPECT_FALSE(second.is_kept());
+    const LevelCache before = second.cache();
+    touch();
     Drawn::place().clear();
-    before.write(drawn.field, drawn.pyramid, drawn.water);
+    before.write(second.field, second.pyramid, second.water);
     EXPECT_TRUE(Drawn::place().entries().empty()) << "it has changed while its cache was made";
-    // Overviews that appear next to it.
-    drawn.cache().write(drawn.field, drawn.pyramid, drawn.water);
-    ASSERT_TRUE(drawn.cache().read(drawn.source.grid(), 4));
+    const Drawn third(path, options_of());
+    third.keep();
+    ASSERT_TRUE(third.is_kept());
     test::add_outer_overviews(path, {2});
-    EXPECT_FALSE(drawn.cache().read(drawn.source.grid(), 4));
+    EXPECT_FALSE(Drawn(path, options_of()).is_kept()) << "overviews next to it";
+}
+
+/// Gets the name of another one after it was opened, and before its state is asked for.
+TEST(LevelCache, AReplacedDemGetsNoEntryOfTheOneBefore) {
+    const std::string path = hills(), other = hills("other.tif");
+    fs::last_write_time(other, fs::last_write_time(path));
+    const Drawn drawn(path, options_of());
+    fs::rename(other, path);
+    drawn.keep();
+    EXPECT_TRUE(Drawn::place().entries().empty()) << "renamed";
+
+    fs::create_directory(folder() / "old");
+    fs::create_directory(folder() / "new");
+    fs::copy_file(path, folder() / "old/dem.tif");
+    fs::copy_file(path, folder() / "new/dem.tif");
+    const fs::path link = folder() / "dem.tif", folder_link = folder() / "now";
+    const auto link_to = [](const fs::path& target, const fs::path& at) {
+        fs::remove(at);
+        fs::create_symlink(target, at);
+    };
+    link_to("old/dem.tif", link);
+    link_to("old", folder_link);
+    for (const fs::path& name : {link, folder_link / "dem.tif"}) {
+        const Drawn of_old(name.string(), options_of());
+        link_to("new/dem.tif", link);
+        link_to("new", folder_link);
+        of_old.keep();
+        EXPECT_TRUE(Drawn::place().entries().empty()) << name;
+        link_to("old", folder_link);
+    }
+    const Drawn later(link.string(), options_of());
+    later.keep();
+    EXPECT_TRUE(later.is_kept());
 }
 
 TEST(LevelCache, DamageIsFound) {
