@@ -97,6 +97,7 @@ void DemArguments::apply_to(scene::Scene& scene) const {
     }
     if (bounds) scene.dem.bounds = bounds;
     scene.dem.cached = !no_cache;
+    scene.dem.memory.return_what_is_freed();
 }
 
 dem::LoadOptions DemArguments::options() const {

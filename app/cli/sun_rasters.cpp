@@ -196,7 +196,10 @@ RasterGround RasterArguments::load() const {
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
     dem::LoadOptions of_others = options;
-    if (tiles.halo_km) of_others.memory.posts /= FarGround::kShareOfOthers;
+    if (tiles.halo_km) {
+        of_others.memory.posts /= FarGround::kShareOfOthers;
+        of_others.memory.whole_posts /= FarGround::kShareOfOthers;
+    }
     log::HeldNotices notices;
     dem::Posts posts = dem::Posts::load(dem.paths, of_others, facts ? &*facts : nullptr);
     notices.release();
@@ -238,7 +241,7 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
     if (!is_dry() && !is_done()) {
         if (file_)
             writer_.emplace(*file_, ground.grid_of(ground.window), wanted_.type, wanted_.bands,
-                            arguments.creation_options);
+                            options_of_file());
         bar_.emplace(printable(arguments.output.path));
     }
     began_ = Progress::Clock::now();
@@ -247,6 +250,15 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
         tell_plan({});
     else
         log::info(fmt::format("no tile is to be made; {} are there already", folder_->there()));
+}
+
+std::vector<std::string> RasterRun::options_of_file() const {
+    constexpr std::int64_t kThread_mib = 128;  // a quarter is what one of GDAL's threads takes
+    const std::int64_t most = std::max<std::int64_t>(1, ground_.options.memory.mib() / kThread_mib);
+    std::vector<std::string> options{
+        fmt::format("NUM_THREADS={}", std::min<std::int64_t>(most, thread_count()))};
+    std::ranges::copy(arguments_.creation_options, std::back_inserter(options));
+    return options;
 }
 
 void RasterRun::choose_tiles() {
@@ -349,7 +361,7 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
             throw;
         }
         writer_.emplace(*own, ground_.grid_of(tile.window), wanted_.type, wanted_.bands,
-                        arguments_.creation_options);
+                        options_of_file());
     }
     output::RasterMetadata metadata = wanted_.metadata;
     if (writer_) look_beyond(tile.window, metadata);

@@ -115,6 +115,8 @@ class RasterRun {
     }
 
   private:
+    /// Creation options of the result: as many threads as memory allows, and what the user says.
+    std::vector<std::string> options_of_file() const;
     void choose_tiles();
     void make(const output::PlannedTile& tile, const dem::Window& raster,
               const PartMaker& make_part, const dem::Posts& posts);

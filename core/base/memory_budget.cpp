@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include "base/error.h"
 
@@ -34,6 +35,7 @@ MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
     const std::int64_t bytes = mib * kMiB;
     MemoryBudget budget{.total_bytes = bytes,
                         .posts = bytes / kBytesAPost,
+                        .whole_posts = bytes / kBytesAWholePost,
                         .view_bytes = view_bytes_of(bytes),
                         .block_bytes = std::clamp(bytes / 8, 8 * kMiB, 256 * kMiB),
                         .work_bytes = std::clamp(bytes / 32, kMiB, 64 * kMiB)};
@@ -48,7 +50,7 @@ MemoryBudget MemoryBudget::of_mib(std::int64_t mib) noexcept {
 
 MemoryBudget MemoryBudget::of_posts(std::int64_t posts) noexcept {
     MemoryBudget budget = of_mib(kDefault_mib);
-    budget.posts = budget.means = posts;
+    budget.posts = budget.whole_posts = budget.means = posts;
     return budget;
 }
 
@@ -56,13 +58,27 @@ std::int64_t MemoryBudget::mib_for_posts(std::int64_t posts) {
     return std::max<std::int64_t>(1, (posts * kBytesAPost + kMiB - 1) / kMiB);
 }
 
+MemoryBudget MemoryBudget::with_mib(std::int64_t mib) const {
+    return is_of_pictures ? of_mib(mib).for_pictures() : of_mib(mib);
+}
+
 MemoryBudget MemoryBudget::for_pictures() const {
     if (total_bytes < kLeastOfPictures_mib * kMiB)
         bad_input(
             fmt::format("--memory {}: pictures need at least {}", mib(), kLeastOfPictures_mib));
     MemoryBudget pictures = *this;
-    pictures.posts = std::min(posts, drawn_posts);
+    pictures.is_of_pictures = true;
+    pictures.posts = pictures.whole_posts = std::min(posts, drawn_posts);
     return pictures;
+}
+
+void MemoryBudget::return_what_is_freed() const {
+    constexpr std::int64_t kMuch_mib = 512;  // of which that is a small part
+    constexpr int kLarge = 128 * 1024;       // bytes, glibc's own value before it adapts
+    if (mib() >= kMuch_mib) return;
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_TRIM_THRESHOLD, kLarge);
+    mallopt(M_MMAP_THRESHOLD, kLarge);
 }
 
 }  // namespace relevo

@@ -139,15 +139,23 @@ int reduction_to(const Grid& full, std::int64_t max_posts) {
     return reduction;
 }
 
-/// Of posts that are too narrow for means, or of means that are.
-[[noreturn]] void refuse_narrow(const Grid& full, const std::string& path, int reduction,
+/// Whether memory has room for what load() would keep of a DEM.
+bool fits(const Grid& full, const MemoryBudget& memory) {
+    const int reduction = reduction_of(full, memory);
+    return posts_at(full, reduction) <= (reduction == 1 ? memory.posts : memory.means);
+}
+
+/// Of a DEM of which too few rows or columns would be left, if its means fitted.
+[[noreturn]] void refuse_narrow(const Grid& full, const std::string& path,
                                 const MemoryBudget& memory) {
-    const std::int64_t posts = posts_at(full, reduction);
-    const std::int64_t wanted = MemoryBudget::mib_for_posts(reduction > 1 ? 2 * posts : posts);
-    bad_input(fmt::format(
-        "{}: memory, expected at most {} MiB but got {}: {} x {} posts are too narrow for means; "
-        "pass --memory {}, or crop it with gdal_translate",
-        path, memory.mib(), wanted, full.columns(), full.rows(), wanted));
+    // At most 3 x kMaxPostsASide posts, for which the default suffices.
+    std::int64_t mib = memory.mib();
+    while (mib < MemoryBudget::kDefault_mib && !fits(full, memory.with_mib(mib)))
+        ++mib;
+    bad_input(
+        fmt::format("{}: {} x {} posts are too narrow to be averaged; pass --memory {} or "
+                    "more, or crop it with gdal_translate",
+                    path, full.columns(), full.rows(), mib));
 }
 
 /// Without what is to be said of them but their statistics.
@@ -191,9 +199,8 @@ Heightfield load(const Source& source, const MemoryBudget& memory, Array2d<float
     refuse_endless_sides(source);
     const Grid& full = source.grid();
     const std::string& path = source.description().path;
+    if (!fits(full, memory)) refuse_narrow(full, path, memory);
     const int reduction = reduction_of(full, memory);
-    if (posts_at(full, reduction) > (reduction == 1 ? memory.posts : memory.means))
-        refuse_narrow(full, path, reduction, memory);
     const int columns = full.columns() / reduction, rows = full.rows() / reduction;
     try {
         Heightfield field = read_reduced(source, reduction, std::move(known));

@@ -323,7 +323,8 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
     auto impl = std::make_unique<Impl>();
     impl->own_source.emplace(Source::open(paths, options));
     const Grid& grid = impl->own_source->grid();
-    const bool beyond_memory = std::int64_t{grid.columns()} * grid.rows() > options.memory.posts;
+    const bool beyond_memory =
+        std::int64_t{grid.columns()} * grid.rows() > options.memory.whole_posts;
     if (beyond_memory && facts) {
         impl->take(*impl->own_source, options.memory.posts, *facts);
     } else if (beyond_memory) {

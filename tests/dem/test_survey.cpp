@@ -177,10 +177,24 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
     raster.columns = 4'000'000;
     const std::string narrow =
         test::write_sparse_raster(folder() / "narrow.tif", raster, {{5, 1, 7}});
-    EXPECT_EQ(test::error_of([&] { load(Source::open(narrow), MemoryBudget::of_mib(60)); }),
-              "exit 3: " + narrow +
-                  ": memory, expected at most 60 MiB but got 92: 4000000 x 2 posts "
-                  "are too narrow for means; pass --memory 92, or crop it with gdal_translate");
+    const Source long_rows = Source::open(narrow);
+    const auto refusal = [&](const MemoryBudget& memory) {
+        return test::error_of([&] { load(long_rows, memory); });
+    };
+    const auto expected = [&](int mib) {
+        return fmt::format(
+            "exit 3: {}: 4000000 x 2 posts are too narrow to be averaged; pass "
+            "--memory {} or more, or crop it with gdal_translate",
+            narrow, mib);
+    };
+    EXPECT_EQ(refusal(MemoryBudget::of_mib(60)), expected(92));
+    EXPECT_EQ(refusal(MemoryBudget::of_mib(91)), expected(92));
+    EXPECT_EQ(refusal(MemoryBudget::of_mib(92)), "no error");
+    // Pictures need more, because they hold more of each post.
+    const auto pictures = [](int mib) { return MemoryBudget::of_mib(mib).for_pictures(); };
+    EXPECT_EQ(refusal(pictures(92)), expected(254));
+    EXPECT_EQ(refusal(pictures(254 - 1)), expected(254));
+    EXPECT_EQ(refusal(pictures(254)), "no error");
 }
 
 }  // namespace
