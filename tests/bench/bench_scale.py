@@ -42,16 +42,20 @@ def make_dem(build, path, side, layout):
 
 
 def make_index(build, folder, side):
-    index = folder / f"{side}_tiles.gpkg"
-    if not index.exists():
-        whole = make_dem(build, folder / f"{side}_tiles256.tif", side, "tiles256")
-        tiles = folder / f"{side}_tiles"
-        tiles.mkdir(exist_ok=True)
-        for row in range(0, side, TILE):
-            for column in range(0, side, TILE):
-                subprocess.run(["gdal_translate", "-q", "-srcwin", str(column), str(row), str(TILE), str(TILE), "-co", "COMPRESS=LZW",
-                                whole, tiles / f"{row}_{column}.tif"], check=True)
-        subprocess.run(["gdaltindex", "-f", "GPKG", index, *sorted(tiles.glob("*.tif"))], check=True, stdout=subprocess.DEVNULL)
+    """Files of TILE x TILE posts, and a tile index of them."""
+    index, tiles = folder / f"{side}_tiles.gpkg", folder / f"{side}_tiles"
+    if index.exists():
+        return index
+    shutil.rmtree(tiles, ignore_errors=True)
+    tiles.mkdir()
+    subprocess.run([build.resolve() / "bin/make_dem", ROOT / "data/dem/jacksboro.tif", str(side), str(side), tiles,
+                    "--files", str(TILE), "--layout", "tiles256"], check=True)
+    names, part = folder / f"{side}_names.txt", folder / f"{side}_part.gpkg"
+    names.write_text("\n".join(f"{tiles.name}/{path.name}" for path in sorted(tiles.iterdir())), encoding="utf-8")
+    part.unlink(missing_ok=True)
+    subprocess.run(["gdaltindex", "-f", "GPKG", part.name, "--optfile", names.name], check=True, cwd=folder,
+                   stdout=subprocess.DEVNULL)
+    part.rename(index)
     return index
 
 
