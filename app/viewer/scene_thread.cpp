@@ -334,8 +334,9 @@ struct SceneThread::Impl {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view, now.keep_above_m);
-        if (now.utc && *now.utc != session->time()) {
-            session->set_time(*now.utc);
+        // A forecast may not have the time: the picture then keeps its own.
+        if (now.utc && *now.utc != session->time() &&
+            attempt([&] { session->set_time(*now.utc); })) {
             // Core's lighting is always current.
             shadows_lag = !session->effects().loaded.modules.empty();
         }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 
 namespace relevo::session {
@@ -36,7 +37,7 @@ void SceneWeather::set_time(std::int64_t unix_s) {
     if (forecast) fields = forecast->at(unix_s);
 }
 
-std::string SceneWeather::notice(bool has_time) const {
+std::string SceneWeather::notice(bool has_time, bool from_outside) const {
     std::string said =
         fmt::format("weather: {}", report ? weather::summary(*report) : forecast->summary());
     if (!station_is_given)
@@ -44,6 +45,8 @@ std::string SceneWeather::notice(bool has_time) const {
             fmt::format("; {} {:.0f} m, the ground in the DEM's middle, --station-height sets it",
                         report ? "station at" : "bases count from", station_m);
     if (report && !has_time) said += "; the report names no month, so --time sets the time";
+    if (from_outside && (contains(facts.words, "cloudy") || contains(facts.words, "foggy")))
+        said += "; clouds and fog are not drawn from outside the DEM, --eye stands in it";
     return said;
 }
 

@@ -26,8 +26,9 @@ struct SceneWeather {
     void set_time(std::int64_t unix_s);
     /// What the report or the forecast says and what was taken for what it does not say, on one
     /// line.
-    /// @param has_time  the scene has a time of its own
-    std::string notice(bool has_time) const;
+    /// @param has_time      the scene has a time of its own
+    /// @param from_outside  the DEM is seen as a block, or as a map
+    std::string notice(bool has_time, bool from_outside) const;
 };
 
 /// None without Scene::weather and Scene::forecast. The station is at the ground in the middle of

@@ -49,7 +49,6 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
         loaded = loading.get();
         if (!scene.forecast.empty()) dem::add_all(std::span(&scene.forecast, 1), files);
         state.weather = weather_of(scene, *loaded);
-        if (state.weather->report) log::info(state.weather->notice(timed));
     }
     open_device(files);
     if (!loaded) loaded = loading.get();
@@ -65,7 +64,12 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     look(scene.view);
     warn_of_eye();
     set_time(time ? time->utc : state.default_time());
-    if (state.weather && state.weather->forecast) log::info(state.weather->notice(timed));
+    if (state.weather) log::info(state.weather->notice(timed, is_seen_from_outside()));
+}
+
+bool Session::Impl::is_seen_from_outside() const {
+    return state.is_map() ||
+           render::is_outside(state.ground(), state.inputs.camera.eye_m, state.scene.exaggeration);
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {

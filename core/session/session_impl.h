@@ -77,6 +77,7 @@ struct Session::Impl {
     std::optional<bool> picture_shows_ground;  // of the last picture in several frames
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
+    bool is_seen_from_outside() const;  ///< as a block, or as a map
     /// Events that depend on terrain need all posts, not a preview.
     std::shared_ptr<const LoadedDem> load_own() const;
     void open_device(FilesInUse& files);

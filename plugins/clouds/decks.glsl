@@ -117,6 +117,7 @@ float clouds_share_of_depth(in clouds_Deck d, in int deck, in vec2 place) {
     vec2 at = clouds_before_wind(place);
     vec2 found = deck == 0 ? clouds_depths_1(at) : deck == 1 ? clouds_depths_2(at) : clouds_depths_3(at);
     float part = clamp(found.x * found.y / d.depth, 0.0, 1.0);
+    if (part <= 0.0) return -1.0;  // so thin that no lumps of its edges are there either
     return d.kind == 2 ? part : 1.0 - sqrt(1.0 - (d.kind == 0 ? part * part : part));
 }
 

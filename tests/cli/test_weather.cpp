@@ -8,12 +8,14 @@
 #include "base/text.h"
 #include "cli/program.h"
 #include "dem/fixture.h"
+#include "image/image.h"
 #include "support/support.h"
 
 namespace relevo::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 using About = std::vector<std::pair<std::string, std::string>>;
 
@@ -55,17 +57,37 @@ TEST_F(Weather, OfAForecastIsSaidAndDrawn) {
     const std::string file =
         write_around("cover.tif", 90,
                      {{"GRIB_ELEMENT", "TCDC"}, {"GRIB_UNIT", "[%]"}, {"GRIB_VALID_TIME", kNoon}});
-    const Result clouded = capture({"--weather", file});
+    const std::vector<std::string> from_within = {"--eye", "36.30,-84.20,1500", "--weather", file};
+    const Result clouded = capture(from_within);
     EXPECT_EQ(clouded.status, 0) << clouded.err;
     EXPECT_THAT(clouded.err,
                 HasSubstr("weather: cover.tif: total cloud cover, 90 % over the DEM, of 2026-06-01 "
                           "12:00 UTC; bases count from "));
     const std::string with_clouds = read_text(picture_, "test");
+    EXPECT_THAT(clouded.err, Not(HasSubstr("from outside")));
     EXPECT_THAT(with_clouds, HasSubstr("cover.tif"));  // the scene in the picture names it
-    EXPECT_EQ(capture({"--weather", file}).status, 0);
+    const image::Image8 pixels = image::read(picture_);
+    EXPECT_EQ(capture(from_within).status, 0);
     EXPECT_EQ(read_text(picture_, "test"), with_clouds);
-    EXPECT_EQ(capture({"--weather", file, "--disable", "clouds"}).status, 0);
-    EXPECT_NE(read_text(picture_, "test"), with_clouds);
+    std::vector<std::string> clear = from_within;
+    clear.insert(clear.end(), {"--disable", "clouds"});
+    EXPECT_EQ(capture(clear).status, 0);
+    const image::Image8 without = image::read(picture_);
+    int differ = 0;
+    for (int y = 0; y < pixels.height; ++y)
+        for (int x = 0; x < pixels.width; ++x)
+            differ += std::abs(pixels.at(x, y, 0) - without.at(x, y, 0)) > 8;
+    EXPECT_GT(differ, pixels.width * pixels.height / 4);
+}
+
+TEST_F(Weather, OfWhichNothingIsDrawnIsSaid) {
+    const std::string report = "LSZB 011150Z 24009KT 9999 BKN040 17/13 Q1014";
+    const std::string outside =
+        "; clouds and fog are not drawn from outside the DEM, --eye stands in it";
+    EXPECT_THAT(capture({"--weather", report}).err, HasSubstr(outside));
+    EXPECT_THAT(capture({"--weather", report, "--ortho"}).err, HasSubstr(outside));
+    EXPECT_THAT(capture({"--weather", "LSZB 011150Z 24009KT CAVOK 17/13 Q1014"}).err,
+                Not(HasSubstr("from outside")));
 }
 
 TEST_F(Weather, MistakesAreSaidAndLoseNothing) {
