@@ -1,6 +1,7 @@
 //! provides  what is where, for pixels that show an instance of a plugin's mesh; terrain.frag.glsl shades them
 //! writes    gbuffer: column and row of the post and height [m] of the ground below the instance's foot, view depth [m];
-//!           instance_colour: square root of the reflectance, in alpha the share of the sun's light, above 0; instance_direction: its normal
+//!           instance_look: in rg four numbers of 8 bits, square root of the reflectance and the share of the sun's light,
+//!           above 0; in ba the normal
 
 //@ include lib/octahedral.glsl
 //@ include lib/pixel.glsl
@@ -13,8 +14,7 @@ in vec4 instance_shape;
 flat in float instance_half_width_m;
 
 layout(location = 0) out uvec4 gbuffer_out;
-layout(location = INSTANCE_COLOUR) out vec4 instance_colour_out;
-layout(location = INSTANCE_DIRECTION) out vec2 instance_direction_out;
+layout(location = INSTANCE_LOOK) out vec4 instance_look_out;
 
 #ifdef SPRITES
 /// Shapes a point to a crown, which is rounded towards the eye and darker below.
@@ -51,7 +51,7 @@ void main() {
     uvec2 ground = floatBitsToUint(post);
 #endif
     gbuffer_out = uvec4(ground, floatBitsToUint(height_m), floatBitsToUint(depth_m));
-    instance_colour_out = vec4(sqrt(clamp(reflectance, 0.0, 1.0)), clamp(instance_reflectance.a, 1.0 / 255.0, 1.0));
-    instance_direction_out = 0.5 + 0.5 * direction;
+    vec4 colour = vec4(sqrt(clamp(reflectance, 0.0, 1.0)), clamp(instance_reflectance.a, 1.0 / 255.0, 1.0));
+    instance_look_out = vec4(unpackUnorm2x16(packUnorm4x8(colour)), 0.5 + 0.5 * direction);
     store_varyings();
 }

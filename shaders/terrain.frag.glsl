@@ -20,8 +20,7 @@
 //@ include lib/tangent.glsl
 
 uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
-uniform sampler2D instance_colour;  // from instance.frag.glsl, where a plugin has instances
-uniform sampler2D instance_direction;
+uniform sampler2D instance_look;  // from instance.frag.glsl, where a plugin has instances
 uniform sampler2D ground_place;  // from geometry.frag.glsl, of a map
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
@@ -79,9 +78,10 @@ vec2 slope_at(in vec2 post, in int level) {
 /// @param sunlight  share of the sun's light that passes instances
 /// @returns whether the pixel shows one
 bool instance_as_surface(inout Surface s, in ivec2 pixel, inout float sunlight) {
-    vec4 colour = texelFetch(instance_colour, pixel, 0);
+    vec4 look = texelFetch(instance_look, pixel, 0);
+    vec4 colour = unpackUnorm4x8(packUnorm2x16(look.rg));
     if (colour.a == 0.0) return false;
-    s.normal = normal_from_octahedral(2.0 * texelFetch(instance_direction, pixel, 0).rg - 1.0);
+    s.normal = normal_from_octahedral(2.0 * look.ba - 1.0);
     s.geometric_normal = s.normal;
     s.diffuse = s.ambient = colour.rgb * colour.rgb;
     s.specular = s.emissive = vec3(0.0);

@@ -141,10 +141,7 @@ class Declaration {
                          .kind = ResourceKind::Texture2DArray,
                          .format = RGBA32F,
                          .size = {.depth = facts_.varying_targets}});
-        if (!facts_.instances.empty()) {
-            add(Resource{.name = "instance_colour", .format = RGBA8});
-            add(Resource{.name = "instance_direction", .format = RG8});
-        }
+        if (!facts_.instances.empty()) add(Resource{.name = "instance_look", .format = RGBA16});
         if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
         if (facts_.orthographic) add(Resource{.name = kGroundPlaceTexture, .format = RGBA32F});
         if (facts_.radiance)
@@ -244,17 +241,16 @@ class Declaration {
     /// Meshes on the ground, or their sprites. All are drawn into the same targets.
     void instances(const shader::InstanceSet& set, bool sprites) {
         const std::string name = set.resource + (sprites ? ".sprites" : "");
-        const int colour = 1 + facts_.varying_targets;
-        if (colour + 2 > kMaxStored + 1)
+        const int look = 1 + facts_.varying_targets;
+        if (look > kMaxStored)
             bad_input("render: instances: expected varyings of up to " +
-                      std::to_string(4 * (kMaxStored - 2)) + " floats in addition but got " +
+                      std::to_string(4 * (kMaxStored - 1)) + " floats in addition but got " +
                       std::to_string(facts_.varying_targets) +
                       " textures of four; switch an effect off");
         shader::ProgramRecipe recipe{
             .vertex_main = PassTexts::name_of(set),
             .fragment_main = "instance.frag.glsl",
-            .defines = {{"INSTANCE_COLOUR", std::to_string(colour)},
-                        {"INSTANCE_DIRECTION", std::to_string(colour + 1)}},
+            .defines = {{"INSTANCE_LOOK", std::to_string(look)}},
             .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
         stored_defines(recipe);
@@ -275,13 +271,10 @@ class Declaration {
                   }};
         if (facts_.varying_targets > 0)
             pass.colours.push_back({.resource = shader::StoredVaryings::kTexture, .updates = true});
-        if (first) {
-            pass.colours.push_back({"instance_colour", kNothing});
-            pass.colours.push_back({"instance_direction", kNothing});
-        } else {
-            pass.colours.push_back({.resource = "instance_colour", .updates = true});
-            pass.colours.push_back({.resource = "instance_direction", .updates = true});
-        }
+        if (first)
+            pass.colours.push_back({"instance_look", kNothing});
+        else
+            pass.colours.push_back({.resource = "instance_look", .updates = true});
         covering_ = name;
         add(std::move(pass));
     }
