@@ -81,6 +81,7 @@ TEST_F(Toggles, AllOffIsCoreAloneByteForByte) {
     const std::filesystem::path share = dir_ / "share";
     std::filesystem::create_directories(share / "plugins");
     std::filesystem::create_directory_symlink(source_dir() / "shaders", share / "shaders");
+    std::filesystem::create_directory_symlink(build_dir() / "share/relevo/data", share / "data");
     const Result bare = relevo({"-q", "capture", bundled_dem(), "-o", (dir_ / "bare.png").string(),
                                 "--size", "96x64", "--time", "2026-06-21T18:30-04:00"},
                                {"RELEVO_SHARE=" + share.string()});
