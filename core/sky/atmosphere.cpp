@@ -39,13 +39,14 @@ std::vector<Ring> rings(double horizon) {
     return made;
 }
 
-/// The part of the aerosol's phase function that harmonics of the second degree have, without
-/// what counts as not scattered [1/sr].
+/// The part of the aerosol's phase function that the harmonics have, without what counts as not
+/// scattered [1/sr].
 float smooth_phase(const Coefficients& air, double cosine) {
     constexpr double g = kAerosolAsymmetry;
-    const double f = air.forward;
-    return static_cast<float>(
-        (1 - f + 3 * (g - f) * cosine + 2.5 * (g * g - f) * (3 * cosine * cosine - 1)) / (4 * kPi));
+    const double f = air.forward, c2 = cosine * cosine;
+    return static_cast<float>((1 - f + 3 * (g - f) * cosine + 2.5 * (g * g - f) * (3 * c2 - 1) +
+                               3.5 * (g * g * g - f) * cosine * (5 * c2 - 3)) /
+                              (4 * kPi));
 }
 
 /// Adds what a ray brings to the light of a place.

@@ -12,10 +12,11 @@ namespace relevo::sky {
 namespace {
 
 /// Share of a species' scattering in harmonics of degree l: by the phase function's moment.
-constexpr std::array<float, 3> kRayleighMoments{1, 0, 0.1f};
-std::array<float, 3> aerosol_moments(const Coefficients& air) {
+constexpr std::array<float, kDegrees> kRayleighMoments{1, 0, 0.1f, 0};
+std::array<float, kDegrees> aerosol_moments(const Coefficients& air) {
     constexpr auto kG = static_cast<float>(kAerosolAsymmetry);
-    return {1 - air.forward, kG - air.forward, kG * kG - air.forward};
+    const float f = air.forward;
+    return {1 - f, kG - f, kG * kG - f, kG * kG * kG - f};
 }
 
 /// One step, as it is for all rays.
@@ -72,7 +73,7 @@ class Scattered {
         return values;
     }
 
-    std::array<float, 3> aerosol_;
+    std::array<float, kDegrees> aerosol_;
     const DiffuseTable& table_;
     const Step& step_;
     DiffuseTable::Place row_;

@@ -13,22 +13,26 @@ namespace relevo::sky {
 /// radiance: that is what scattered light depends on, because air scatters smoothly.
 /// Directions are given against the local vertical and the sun's azimuth, to which all is
 /// symmetric.
-inline constexpr int kHarmonics = 6;
+inline constexpr int kHarmonics = 10, kDegrees = 4;
 
-/// Degree l of each harmonic; its order m is 0, 0, 1, 0, 1, 2.
-inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2};
+/// Degree l of each harmonic; its order m goes from 0 to l.
+inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
 
 /// The real, orthonormal harmonics of a direction.
 /// @param sine    of its elevation
 /// @param across  length of its horizontal part times the cosine of its azimuth from the sun's
 inline std::array<float, kHarmonics> harmonics(double sine, double across) {
-    const double level2 = 1 - sine * sine;
+    const double sine2 = sine * sine, across2 = across * across, level2 = 1 - sine2;
     return {0.282095f,
             static_cast<float>(0.488603 * sine),
             static_cast<float>(0.488603 * across),
-            static_cast<float>(0.315392 * (3 * sine * sine - 1)),
+            static_cast<float>(0.315392 * (3 * sine2 - 1)),
             static_cast<float>(1.092548 * sine * across),
-            static_cast<float>(0.546274 * (2 * across * across - level2))};
+            static_cast<float>(0.546274 * (2 * across2 - level2)),
+            static_cast<float>(0.373176 * sine * (5 * sine2 - 3)),
+            static_cast<float>(0.457046 * across * (5 * sine2 - 1)),
+            static_cast<float>(1.445306 * sine * (2 * across2 - level2)),
+            static_cast<float>(0.590044 * across * (4 * across2 - 3 * level2))};
 }
 
 /// Diffuse light at a height under a sun: radiance moments and irradiance of level ground, for an
