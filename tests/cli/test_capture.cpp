@@ -12,7 +12,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_capture {
 namespace {
 
 using testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST_F(Capture, DumpsTheProgramsItCompiled) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_capture

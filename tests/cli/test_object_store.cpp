@@ -12,7 +12,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_object_store {
 namespace {
 
 using testing::HasSubstr;
@@ -292,4 +292,4 @@ INSTANTIATE_TEST_SUITE_P(ObjectStore, BadStore, testing::ValuesIn(bad_answers())
                          [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_object_store

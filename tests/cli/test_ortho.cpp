@@ -19,7 +19,7 @@
 // Maps lie on their source. The picture's own file says where its pixels are, GDAL reads it, and
 // GDAL says where the posts of the source are: nothing of what places the ground is used here.
 
-namespace relevo::test {
+namespace relevo::test::test_ortho {
 namespace {
 
 using Transform = std::array<double, 6>;
@@ -420,4 +420,4 @@ TEST_F(Ortho, LiesOnTheDemThatComesAlong) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_ortho

@@ -11,7 +11,7 @@
 #include "image/ktx.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_plugins {
 namespace {
 
 using ::testing::HasSubstr;
@@ -360,4 +360,4 @@ TEST_F(Plugins, APresetThatIsNoFileIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_plugins

@@ -20,7 +20,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -556,4 +556,4 @@ TEST_F(Run, CompareTellsPicturesApart) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_run

@@ -11,7 +11,7 @@
 #include "image/image.h"
 
 /// What `relevo run` reads, keeps and replaces.
-namespace relevo::test {
+namespace relevo::test::test_run_files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -301,4 +301,4 @@ TEST_F(RunFiles, ASceneThatAJpegHasNoRoomForIsInTheFileBesideIt) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_run_files

@@ -20,7 +20,7 @@
 #include "support/support.h"
 
 /// Rasters of the sun as tiles in a folder, by one process or several.
-namespace relevo::test {
+namespace relevo::test::test_sun_tiles {
 namespace {
 
 namespace fs = std::filesystem;
@@ -457,4 +457,4 @@ TEST(SunTiles, StacItemsSayWhereAndWhen) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_tiles

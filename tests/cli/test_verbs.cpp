@@ -7,7 +7,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_verbs {
 namespace {
 
 TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
@@ -116,4 +116,4 @@ TEST(PluginsVerb, LeavesOutWhatOnlyThePluginsCodeWrites) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_verbs

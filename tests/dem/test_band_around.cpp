@@ -9,7 +9,7 @@
 #include "geo/local_frame.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_band_around {
 namespace {
 
 using test::error_of;
@@ -105,4 +105,4 @@ TEST(BandAround, PlacesOverTheDemReachItsCorners) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_band_around

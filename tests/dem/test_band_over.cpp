@@ -8,7 +8,7 @@
 #include "dem/fixture.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_band_over {
 namespace {
 
 using test::error_of;
@@ -197,4 +197,4 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_band_over

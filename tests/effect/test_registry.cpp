@@ -8,7 +8,7 @@
 #include "effect/registry.h"
 #include "shader/stitch.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_registry {
 namespace {
 
 using relevo::test::error_of;
@@ -188,4 +188,4 @@ TEST(Registry, ShuffledRegistrationGivesEqualBytes) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_registry

@@ -17,7 +17,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_filtered {
 namespace {
 
 constexpr int kColumns = 64, kRows = 48;
@@ -129,4 +129,4 @@ TEST(Filtered, HasExactWeightsOnEveryDevice) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_filtered

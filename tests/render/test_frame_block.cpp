@@ -138,7 +138,8 @@ Off worst_over(double lowest_deg, double highest_deg, double from_deg) {
     sun.refraction_rad = bennett_rad;
     sun.lowest_sine = std::sin(radians(lowest_deg));
     sun.highest_sine = std::sin(radians(highest_deg));
-    const FrameInputs inputs{.camera = {}, .sun = sun, .stars = {}};
+    const scene::Camera camera;
+    const FrameInputs inputs{.camera = camera, .sun = sun, .stars = {}};
     const SunLightTable table = sun_light_table(sun, HeightLight(inputs, 0));
     Off worst;
     for (double at_deg = from_deg; at_deg <= highest_deg;

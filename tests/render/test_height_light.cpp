@@ -13,7 +13,7 @@
 #include "sky/shipped.h"
 #include "sun/daylight.h"
 
-namespace relevo::render {
+namespace relevo::render::test_height_light {
 namespace {
 
 double luminance(const glm::dvec3& c) {
@@ -147,4 +147,4 @@ TEST(LightByHeight, IsTheLightOfEachHeight) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_height_light

@@ -112,21 +112,34 @@ Values only_where(Values values, const Values& others) {
     return values;
 }
 
-/// Takes away the mean of what is around, kWide_px on each side and NaN left out.
+/// Sums of `values` and how many there are, NaN left out, over kWide_px + 1 of a row or column.
+struct Sums {
+    Values sum, count;
+
+    Sums(const Values& values, const Values& counts, glm::ivec2 along)
+        : sum(values.width(), values.height(), 0), count(values.width(), values.height(), 0) {
+        for (int y = 0; y < values.height(); ++y)
+            for (int x = 0; x < values.width(); ++x)
+                for (int i = -kWide_px / 2; i <= kWide_px / 2; ++i) {
+                    const int u = x + i * along.x, v = y + i * along.y;
+                    if (u < 0 || v < 0 || u >= values.width() || v >= values.height()) continue;
+                    const double value = values.at(u, v);
+                    if (std::isnan(value)) continue;
+                    sum.at(x, y) += value;
+                    count.at(x, y) += counts.at(u, v);
+                }
+    }
+};
+
+/// Takes away the mean of what is around, kWide_px / 2 on each side and NaN left out.
 Values narrow(const Values& values) {
+    const Sums rows(values, Values(values.width(), values.height(), 1), {1, 0});
+    const Sums all(rows.sum, rows.count, {0, 1});
     Values result(values.width(), values.height(), kNone);
-    constexpr int kHalf = kWide_px / 2;
     for (int y = 0; y < values.height(); ++y)
-        for (int x = 0; x < values.width(); ++x) {
-            double sum = 0;
-            int count = 0;
-            for (int v = std::max(y - kHalf, 0); v <= std::min(y + kHalf, values.height() - 1); ++v)
-                for (int u = std::max(x - kHalf, 0); u <= std::min(x + kHalf, values.width() - 1);
-                     ++u)
-                    if (const double value = values.at(u, v); !std::isnan(value))
-                        sum += value, ++count;
-            if (count > kWide_px * kWide_px / 2) result.at(x, y) = values.at(x, y) - sum / count;
-        }
+        for (int x = 0; x < values.width(); ++x)
+            if (const double count = all.count.at(x, y); count > kWide_px * kWide_px / 2)
+                result.at(x, y) = values.at(x, y) - all.sum.at(x, y) / count;
     return result;
 }
 

@@ -6,7 +6,7 @@
 namespace relevo::shader::test_growth {
 namespace {
 
-using test::error_of;
+using relevo::test::error_of;
 
 std::string error(const std::vector<std::string>& texts) {
     std::vector<Snippet> files;
