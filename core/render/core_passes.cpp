@@ -247,11 +247,10 @@ class Declaration {
                       std::to_string(4 * (kMaxStored - 1)) + " floats in addition but got " +
                       std::to_string(facts_.varying_targets) +
                       " textures of four; switch an effect off");
-        shader::ProgramRecipe recipe{
-            .vertex_main = PassTexts::name_of(set),
-            .fragment_main = "instance.frag.glsl",
-            .defines = {{"INSTANCE_LOOK", std::to_string(look)}},
-            .shaded_by = "terrain.frag.glsl"};
+        shader::ProgramRecipe recipe{.vertex_main = PassTexts::name_of(set),
+                                     .fragment_main = "instance.frag.glsl",
+                                     .defines = {{"INSTANCE_LOOK", std::to_string(look)}},
+                                     .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
         stored_defines(recipe);
         if (sprites)
