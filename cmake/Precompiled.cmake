@@ -13,12 +13,16 @@ set(relevo_precompiled_headers <algorithm> <array> <atomic> <charconv> <chrono> 
     <thread> <unordered_map> <utility> <vector> <fmt/format.h> <fmt/ranges.h> <glm/glm.hpp>)
 target_precompile_headers(relevo_precompiled PRIVATE ${relevo_precompiled_headers})
 
-# The same for tests, which are compiled with other options.
-if(RELEVO_TESTS)
-    add_library(relevo_precompiled_tests OBJECT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
+# The same for tests, which are compiled with other options: those of tests, and of tests that are REFERENCES.
+function(relevo_precompiled_for_tests name options)
+    add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
     # As programs are compiled, not libraries.
-    set_target_properties(relevo_precompiled_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-    target_compile_options(relevo_precompiled_tests PRIVATE ${relevo_test_options} -fPIE)
-    target_link_libraries(relevo_precompiled_tests PRIVATE relevo_options fmt::fmt glm::glm GTest::gmock)
-    target_precompile_headers(relevo_precompiled_tests PRIVATE ${relevo_precompiled_headers} <gmock/gmock.h> <gtest/gtest.h>)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(${name} PRIVATE ${options} -fPIE)
+    target_link_libraries(${name} PRIVATE relevo_options fmt::fmt glm::glm GTest::gmock)
+    target_precompile_headers(${name} PRIVATE ${relevo_precompiled_headers} <gmock/gmock.h> <gtest/gtest.h>)
+endfunction()
+if(RELEVO_TESTS)
+    relevo_precompiled_for_tests(relevo_precompiled_tests "${relevo_test_options}")
+    relevo_precompiled_for_tests(relevo_precompiled_references "${relevo_reference_options}")
 endif()

@@ -14,8 +14,6 @@
 namespace relevo::cli {
 namespace {
 
-constexpr double kMiB = 1 << 20;
-
 double mib_of(std::int64_t bytes) {
     return static_cast<double>(bytes) / kMiB;
 }

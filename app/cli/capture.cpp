@@ -36,7 +36,7 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct CaptureArguments {
     SceneArguments scene;
     FormatArguments format;
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
@@ -51,7 +51,7 @@ struct Wanted {
     std::vector<std::string> compared;
 };
 
-Wanted wanted(const Arguments& arguments) {
+Wanted wanted(const CaptureArguments& arguments) {
     if (arguments.from.empty()) return {arguments.scene.scene(), arguments.ab};
     if (!arguments.scene.file.empty()) bad_usage("--scene and --from exclude each other; use one");
     const image::Metadata metadata = session::read_record(arguments.from);
@@ -202,13 +202,13 @@ void report_scene(const session::Session& session) {
         log::info(note);
 }
 
-void check_shows_ground(const Arguments& arguments, const session::Session& session) {
+void check_shows_ground(const CaptureArguments& arguments, const session::Session& session) {
     if (!arguments.allow_blank && !session.shows_ground())
         failed("capture: the picture shows only sky; turn the camera or add --allow-blank");
 }
 
 // In one piece: the stages of a picture in their order.
-void capture(const Arguments& arguments) {
+void capture(const CaptureArguments& arguments) {
     log::HeldNotices notices;
     const std::filesystem::path output = arguments.format.named(arguments.output);
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
@@ -337,7 +337,7 @@ std::vector<std::filesystem::path> watched_folders(const scene::Effects& effects
 
 /// Makes the picture, and again after each change of a plugin's file until the program is
 /// interrupted. Mistakes are reported, and the picture waits for the next change.
-void capture_and_watch(Arguments arguments) {
+void capture_and_watch(CaptureArguments arguments) {
     constexpr std::chrono::milliseconds kStep(200);
     const scene::Effects effects = wanted(arguments).scene.effects;
     FolderWatch watch;
@@ -362,7 +362,7 @@ void capture_and_watch(Arguments arguments) {
 }  // namespace
 
 void add_capture(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CaptureArguments>();
     const Verb verb = app.add_verb("capture", "Makes one picture");
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,

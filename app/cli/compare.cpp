@@ -15,7 +15,7 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
     std::string a, b, output;
     double tolerance = 0;
     bool json = false, overwrite = false;
@@ -56,7 +56,7 @@ image::Image8 picture_of_difference(const image::ImageF& a, const image::ImageF&
     return picture;
 }
 
-void compare(const Arguments& arguments) {
+void compare(const CompareArguments& arguments) {
     const bool linear = image::holds_linear_light(arguments.a);
     if (linear != image::holds_linear_light(arguments.b))
         bad_usage(
@@ -107,7 +107,7 @@ void compare(const Arguments& arguments) {
 }  // namespace
 
 void add_compare(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CompareArguments>();
     const Verb verb = app.add_verb("compare", "Compares two pictures");
     verb.add_option("A", arguments->a, "Picture").required();
     verb.add_option("B", arguments->b, "Picture of the same size").required();

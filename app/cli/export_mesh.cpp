@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kWidth_mm = 150;  // of a model that nothing else is said of
 
-struct Arguments {
+struct ExportMeshArguments {
     ExportArguments shared;
     double error_m = 1;
     bool flat = false;
@@ -42,7 +42,7 @@ std::optional<double> parse_base(const std::string& text) {
     return height_m;
 }
 
-void check(const Arguments& arguments) {
+void check(const ExportMeshArguments& arguments) {
     const bool sized = arguments.width_mm || !arguments.scale.empty();
     if (!arguments.scale.empty()) parse_scale(arguments.scale);
     if (!arguments.base.empty()) parse_base(arguments.base);
@@ -67,7 +67,7 @@ Box box_of(const mesh::Surface& surface) {
 }
 
 /// Of the model, for a metre on the ground.
-double mm_per_m(const Arguments& arguments, const Box& box) {
+double mm_per_m(const ExportMeshArguments& arguments, const Box& box) {
     if (!arguments.scale.empty()) return 1000 / parse_scale(arguments.scale);
     return arguments.width_mm.value_or(kWidth_mm) / std::max(box.size().x, box.size().y);
 }
@@ -88,7 +88,7 @@ void print(const output::TerrainMesh& mesh, const output::GroundFrame& frame, do
         fmt::print("excluded    {} posts next to voids\n", mesh.lone_posts + mesh.cut_posts);
 }
 
-void write(Arguments& arguments) {
+void write(ExportMeshArguments& arguments) {
     check(arguments);
     FilesInUse files;
     arguments.shared.open(files, /*scale_file=*/false);
@@ -127,7 +127,7 @@ void write(Arguments& arguments) {
 }  // namespace
 
 void add_export_mesh(Verb export_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ExportMeshArguments>();
     const Verb verb = export_verb.add_verb(
         "mesh", "Triangles within a stated error: glTF, and solids for printing");
     arguments->shared.add_to(verb, {"glb", "stl"});

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct FilmArguments {
     JobArguments job;
     std::string motion, along, span, vary, save_job;
     double duration_s = 10;
@@ -41,7 +41,7 @@ struct Arguments {
 const std::string kDefaultSpan = fmt::format("{},{}", session::kFilmDayFrom, session::kFilmDayTo);
 
 /// What moves: the words of --motion.
-std::vector<std::string> motions(const Arguments& arguments) {
+std::vector<std::string> motions(const FilmArguments& arguments) {
     if (arguments.motion.empty()) {
         if (!arguments.along.empty()) return {"flight"};
         if (!arguments.vary.empty() && arguments.span.empty()) return {};
@@ -69,7 +69,7 @@ std::vector<std::string> motions(const Arguments& arguments) {
 }
 
 /// @throws Error (Usage) for options of a motion that the film does not have
-void check_options(const Arguments& arguments, const std::vector<std::string>& motions) {
+void check_options(const FilmArguments& arguments, const std::vector<std::string>& motions) {
     const auto need = [&](bool given, const char* option, const std::vector<std::string>& one_of) {
         const auto is_one = [&](const std::string& word) { return contains(one_of, word); };
         if (given && std::ranges::none_of(motions, is_one))
@@ -95,7 +95,7 @@ glm::ivec2 default_px(const scene::View& view) {
 /// Makes a film's job from the command line.
 class Maker {
   public:
-    explicit Maker(Arguments& arguments) : arguments_(arguments) {
+    explicit Maker(FilmArguments& arguments) : arguments_(arguments) {
         // A film has a date without a time of day.
         TimeArguments& time = arguments_.job.scene.time;
         if (time.time.empty()) {
@@ -198,13 +198,13 @@ class Maker {
         return {date().year, at, zone_.empty() ? "solar" : zone_};
     }
 
-    Arguments& arguments_;
+    FilmArguments& arguments_;
     std::string date_, zone_;
     scene::Scene scene_;
     session::SceneTimes times_;
 };
 
-void film(Arguments arguments) {
+void film(FilmArguments arguments) {
     Maker maker(arguments);
     const scene::FilmJob job = maker.job();
     if (!arguments.save_job.empty()) {
@@ -223,7 +223,7 @@ void film(Arguments arguments) {
     run_job(arguments.job);
 }
 
-void add_motion(Verb verb, Arguments& arguments) {
+void add_motion(Verb verb, FilmArguments& arguments) {
     verb.add_option("--motion", arguments.motion,
                     "What moves: day, year, orbit, flight, or two, as in day,orbit (day)")
         .group("Film");
@@ -272,7 +272,7 @@ void add_motion(Verb verb, Arguments& arguments) {
 }  // namespace
 
 void add_film(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<FilmArguments>();
     const Verb verb = app.add_verb("film", "Makes a film: a day, a year, an orbit, a flight");
     JobArguments& job = arguments->job;
     job.scene.add_to(verb);

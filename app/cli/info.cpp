@@ -138,12 +138,12 @@ nlohmann::ordered_json sun_json(const sun::Position& sun, const sun::Refraction&
 }  // namespace
 
 void add_info(Verb app) {
-    struct Arguments {
+    struct InfoArguments {
         DemArguments dem;
         TimeArguments time;
         bool json = false;
     };
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<InfoArguments>();
     const Verb verb = app.add_verb("info", "Describes a DEM and all assumptions about it");
     arguments->dem.add_to(verb);
     arguments->time.add_to(verb);

@@ -22,14 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct MergeArguments {
     std::string folder, output, stac, base;
     bool overwrite = false, allow_missing = false;
 };
 
 /// The tiles that are whole. Names the others.
 /// @throws Error (Failed) where there are others, unless that is allowed, or none is whole
-std::vector<output::PlannedTile> whole_tiles(const Arguments& arguments,
+std::vector<output::PlannedTile> whole_tiles(const MergeArguments& arguments,
                                              const output::TilePlan& plan) {
     constexpr std::size_t kMostNamed = 20;
     const auto found = output::tiles_on_disk(arguments.folder, plan, plan.tiles);
@@ -54,7 +54,7 @@ std::vector<output::PlannedTile> whole_tiles(const Arguments& arguments,
     return whole;
 }
 
-void run(const Arguments& arguments) {
+void run_merge(const MergeArguments& arguments) {
     const auto plan = output::read_plan(arguments.folder);
     if (!plan)
         bad_input(fmt::format("merge: {}: has no {}; expected a folder that --tiles has made",
@@ -91,7 +91,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_merge(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<MergeArguments>();
     const Verb verb =
         app.add_verb("merge", "Checks the tiles of a folder; a VRT and a STAC collection of them");
     verb.add_option("FOLDER", arguments->folder, "Folder that --tiles has filled").required();
@@ -103,7 +103,7 @@ void add_merge(Verb app) {
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--allow-missing", arguments->allow_missing,
                   "Write them over the tiles that are there");
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_merge(*arguments); });
 }
 
 }  // namespace relevo::cli

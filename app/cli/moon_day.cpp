@@ -16,14 +16,14 @@ namespace {
 using nlohmann::ordered_json;
 using sun::EventKind;
 
-constexpr EventKind kKinds[] = {EventKind::Moonrise, EventKind::Transit, EventKind::Moonset,
-                                EventKind::LowerTransit};
+constexpr EventKind kMoonKinds[] = {EventKind::Moonrise, EventKind::Transit, EventKind::Moonset,
+                                    EventKind::LowerTransit};
 constexpr const char* kPhases =
     "phases: the moon's apparent geocentric ecliptic longitude is 0, 90, 180 or 270 degrees more "
     "than the sun's; illuminated fraction: at the middle of the local day";
 
 /// All figures of the verb, before they are written as text, CSV or JSON.
-struct Result {
+struct MoonDayResult {
     geo::Geodetic place;
     DaysArguments::Days asked;
     std::string definition;
@@ -45,13 +45,13 @@ ordered_json first_json(const sun::MoonDay& day, EventKind kind) {
     return nullptr;
 }
 
-ordered_json day_json(const Result& result, std::size_t i) {
+ordered_json day_json(const MoonDayResult& result, std::size_t i) {
     const sun::MoonDay& day = result.days[i];
     ordered_json json;
     json["date"] = sun::to_string(day.date);
     const char* all_day = all_day_of(day);
     json["all_day"] = all_day ? ordered_json(all_day) : ordered_json();
-    for (const EventKind kind : kKinds)
+    for (const EventKind kind : kMoonKinds)
         json[std::string(sun::name_of(kind)) + "_utc"] = first_json(day, kind);
     json["moon_up_h"] = day.moon_up_s / 3600;
     json["illuminated_fraction"] = day.illuminated_fraction;
@@ -70,7 +70,7 @@ ordered_json day_json(const Result& result, std::size_t i) {
     return json;
 }
 
-ordered_json json_of(const Result& result) {
+ordered_json json_of(const MoonDayResult& result) {
     ordered_json json;
     json["place"] = place_json(result.place);
     json["zone"] = result.asked.zone.name();
@@ -93,9 +93,9 @@ ordered_json json_of(const Result& result) {
 }
 
 /// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
-std::string columns_of(bool light, bool holes) {
+std::string moon_columns(bool light, bool holes) {
     std::string text = "date,all_day";
-    for (const EventKind kind : kKinds)
+    for (const EventKind kind : kMoonKinds)
         text += fmt::format(",{}", sun::name_of(kind));
     text += ",moon_up_h,illuminated_fraction,phase,phase_time";
     if (light) text += ",direct_moonlight,direct_moonlight_h";
@@ -103,12 +103,12 @@ std::string columns_of(bool light, bool holes) {
     return text;
 }
 
-std::string row_of(const Result& result, std::size_t i, bool holes) {
+std::string row_of(const MoonDayResult& result, std::size_t i, bool holes) {
     const sun::Zone& zone = result.asked.zone;
     const sun::MoonDay& day = result.days[i];
     const char* all_day = all_day_of(day);
     std::string text = sun::to_string(day.date) + "," + (all_day ? all_day : "");
-    for (const EventKind kind : kKinds) {
+    for (const EventKind kind : kMoonKinds) {
         std::string times;
         for (const sun::Event& event : day.events)
             if (event.kind == kind)
@@ -126,7 +126,7 @@ std::string row_of(const Result& result, std::size_t i, bool holes) {
                               result.light[i].not_known_s / 3600);
 }
 
-std::vector<std::string> rows_of(const Result& result, bool holes) {
+std::vector<std::string> rows_of(const MoonDayResult& result, bool holes) {
     std::vector<std::string> rows;
     for (std::size_t i = 0; i < result.days.size(); ++i)
         rows.push_back(row_of(result, i, holes));
@@ -134,7 +134,7 @@ std::vector<std::string> rows_of(const Result& result, bool holes) {
 }
 
 /// What the figures mean.
-std::vector<std::string> definitions_of(const Result& result) {
+std::vector<std::string> definitions_of(const MoonDayResult& result) {
     std::vector<std::string> definitions{result.definition, kPhases};
     if (!result.light.empty()) {
         definitions.push_back(result.light_definition);
@@ -145,22 +145,22 @@ std::vector<std::string> definitions_of(const Result& result) {
     return definitions;
 }
 
-std::string csv_of(const Result& result) {
+std::string csv_of(const MoonDayResult& result) {
     const bool holes = !result.doubt.holes.empty();
     std::string text =
-        csv_remarks(definitions_of(result)) + columns_of(!result.light.empty(), holes) + "\n";
+        csv_remarks(definitions_of(result)) + moon_columns(!result.light.empty(), holes) + "\n";
     for (const std::string& row : rows_of(result, holes))
         text += row + "\n";
     return text;
 }
 
-void print_definitions(const Result& result) {
+void print_definitions(const MoonDayResult& result) {
     fmt::print("\n");
     for (const std::string& definition : definitions_of(result))
         fmt::print("{}\n", definition);
 }
 
-void print_day(const Result& result) {
+void print_day(const MoonDayResult& result) {
     const sun::MoonDay& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     fmt::print("date                {}, {}\n", sun::to_string(day.date), zone.name());
@@ -175,7 +175,7 @@ void print_day(const Result& result) {
     if (!result.light.empty()) print_lit(result.light.front(), "moonlight", zone);
 }
 
-void print_days(const Result& result) {
+void print_days(const MoonDayResult& result) {
     const sun::Zone& zone = result.asked.zone;
     const bool lit = !result.light.empty();
     fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
@@ -202,7 +202,7 @@ void print_days(const Result& result) {
     }
 }
 
-void print_text(const Result& result) {
+void print_text(const MoonDayResult& result) {
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
                result.place.height_m);
     result.asked.single ? print_day(result) : print_days(result);
@@ -210,11 +210,11 @@ void print_text(const Result& result) {
 }
 
 /// @param posts  null without a DEM
-Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
-                 const geo::PlaceText& at, const dem::Posts* posts) {
+MoonDayResult result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
+                        const geo::PlaceText& at, const dem::Posts* posts) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     if (!posts) check_has_ground(at);
-    Result result;
+    MoonDayResult result;
     result.asked = asked;
     result.place = at.place;
     if (posts) {
@@ -237,14 +237,15 @@ Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked
 void run(const DayArguments& arguments) {
     const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
                            const dem::Posts* posts) {
-        const auto result = std::make_shared<const Result>(result_at(arguments, asked, at, posts));
+        const auto result =
+            std::make_shared<const MoonDayResult>(result_at(arguments, asked, at, posts));
         return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
                                   .json = [=] { return json_of(*result); },
                                   .doubt = result->doubt},
                         .csv = [=] { return csv_of(*result); },
                         .print = [=] { print_text(*result); }};
     };
-    run_days(arguments, {.columns = [](bool terrain) { return columns_of(terrain, terrain); },
+    run_days(arguments, {.columns = [](bool terrain) { return moon_columns(terrain, terrain); },
                          .remarks = {kPhases},
                          .forms = forms});
 }

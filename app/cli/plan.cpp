@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
+constexpr double kGiB = 1 << 30;
 
 std::string bytes_text(double bytes) {
     return bytes < kGiB ? fmt::format("{:.1f} MiB", bytes / kMiB)

@@ -115,7 +115,7 @@ void info(const effect::Effect& effect, bool json) {
 }  // namespace
 
 void add_plugins(Verb app) {
-    struct Arguments {
+    struct PluginsArguments {
         std::vector<std::string> plugin_path;
         std::string id;
         bool json = false;
@@ -124,7 +124,7 @@ void add_plugins(Verb app) {
             return effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
         }
     };
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<PluginsArguments>();
     const Verb verb =
         app.add_verb("plugins", "Lists effects and their parameters; tools for authors");
     verb.require_verb(0, 1);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/progress.h"
+#include "cli/shared.h"
 #include "light/sweep/sweep.h"
 
 namespace relevo::cli {
@@ -17,7 +18,6 @@ constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
 // Measured: while a tile is read with its halo, what is put together.
 constexpr double kSite_mib = 64;
 constexpr double kTile = 512;  // posts a side
-constexpr double kMiB = 1 << 20;
 
 }  // namespace
 

@@ -77,6 +77,8 @@ struct RefractionArguments {
     }
 };
 
+inline constexpr double kMiB = 1 << 20;  // bytes
+
 /// Where the camera stands.
 struct ViewArguments {
     std::string view, eye, look_at;

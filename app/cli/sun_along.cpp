@@ -16,7 +16,7 @@ namespace {
 using light::WalkLight;
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct AlongArguments {
     TerrainArguments terrain;
     std::string crs, start, zone, name;
     int track = 0;
@@ -26,7 +26,7 @@ struct Arguments {
 };
 
 /// Everything that the verb says, before it is text.
-struct Result {
+struct AlongResult {
     std::string name;
     std::size_t points = 0;
     sun::Zone zone;
@@ -52,7 +52,7 @@ const char* words_of(WalkLight light) {
     return "not known: a void of the DEM";
 }
 
-const light::WalkSum& sum_of(const Result& result, WalkLight light) {
+const light::WalkSum& sum_of(const AlongResult& result, WalkLight light) {
     return result.found.sums[static_cast<std::size_t>(light)];
 }
 
@@ -68,7 +68,7 @@ ordered_json moment_json(const light::WalkMoment& moment, const sun::Zone& zone)
             {"lon_deg", angle_deg(moment.place.lon_rad)}};
 }
 
-ordered_json json_of(const Result& result) {
+ordered_json json_of(const AlongResult& result) {
     const light::LightAlong& found = result.found;
     ordered_json json;
     json["name"] = result.name;
@@ -96,7 +96,7 @@ ordered_json json_of(const Result& result) {
     return json;
 }
 
-std::string csv_of(const Result& result) {
+std::string csv_of(const AlongResult& result) {
     std::string text =
         csv_remarks({result.found.definition, "refraction of the sun: " + result.air});
     text +=
@@ -111,7 +111,7 @@ std::string csv_of(const Result& result) {
     return text;
 }
 
-void print_text(const Result& result) {
+void print_text(const AlongResult& result) {
     const light::LightAlong& found = result.found;
     fmt::print("track               {}{:.2f} km, {} points\n",
                result.name.empty() ? "" : result.name + ", ", found.length_m / 1000, result.points);
@@ -147,7 +147,8 @@ bool has_time(const dem::NamedPlace& place) {
 }
 
 /// What a track without times of its own needs, before any work is done. @throws Error (Usage)
-void check_times(const Arguments& arguments, const dem::NamedLine& line, const std::string& path) {
+void check_times(const AlongArguments& arguments, const dem::NamedLine& line,
+                 const std::string& path) {
     if (std::ranges::any_of(line.places, has_time)) return;
     if (arguments.start.empty())
         bad_usage(
@@ -187,8 +188,8 @@ std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string
 
 /// The walk that is meant, and the clocks that it goes by: what is not said of its start and its
 /// pace is the track's own.
-light::Walk walk_of(const Arguments& arguments, const std::string& path, const dem::NamedLine& line,
-                    const dem::Posts& posts, Result& result) {
+light::Walk walk_of(const AlongArguments& arguments, const std::string& path,
+                    const dem::NamedLine& line, const dem::Posts& posts, AlongResult& result) {
     std::vector<geo::Geodetic> places;
     for (const dem::NamedPlace& place : line.places)
         places.push_back(place.at.place);
@@ -217,7 +218,7 @@ light::Walk walk_of(const Arguments& arguments, const std::string& path, const d
                                  *arguments.speed_kmh / 3.6);
 }
 
-void run(Arguments arguments) {
+void run_along(AlongArguments arguments) {
     std::vector<std::string>& dems = arguments.terrain.dem.paths;
     if (dems.size() < 2)
         bad_usage(
@@ -232,7 +233,7 @@ void run(Arguments arguments) {
     const dem::NamedLine line = dem::read_line(path, "sun along", arguments.crs, arguments.track);
     check_times(arguments, line, path);
     const dem::Posts posts = arguments.terrain.load();
-    Result result;
+    AlongResult result;
     result.name = arguments.name.empty() ? line.name : arguments.name;
     result.points = line.places.size();
     const light::Walk walk = walk_of(arguments, path, line, posts, result);
@@ -255,7 +256,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void add_sun_along(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<AlongArguments>();
     const Verb verb = sun_verb.add_verb("along", "Finds where a walk is in the sun");
     arguments->terrain.add_to(verb);
     verb.option("DEM").description(
@@ -278,7 +279,7 @@ void add_sun_along(Verb sun_verb) {
         .check(in_range(0.0, 10000.0));
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_along(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct CarpetArguments {
     TerrainArguments terrain;
     PlaceArguments place;
     DaysArguments days;
@@ -137,7 +137,7 @@ void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizo
     if (!doubt.holes.empty()) fmt::print("{}\n", holes_text(carpet, doubt));
 }
 
-void run(const Arguments& arguments) {
+void run_carpet(const CarpetArguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
@@ -174,7 +174,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_sun_carpet(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CarpetArguments>();
     const Verb verb =
         sun_verb.add_verb("carpet", "A year of direct sun at a point, day by time of day");
     arguments->terrain.add_to(verb);
@@ -185,7 +185,7 @@ void add_sun_carpet(Verb sun_verb) {
                     "Step of the time of day (3min), or minutes alone; divides a day");
     arguments->light.add_to(verb);
     arguments->output.add_to(verb, {"png", "svg", "csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_carpet(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -21,18 +21,18 @@ namespace {
 using nlohmann::ordered_json;
 using sun::EventKind;
 
-constexpr EventKind kKinds[] = {EventKind::AstronomicalDawn, EventKind::NauticalDawn,
-                                EventKind::CivilDawn,        EventKind::Sunrise,
-                                EventKind::Transit,          EventKind::Sunset,
-                                EventKind::CivilDusk,        EventKind::NauticalDusk,
-                                EventKind::AstronomicalDusk, EventKind::LowerTransit};
+constexpr EventKind kSunKinds[] = {EventKind::AstronomicalDawn, EventKind::NauticalDawn,
+                                   EventKind::CivilDawn,        EventKind::Sunrise,
+                                   EventKind::Transit,          EventKind::Sunset,
+                                   EventKind::CivilDusk,        EventKind::NauticalDusk,
+                                   EventKind::AstronomicalDusk, EventKind::LowerTransit};
 constexpr const char* kTwilights =
     "twilights: centre of the sun 6 (civil), 12 (nautical), 18 (astronomical) degrees below the "
     "level horizon; golden hour: centre from 4 below to 6 above; blue hour: from 6 to 4 below; all "
     "without refraction";
 
 /// All figures of the verb, before they are written as text, CSV or JSON.
-struct Result {
+struct DayResult {
     geo::Geodetic place;
     DaysArguments::Days asked;
     std::string definition;
@@ -48,13 +48,13 @@ const char* polar_of(const sun::Day& day) {
                                                    : nullptr;
 }
 
-ordered_json day_json(const Result& result, std::size_t i) {
+ordered_json day_json(const DayResult& result, std::size_t i) {
     const sun::Day& day = result.days[i];
     ordered_json json;
     json["date"] = sun::to_string(day.date);
     const char* polar = polar_of(day);
     json["polar"] = polar ? ordered_json(polar) : ordered_json();
-    for (const EventKind kind : kKinds)
+    for (const EventKind kind : kSunKinds)
         json[std::string(sun::name_of(kind)) + "_utc"] = utc_json(day.first(kind));
     json["day_length_h"] = day.day_length_s / 3600;
     json["golden_hour"] = spans_json(day.golden_hour);
@@ -77,7 +77,7 @@ ordered_json seasons_json(int year) {
             {"december_solstice_utc", utc_json(s.december_solstice)}};
 }
 
-ordered_json json_of(const Result& result) {
+ordered_json json_of(const DayResult& result) {
     ordered_json json;
     json["place"] = place_json(result.place);
     json["zone"] = result.asked.zone.name();
@@ -103,9 +103,9 @@ ordered_json json_of(const Result& result) {
 }
 
 /// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
-std::string columns_of(bool light, bool holes) {
+std::string day_columns(bool light, bool holes) {
     std::string text = "date,polar";
-    for (const EventKind kind : kKinds)
+    for (const EventKind kind : kSunKinds)
         text += fmt::format(",{}", sun::name_of(kind));
     text += ",day_length_h,golden_hour,blue_hour";
     if (light) text += ",direct_sun,direct_sun_h";
@@ -113,12 +113,12 @@ std::string columns_of(bool light, bool holes) {
     return text;
 }
 
-std::string row_of(const Result& result, std::size_t i, bool holes) {
+std::string row_of(const DayResult& result, std::size_t i, bool holes) {
     const sun::Zone& zone = result.asked.zone;
     const sun::Day& day = result.days[i];
     const char* polar = polar_of(day);
     std::string text = sun::to_string(day.date) + "," + (polar ? polar : "");
-    for (const EventKind kind : kKinds) {
+    for (const EventKind kind : kSunKinds) {
         std::string times;
         for (const sun::Instant utc : day.all(kind))
             times += (times.empty() ? "" : ";") + sun::to_iso(utc, zone);
@@ -134,14 +134,14 @@ std::string row_of(const Result& result, std::size_t i, bool holes) {
                               result.light[i].not_known_s / 3600);
 }
 
-std::vector<std::string> rows_of(const Result& result, bool holes) {
+std::vector<std::string> rows_of(const DayResult& result, bool holes) {
     std::vector<std::string> rows;
     for (std::size_t i = 0; i < result.days.size(); ++i)
         rows.push_back(row_of(result, i, holes));
     return rows;
 }
 
-std::string csv_of(const Result& result) {
+std::string csv_of(const DayResult& result) {
     std::vector<std::string> remarks{result.definition, kTwilights};
     if (!result.light.empty()) {
         remarks.push_back(result.light_definition);
@@ -149,13 +149,13 @@ std::string csv_of(const Result& result) {
     }
     const bool holes = !result.doubt.holes.empty();
     if (holes) remarks.push_back(not_known_text(result.doubt, "direct sun"));
-    std::string text = csv_remarks(remarks) + columns_of(!result.light.empty(), holes) + "\n";
+    std::string text = csv_remarks(remarks) + day_columns(!result.light.empty(), holes) + "\n";
     for (const std::string& row : rows_of(result, holes))
         text += row + "\n";
     return text;
 }
 
-void print_seasons(const Result& result) {
+void print_seasons(const DayResult& result) {
     for (int year = result.asked.first.year; year <= result.asked.last.year; ++year) {
         const sun::Seasons s = sun::seasons(year);
         for (const auto& [name, utc] : {std::pair{"March equinox", s.march_equinox},
@@ -169,7 +169,7 @@ void print_seasons(const Result& result) {
     }
 }
 
-void print_head(const Result& result) {
+void print_head(const DayResult& result) {
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
                result.place.height_m);
     if (result.asked.single)
@@ -180,14 +180,14 @@ void print_head(const Result& result) {
                    sun::to_string(result.asked.last), result.asked.zone.name());
 }
 
-void print_definitions(const Result& result) {
+void print_definitions(const DayResult& result) {
     fmt::print("\n{}\n{}\n", result.definition, kTwilights);
     if (!result.light.empty())
         fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
     if (!result.doubt.holes.empty()) fmt::print("{}\n", not_known_text(result.doubt, "direct sun"));
 }
 
-void print_day(const Result& result) {
+void print_day(const DayResult& result) {
     const sun::Day& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
@@ -214,7 +214,7 @@ void print_day(const Result& result) {
     print_definitions(result);
 }
 
-void print_days(const Result& result) {
+void print_days(const DayResult& result) {
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
     const bool lit = !result.light.empty();
@@ -245,7 +245,7 @@ void print_days(const Result& result) {
 }
 
 /// The days of a place without terrain.
-void add_days(const DayArguments& arguments, const geo::PlaceText& at, Result& result) {
+void add_days(const DayArguments& arguments, const geo::PlaceText& at, DayResult& result) {
     check_has_ground(at);
     result.place = at.place;
     sun::DayOptions options;
@@ -257,7 +257,7 @@ void add_days(const DayArguments& arguments, const geo::PlaceText& at, Result& r
 
 /// Those of a place with a horizon. @returns what its diagram is drawn from
 light::DirectLight add_lit_days(const DayArguments& arguments, const light::TerrainHorizon& horizon,
-                                Result& result) {
+                                DayResult& result) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     result.place = horizon.place();
     light::DirectLight direct(horizon, arguments.light.light(result.place, eye_height_m));
@@ -273,7 +273,7 @@ light::DirectLight add_lit_days(const DayArguments& arguments, const light::Terr
 }
 
 /// @param direct  null without a DEM
-chart::Drawing draw(const DayArguments& arguments, const Result& result,
+chart::Drawing draw(const DayArguments& arguments, const DayResult& result,
                     const light::DirectLight* direct) {
     chart::SunPathDiagram diagram;
     diagram.place = result.place;
@@ -294,7 +294,7 @@ chart::Drawing draw(const DayArguments& arguments, const Result& result,
 
 /// A place's days, and what its diagram is drawn from.
 struct PlaceDays {
-    Result result;
+    DayResult result;
     std::optional<light::TerrainHorizon> horizon;
     std::optional<light::DirectLight> direct;  // refers to horizon
 };
@@ -302,7 +302,7 @@ struct PlaceDays {
 DayForms forms_of(const DayArguments& arguments, const DaysArguments::Days& asked,
                   const geo::PlaceText& at, const dem::Posts* posts) {
     const auto days = std::make_shared<PlaceDays>();
-    Result& result = days->result;
+    DayResult& result = days->result;
     result.asked = asked;
     if (posts) {
         days->horizon.emplace(*posts, at.place,
@@ -324,10 +324,10 @@ DayForms forms_of(const DayArguments& arguments, const DaysArguments::Days& aske
             }};
 }
 
-void run(const DayArguments& arguments) {
+void run_day(const DayArguments& arguments) {
     run_days(
         arguments,
-        {.columns = [](bool terrain) { return columns_of(terrain, terrain); },
+        {.columns = [](bool terrain) { return day_columns(terrain, terrain); },
          .remarks = {kTwilights},
          .forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
                       const dem::Posts* posts) { return forms_of(arguments, asked, at, posts); }});
@@ -340,7 +340,7 @@ void add_sun_day(Verb sun_verb) {
     const Verb verb = sun_verb.add_verb(
         "day", "Sunrise, twilights, transit, day length; with a DEM also direct sun");
     arguments->add_to(verb, {"svg", "png", "csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_day(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -38,7 +38,7 @@ struct SeenEclipse {
     sun::Date date;  ///< local, of the greatest that is seen, or that only terrain hides
 };
 
-struct Result {
+struct EclipsesResult {
     geo::Geodetic place;
     DaysArguments::Days asked;
     std::string definition, light_definition, horizon_definition;
@@ -65,7 +65,7 @@ bool within(const std::vector<sun::TimeSpan>& spans, sun::Instant utc) {
 }
 
 /// "up", "down", "behind terrain" or, in a void of the DEM, "not known".
-std::string sun_is(const Result& result, const SeenEclipse& seen, sun::Instant utc) {
+std::string sun_is(const EclipsesResult& result, const SeenEclipse& seen, sun::Instant utc) {
     if (within(seen.not_known, utc)) return "not known";
     const bool lit = within(result.terrain ? seen.lit : seen.up, utc);
     if (lit) return "up";
@@ -83,7 +83,7 @@ double central_s(const sun::SolarEclipse& eclipse) {
     return eclipse.second && eclipse.third ? eclipse.third->utc - eclipse.second->utc : 0;
 }
 
-ordered_json moment_json(const Result& result, const SeenEclipse& seen,
+ordered_json moment_json(const EclipsesResult& result, const SeenEclipse& seen,
                          const sun::EclipseMoment& moment) {
     return {{"utc", utc_json(moment.utc)},
             {"local", sun::to_iso(moment.utc, result.asked.zone)},
@@ -94,7 +94,7 @@ ordered_json moment_json(const Result& result, const SeenEclipse& seen,
             {"sun", sun_is(result, seen, moment.utc)}};
 }
 
-ordered_json eclipse_json(const Result& result, const SeenEclipse& seen) {
+ordered_json eclipse_json(const EclipsesResult& result, const SeenEclipse& seen) {
     ordered_json json;
     const sun::SolarEclipse& eclipse = seen.eclipse;
     json["date"] = sun::to_string(seen.date);
@@ -114,7 +114,7 @@ ordered_json eclipse_json(const Result& result, const SeenEclipse& seen) {
     return json;
 }
 
-ordered_json json_of(const Result& result) {
+ordered_json json_of(const EclipsesResult& result) {
     ordered_json json;
     json["place"] = place_json(result.place);
     json["zone"] = result.asked.zone.name();
@@ -132,17 +132,17 @@ ordered_json json_of(const Result& result) {
     return json;
 }
 
-constexpr const char* kColumns =
+constexpr const char* kEclipseColumns =
     "date,kind,magnitude,obscuration,central_s,first_contact,second_contact,greatest,"
     "third_contact,last_contact,first_sun,greatest_sun,last_sun,greatest_elevation_deg,"
     "obscuration_seen";
 
 /// @param holes  what is not known for holes
-std::string columns_of(bool holes) {
-    return std::string(kColumns) + (holes ? ",not_known,not_known_h" : "");
+std::string eclipse_columns(bool holes) {
+    return std::string(kEclipseColumns) + (holes ? ",not_known,not_known_h" : "");
 }
 
-std::vector<std::string> rows_of(const Result& result, bool holes) {
+std::vector<std::string> rows_of(const EclipsesResult& result, bool holes) {
     std::vector<std::string> rows;
     const sun::Zone& zone = result.asked.zone;
     for (const SeenEclipse& seen : result.eclipses) {
@@ -166,7 +166,7 @@ std::vector<std::string> rows_of(const Result& result, bool holes) {
 }
 
 /// What the figures mean.
-std::vector<std::string> definitions_of(const Result& result) {
+std::vector<std::string> definitions_of(const EclipsesResult& result) {
     std::vector<std::string> definitions{kDefinition, result.definition};
     if (result.terrain) {
         definitions.push_back(result.light_definition);
@@ -177,15 +177,15 @@ std::vector<std::string> definitions_of(const Result& result) {
     return definitions;
 }
 
-std::string csv_of(const Result& result) {
+std::string csv_of(const EclipsesResult& result) {
     const bool holes = !result.doubt.holes.empty();
-    std::string text = csv_remarks(definitions_of(result)) + columns_of(holes) + "\n";
+    std::string text = csv_remarks(definitions_of(result)) + eclipse_columns(holes) + "\n";
     for (const std::string& row : rows_of(result, holes))
         text += row + "\n";
     return text;
 }
 
-void print_moment(const Result& result, const SeenEclipse& seen, std::string name,
+void print_moment(const EclipsesResult& result, const SeenEclipse& seen, std::string name,
                   const sun::EclipseMoment& moment) {
     std::ranges::replace(name, '_', ' ');
     const std::string state = sun_is(result, seen, moment.utc);
@@ -199,7 +199,7 @@ void print_moment(const Result& result, const SeenEclipse& seen, std::string nam
                                            : "  not known: a void of the DEM");
 }
 
-void print_text(const Result& result) {
+void print_text(const EclipsesResult& result) {
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
                result.place.height_m);
     fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
@@ -253,9 +253,9 @@ light::LightDay light_of(const sun::SolarEclipse& eclipse, const light::DirectLi
 }
 
 /// @param direct  null without a DEM
-Result result_of(const DayArguments& arguments, const DaysArguments::Days& asked,
-                 const geo::Geodetic& place, const light::DirectLight* direct) {
-    Result result;
+EclipsesResult result_of(const DayArguments& arguments, const DaysArguments::Days& asked,
+                         const geo::Geodetic& place, const light::DirectLight* direct) {
+    EclipsesResult result;
     result.place = place;
     result.asked = asked;
     result.terrain = direct != nullptr;
@@ -289,8 +289,8 @@ Result result_of(const DayArguments& arguments, const DaysArguments::Days& asked
     return result;
 }
 
-Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
-                 const geo::PlaceText& at, const dem::Posts* posts) {
+EclipsesResult eclipses_at(const DayArguments& arguments, const DaysArguments::Days& asked,
+                           const geo::PlaceText& at, const dem::Posts* posts) {
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     if (!posts) {
         check_has_ground(at);
@@ -302,17 +302,18 @@ Result result_at(const DayArguments& arguments, const DaysArguments::Days& asked
     return result_of(arguments, asked, horizon.place(), &direct);
 }
 
-void run(const DayArguments& arguments) {
+void run_eclipses(const DayArguments& arguments) {
     const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
                            const dem::Posts* posts) {
-        const auto result = std::make_shared<const Result>(result_at(arguments, asked, at, posts));
+        const auto result =
+            std::make_shared<const EclipsesResult>(eclipses_at(arguments, asked, at, posts));
         return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
                                   .json = [=] { return json_of(*result); },
                                   .doubt = result->doubt},
                         .csv = [=] { return csv_of(*result); },
                         .print = [=] { print_text(*result); }};
     };
-    run_days(arguments, {.columns = columns_of, .remarks = {kDefinition}, .forms = forms});
+    run_days(arguments, {.columns = eclipse_columns, .remarks = {kDefinition}, .forms = forms});
 }
 
 }  // namespace
@@ -324,7 +325,7 @@ void add_sun_eclipses(Verb sun_verb) {
         "Eclipses of the sun seen from a place: contacts, magnitude; with a DEM also "
         "whether terrain hides them");
     arguments->add_to(verb, {"csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_eclipses(*arguments); });
 }
 
 }  // namespace relevo::cli

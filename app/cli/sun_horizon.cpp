@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments : DayArguments {
+struct HorizonArguments : DayArguments {
     std::string format;
     std::optional<double> step_deg;
 };
@@ -62,7 +62,8 @@ std::string holes_text(const light::Doubt& doubt) {
         sectors_text(doubt.holes));
 }
 
-constexpr const char* kColumns = "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m";
+constexpr const char* kHorizonColumns =
+    "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m";
 
 std::vector<std::string> rows_of(const light::TerrainHorizon& horizon,
                                  const std::vector<light::HorizonPoint>& profile) {
@@ -87,7 +88,7 @@ std::string csv_of(const light::TerrainHorizon& horizon,
         fmt::format("eye at {}, {:.2f} m", geo::degrees_text(horizon.place()), horizon.eye_m()),
         horizon.description()};
     if (!doubt.holes.empty()) remarks.push_back(holes_text(doubt));
-    std::string text = csv_remarks(remarks) + kColumns + "\n";
+    std::string text = csv_remarks(remarks) + kHorizonColumns + "\n";
     for (const std::string& row : rows_of(horizon, profile))
         text += row + "\n";
     return text;
@@ -119,7 +120,8 @@ void print_text(const light::TerrainHorizon& horizon,
 }
 
 /// @param asked  the day or the year whose sun or moon the panorama shows
-chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArguments::Days>& asked,
+chart::Drawing draw(const HorizonArguments& arguments,
+                    const std::optional<DaysArguments::Days>& asked,
                     const light::TerrainHorizon& horizon,
                     const std::vector<light::HorizonPoint>& profile) {
     chart::HorizonPanorama panorama;
@@ -143,14 +145,14 @@ chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArgument
 }
 
 /// The form of the table: as --format says, else by the name's ending.
-std::string format_of(const Arguments& arguments) {
+std::string format_of(const HorizonArguments& arguments) {
     if (!arguments.format.empty()) return arguments.format;
     const std::string ending = arguments.output.ending();
     return ending == "hor" ? "pvsyst" : ending == "txt" ? "pvgis" : "csv";
 }
 
 /// How many directions are looked at. @throws Error (Usage) for a step that is no part of a turn
-int directions_of(const Arguments& arguments, const std::string& format) {
+int directions_of(const HorizonArguments& arguments, const std::string& format) {
     const double step_deg = arguments.step_deg.value_or(format == "csv"      ? 0.1
                                                         : format == "pvsyst" ? 3
                                                                              : 1);
@@ -162,7 +164,7 @@ int directions_of(const Arguments& arguments, const std::string& format) {
     return static_cast<int>(std::lround(directions));
 }
 
-void check_format(const Arguments& arguments, const std::string& format) {
+void check_format(const HorizonArguments& arguments, const std::string& format) {
     const OutputArguments& output = arguments.output;
     if (!arguments.format.empty() &&
         (output.json || output.is_drawing() || output.ending() == "json"))
@@ -173,7 +175,7 @@ void check_format(const Arguments& arguments, const std::string& format) {
         bad_usage(fmt::format("--points: a file for {} is of one place; pass --at", format));
 }
 
-[[noreturn]] void refuse_days(const Arguments& arguments) {
+[[noreturn]] void refuse_days(const HorizonArguments& arguments) {
     bad_usage(
         fmt::format("--date and --year: only a panorama shows the {}; pass -o with a name that "
                     "ends in svg, png",
@@ -181,7 +183,7 @@ void check_format(const Arguments& arguments, const std::string& format) {
 }
 
 /// The day or the year whose sun a panorama shows, or the day whose moon.
-std::optional<DaysArguments::Days> asked_of(const Arguments& arguments) {
+std::optional<DaysArguments::Days> asked_of(const HorizonArguments& arguments) {
     if (!arguments.days.given()) return std::nullopt;
     const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
     if (!asked.single && arguments.light.body == sun::Body::Moon)
@@ -194,18 +196,18 @@ std::optional<DaysArguments::Days> asked_of(const Arguments& arguments) {
     return asked;
 }
 
-void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const HorizonArguments& arguments, FilesInUse& files, OutputFile* file) {
     if (arguments.days.given()) refuse_days(arguments);
     const auto points = arguments.points.read(files, arguments.output);
     const int directions = directions_of(arguments, "csv");
     const dem::Posts posts = arguments.terrain.load();
-    struct Result {
+    struct HorizonResult {
         std::unique_ptr<const light::TerrainHorizon> horizon;
         std::vector<light::HorizonPoint> profile;
         light::Doubt doubt;
     };
     const auto forms = [&](const geo::PlaceText& at) {
-        const auto result = std::make_shared<Result>();
+        const auto result = std::make_shared<HorizonResult>();
         result->horizon = std::make_unique<light::TerrainHorizon>(
             posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
         result->profile = result->horizon->profile(directions);
@@ -217,14 +219,14 @@ void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file)
             .doubt = result->doubt};
     };
     deliver_points(arguments.points, points,
-                   {kColumns,
+                   {kHorizonColumns,
                     {"terrain horizon: apparent elevations; --json has the definition of "
                      "each point"},
                     forms},
                    arguments.output, file, false);
 }
 
-void run(const Arguments& arguments) {
+void run_horizon(const HorizonArguments& arguments) {
     OutputArguments output = arguments.output;
     const std::string format = format_of(arguments);
     check_format(arguments, format);
@@ -256,7 +258,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_horizon(Verb parent, sun::Body body) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<HorizonArguments>();
     arguments->light.body = body;
     const Verb verb = parent.add_verb(
         "horizon", fmt::format("Terrain horizon of a point; as a panorama also with the {}",
@@ -274,7 +276,7 @@ void add_horizon(Verb parent, sun::Body body) {
     arguments->light.add_to(verb);
     arguments->light.add_dip_to(verb);
     arguments->output.add_to(verb, {"csv", "json", "svg", "png", "hor", "txt"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_horizon(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -21,7 +21,7 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct HoursArguments {
     RasterArguments raster;
     DaysArguments days;
     RefractionArguments refraction;
@@ -53,7 +53,7 @@ std::string check_band(const std::string& band) {
 }
 
 /// What can be said before the DEM is read.
-void check(const Arguments& arguments) {
+void check(const HoursArguments& arguments) {
     const std::vector<std::string>& bands = arguments.bands;
     for (const std::string& path : arguments.raster.dem.paths)
         if (is_band(path) && !std::filesystem::exists(path))
@@ -112,7 +112,7 @@ struct Summary {
     }
 };
 
-light::SunHoursOptions options_of(const Arguments& arguments) {
+light::SunHoursOptions options_of(const HoursArguments& arguments) {
     light::SunHoursOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
@@ -142,7 +142,7 @@ void warn_of_beyond(RasterRun& raster, const dem::Posts& posts,
         light::kHides);
 }
 
-void run(const Arguments& arguments) {
+void run_hours(const HoursArguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
@@ -199,7 +199,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_sun_hours(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<HoursArguments>();
     const Verb verb = sun_verb.add_verb("hours", "Hours of direct sun of each post, as a raster");
     arguments->raster.add_to(verb);
     arguments->days.add_to(verb);
@@ -219,7 +219,7 @@ void add_sun_hours(Verb sun_verb) {
     verb.add_option("--albedo", arguments->albedo,
                     "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)")
         .check(in_range(0.0, 1.0));
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_hours(*arguments); });
 }
 
 }  // namespace relevo::cli

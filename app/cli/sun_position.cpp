@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct PositionArguments {
     sun::Body body = sun::Body::Sun;
     std::string at;
     PointsArguments points;
@@ -38,7 +38,7 @@ struct Figure {
     const char* csv;
 };
 
-struct Result {
+struct PositionResult {
     sun::Body body;
     geo::Geodetic place;
     sun::ParsedTime when;
@@ -59,9 +59,10 @@ std::vector<Figure> figures_of(const sun::MoonPosition& moon, sun::Instant utc) 
             {"age_d", sun::moon_age_d(utc), "{:.4f}"}};
 }
 
-Result result_of(const Arguments& arguments, const geo::PlaceText& at,
-                 const sun::ParsedTime& when) {
-    Result result{arguments.body, at.place, when, {}, arguments.refraction.at(at.place), 0, {}, {}};
+PositionResult result_of(const PositionArguments& arguments, const geo::PlaceText& at,
+                         const sun::ParsedTime& when) {
+    PositionResult result{
+        arguments.body, at.place, when, {}, arguments.refraction.at(at.place), 0, {}, {}};
     if (arguments.body == sun::Body::Sun) {
         const sun::Position sun = sun::position(when.utc, at.place);
         result.sky = sun;
@@ -77,13 +78,13 @@ Result result_of(const Arguments& arguments, const geo::PlaceText& at,
 }
 
 /// In the unit that the body's distance is usually given in.
-Figure distance_of(const Result& result) {
+Figure distance_of(const PositionResult& result) {
     constexpr double kAu_km = 149'597'870.7;
     if (result.body == sun::Body::Sun) return {"distance_au", result.sky.distance_au, "{:.9f}"};
     return {"distance_km", result.sky.distance_au * kAu_km, "{:.3f}"};
 }
 
-ordered_json json_of(const Result& result) {
+ordered_json json_of(const PositionResult& result) {
     const sun::SkyPosition& sky = result.sky;
     const Figure distance = distance_of(result);
     ordered_json json = {{"utc", sun::to_iso(result.when.utc, 3)},
@@ -102,7 +103,7 @@ ordered_json json_of(const Result& result) {
     return json;
 }
 
-std::string columns_of(sun::Body body) {
+std::string position_columns(sun::Body body) {
     constexpr const char* kColumns =
         "time,azimuth_deg,elevation_deg,apparent_elevation_deg,{},declination_deg,"
         "right_ascension_deg,semidiameter_deg,{}";
@@ -123,7 +124,7 @@ std::string definition_of(sun::Body body) {
            "the zenith to the left; libration is not modelled";
 }
 
-std::string row_of(const Result& result) {
+std::string row_of(const PositionResult& result) {
     const sun::SkyPosition& sky = result.sky;
     const Figure distance = distance_of(result);
     std::string row = fmt::format(
@@ -137,7 +138,7 @@ std::string row_of(const Result& result) {
     return result.phase.empty() ? row : row + "," + result.phase;
 }
 
-void print_text(const Result& result) {
+void print_text(const PositionResult& result) {
     const sun::SkyPosition& sky = result.sky;
     const double azimuth_deg = degrees(sky.azimuth_rad);
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
@@ -173,17 +174,17 @@ void check_height(const geo::PlaceText& at) {
         bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
 }
 
-void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFile* file) {
     const auto points = arguments.points.read(files, arguments.output);
     const scene::TimeSpec spec = arguments.time.spec();
     session::needs_dem(spec);  // reports invalid words before any work
     const bool zone_by_place = sun::is_zone_by_place(spec.zone) && !sun::is_solar_zone(spec.zone) &&
                                (sun::is_event_time(spec.at) || sun::is_wall_time(spec.at));
-    const PointsJob job{.columns = columns_of(arguments.body),
+    const PointsJob job{.columns = position_columns(arguments.body),
                         .remarks = {definition_of(arguments.body)},
                         .forms = [&](const geo::PlaceText& at) {
                             check_height(at);
-                            const auto result = std::make_shared<Result>(
+                            const auto result = std::make_shared<PositionResult>(
                                 result_of(arguments, at, session::parse_quietly(spec, {}, at)));
                             return PointForms{.rows = [=] { return std::vector{row_of(*result)}; },
                                               .json = [=] { return json_of(*result); },
@@ -192,19 +193,20 @@ void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file)
     deliver_points(arguments.points, points, job, arguments.output, file, zone_by_place);
 }
 
-void run(const Arguments& arguments) {
+void run_position(const PositionArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = arguments.output.open(files, {});
     if (arguments.points.given()) return run_points(arguments, files, file);
     const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
     check_height(at);
-    const Result result = result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
+    const PositionResult result =
+        result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
     arguments.output.deliver(
         {.drawing = {},
          .csv =
              [&] {
                  return csv_remarks({definition_of(result.body), result.air.description()}) +
-                        columns_of(result.body) + "\n" + row_of(result) + "\n";
+                        position_columns(result.body) + "\n" + row_of(result) + "\n";
              },
          .json = [&] { return json_of(result); },
          .print = [&] { print_text(result); }},
@@ -214,7 +216,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_position(Verb parent, sun::Body body) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<PositionArguments>();
     arguments->body = body;
     const Verb verb = parent.add_verb(
         "position", body == sun::Body::Sun ? "Position of the sun"
@@ -225,7 +227,7 @@ void add_position(Verb parent, sun::Body body) {
     verb.option("--time").required();
     arguments->refraction.add_to(verb, body);
     arguments->output.add_to(verb, {"csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_position(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -21,7 +21,7 @@ namespace {
 /// One band each, and each of them as large as the DEM.
 constexpr std::size_t kMostTimes = 10'000;
 
-struct Arguments {
+struct ShadowArguments {
     RasterArguments raster;
     TimeArguments time;
     std::string times;
@@ -67,15 +67,15 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
 }
 
 /// The sun at a time.
-Asked at_time(const Arguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
+Asked at_time(const ShadowArguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
     const session::SunOverMiddle over =
         session::sun_over_middle(posts, when.utc, arguments.refraction.name());
     return {over.sun, over.apparent_rad, std::move(when), {}};
 }
 
 /// The suns of a table of times. What is assumed and what is odd is said once.
-std::vector<Asked> at_times(const Arguments& arguments, const std::vector<dem::NamedTime>& times,
-                            const dem::Posts& posts) {
+std::vector<Asked> at_times(const ShadowArguments& arguments,
+                            const std::vector<dem::NamedTime>& times, const dem::Posts& posts) {
     const geo::Geodetic middle = posts.grid().center();
     const light::TerrainAccess terrain{.middle = [&] { return middle; },
                                        .posts = [&]() -> const dem::Posts& { return posts; }};
@@ -101,8 +101,8 @@ std::vector<Asked> at_times(const Arguments& arguments, const std::vector<dem::N
     return suns;
 }
 
-std::vector<Asked> all_suns(const Arguments& arguments, const std::vector<dem::NamedTime>& times,
-                            const dem::Posts& posts) {
+std::vector<Asked> all_suns(const ShadowArguments& arguments,
+                            const std::vector<dem::NamedTime>& times, const dem::Posts& posts) {
     if (!times.empty()) return at_times(arguments, times, posts);
     if (!arguments.sun.empty()) {
         const light::SunOverDem sun = parse_sun(arguments.sun, posts.grid());
@@ -166,7 +166,7 @@ void print_many(const std::vector<Asked>& suns, const std::vector<Counts>& count
     }
 }
 
-void check(const Arguments& arguments) {
+void check(const ShadowArguments& arguments) {
     const bool timed = !arguments.times.empty() || arguments.time.given();
     if (!arguments.times.empty() && !(arguments.time.time + arguments.time.date).empty())
         bad_usage("--times: excludes --time and --date; remove them");
@@ -226,7 +226,7 @@ bool light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
     return raster.make_all(maker_of);
 }
 
-void run(const Arguments& arguments) {
+void run_shadow(const ShadowArguments& arguments) {
     check(arguments);
     const bool timed = !arguments.times.empty();
     FilesInUse files;
@@ -276,7 +276,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_sun_shadow(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ShadowArguments>();
     const Verb verb =
         sun_verb.add_verb("shadow", "Shadow mask of a DEM at a given time, as a raster");
     arguments->raster.add_to(verb);
@@ -290,7 +290,7 @@ void add_sun_shadow(Verb sun_verb) {
     arguments->refraction.add_to(verb);
     verb.add_flag("--soft", arguments->soft,
                   "Visible fraction of the solar disc, 0 to 1, instead of a mask");
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_shadow(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -12,7 +12,7 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct SkyViewArguments {
     RasterArguments raster;
     int directions = session::kSkyDirections;
     bool level = false;
@@ -25,7 +25,7 @@ std::vector<double> azimuths_of(int directions) {
     return azimuth_rad;
 }
 
-void warn_of_beyond(RasterRun& raster, const Arguments& arguments, const dem::Posts& posts) {
+void warn_of_beyond(RasterRun& raster, const SkyViewArguments& arguments, const dem::Posts& posts) {
     raster.warn_of(
         [&](const dem::Window& window) {
             return light::terrain_beyond(posts, window, azimuths_of(arguments.directions),
@@ -35,7 +35,7 @@ void warn_of_beyond(RasterRun& raster, const Arguments& arguments, const dem::Po
         light::kStandsOver);
 }
 
-void run_sky_view(const Arguments& arguments) {
+void run_sky_view(const SkyViewArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
@@ -77,7 +77,7 @@ void run_sky_view(const Arguments& arguments) {
     fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
-void run_horizons(const Arguments& arguments) {
+void run_horizons(const SkyViewArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
@@ -124,8 +124,8 @@ void run_horizons(const Arguments& arguments) {
                arguments.directions, 360.0 / arguments.directions, definition);
 }
 
-std::shared_ptr<Arguments> add_directions(Verb verb, int least, int most) {
-    const auto arguments = std::make_shared<Arguments>();
+std::shared_ptr<SkyViewArguments> add_directions(Verb verb, int least, int most) {
+    const auto arguments = std::make_shared<SkyViewArguments>();
     arguments->raster.add_to(verb);
     verb.add_option("--directions", arguments->directions,
                     "Number of azimuths around each post (36)")

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct WhenArguments {
     TerrainArguments terrain;
     PlaceArguments place;
     PointsArguments points;
@@ -62,7 +62,7 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
     return json;
 }
 
-constexpr const char* kColumns =
+constexpr const char* kWhenColumns =
     "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible";
 
 constexpr const char* kDirections =
@@ -85,7 +85,7 @@ std::vector<std::string> rows_of(const light::Alignments& found, const sun::Zone
 }
 
 std::string csv_of(const light::Alignments& found, const sun::Zone& zone) {
-    std::string text = csv_remarks({target_text(found), found.definition}) + kColumns + "\n";
+    std::string text = csv_remarks({target_text(found), found.definition}) + kWhenColumns + "\n";
     for (const std::string& row : rows_of(found, zone))
         text += row + "\n";
     return text;
@@ -124,7 +124,7 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
 }
 
 /// The point that --over means.
-geo::Geodetic target_of(const Arguments& arguments, const dem::Posts& posts) {
+geo::Geodetic target_of(const WhenArguments& arguments, const dem::Posts& posts) {
     const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
     if (over.has_height && !over.above_ground) return over.place;
     geo::Geodetic target =
@@ -133,7 +133,7 @@ geo::Geodetic target_of(const Arguments& arguments, const dem::Posts& posts) {
     return target;
 }
 
-light::Alignments find(const Arguments& arguments, const light::TerrainHorizon& horizon,
+light::Alignments find(const WhenArguments& arguments, const light::TerrainHorizon& horizon,
                        const geo::Geodetic& target, const DaysArguments::Days& asked) {
     light::AlignmentOptions options;
     options.tolerance_rad = radians(arguments.tolerance_deg);
@@ -146,18 +146,18 @@ bool through_hole(const light::Alignments& found) {
            std::ranges::any_of(found.passages, [](const light::Alignment& p) { return p.hole; });
 }
 
-void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* file) {
     arguments.days.parse({}, false);  // what is wrong with them is said before any work
     const auto points = arguments.points.read(files, arguments.output);
     const dem::Posts posts = arguments.terrain.load();
     const geo::Geodetic target = target_of(arguments, posts);
-    struct Result {
+    struct WhenResult {
         std::unique_ptr<const light::TerrainHorizon> horizon;
         light::Alignments found;
         DaysArguments::Days asked;
     };
     const auto forms = [&](const geo::PlaceText& at) {
-        const auto result = std::make_shared<Result>();
+        const auto result = std::make_shared<WhenResult>();
         result->asked = arguments.days.parse(at.place, false);
         result->horizon = std::make_unique<light::TerrainHorizon>(
             posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
@@ -170,11 +170,11 @@ void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file)
             .json = [=] { return json_of(result->found, *result->horizon, result->asked); },
             .doubt = doubt};
     };
-    deliver_points(arguments.points, points, {kColumns, {kDirections}, forms}, arguments.output,
+    deliver_points(arguments.points, points, {kWhenColumns, {kDirections}, forms}, arguments.output,
                    file, sun::is_zone_by_place(arguments.days.zone));
 }
 
-void run(const Arguments& arguments) {
+void run_when(const WhenArguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
@@ -203,7 +203,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_sun_when(Verb sun_verb) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<WhenArguments>();
     const Verb verb =
         sun_verb.add_verb("when", "Times when the sun stands over a summit, seen from a place");
     arguments->terrain.add_to(verb);
@@ -221,7 +221,7 @@ void add_sun_when(Verb sun_verb) {
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
-    verb.callback([arguments] { run(*arguments); });
+    verb.callback([arguments] { run_when(*arguments); });
 }
 
 }  // namespace relevo::cli

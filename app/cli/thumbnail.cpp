@@ -13,7 +13,7 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct ThumbnailArguments {
     std::string dem, output;
     int size_px = 256;
 };
@@ -24,7 +24,7 @@ std::string path_of(std::string_view name) {
     return path ? percent_decoded(*path) : std::string(name);
 }
 
-void thumbnail(const Arguments& arguments) {
+void thumbnail(const ThumbnailArguments& arguments) {
     const std::string path = path_of(arguments.dem);
     FilesInUse files;
     files.add_input(path, "the DEM");
@@ -39,7 +39,7 @@ void thumbnail(const Arguments& arguments) {
 }  // namespace
 
 void add_thumbnail(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ThumbnailArguments>();
     const Verb verb = app.add_verb(
         "thumbnail", "Makes a small picture of a DEM for file managers, without a GL device");
     verb.add_option("DEM", arguments->dem, "Elevation raster, a name or a file:// address")

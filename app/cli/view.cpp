@@ -9,12 +9,12 @@
 namespace relevo::cli {
 namespace {
 
-struct Arguments {
+struct WindowArguments {
     SceneArguments scene;
     std::string device = "auto";
 };
 
-void view(Arguments arguments) {
+void view(WindowArguments arguments) {
     // A window has a zone to show times in, whatever the time.
     TimeArguments& time = arguments.scene.time;
     const std::string zone = time.time.empty() ? std::exchange(time.zone, {}) : std::string();
@@ -27,7 +27,7 @@ void view(Arguments arguments) {
 }  // namespace
 
 void add_view(Verb app) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<WindowArguments>();
     const Verb verb = app.add_verb("view", "Opens a window on a DEM (default: the bundled DEM)");
     arguments->scene.add_to(verb);
     arguments->scene.dem.dem_option.required(false);

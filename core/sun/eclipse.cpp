@@ -18,9 +18,9 @@
 namespace relevo::sun {
 namespace {
 
-constexpr double kEarthRadius_m = 6'378'137;  // equatorial, which k counts in
-constexpr double kPenumbralMoon_m = 0.2725076 * kEarthRadius_m;
-constexpr double kUmbralMoon_m = 0.2722810 * kEarthRadius_m;
+constexpr double kEquatorRadius_m = 6'378'137;  // equatorial, which k counts in
+constexpr double kPenumbralMoon_m = 0.2725076 * kEquatorRadius_m;
+constexpr double kUmbralMoon_m = 0.2722810 * kEquatorRadius_m;
 const double kSun_au = std::sin(959.63 * kArcsecond_rad);
 
 constexpr double kSynodicMonth_s = 29.530588861 * kDay_s;

@@ -9,7 +9,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_author_mistakes {
 namespace {
 
 using ::testing::ElementsAre;
@@ -205,4 +205,4 @@ TEST_F(AuthorMistakes, OfComputePassesEachIsNamed) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_author_mistakes

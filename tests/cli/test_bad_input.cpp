@@ -9,7 +9,7 @@
 #include "dem/fixture.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_bad_input {
 namespace {
 
 std::filesystem::path dir() {
@@ -250,4 +250,4 @@ TEST(BadUsage, EachHasItsMessage) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_bad_input

@@ -7,7 +7,7 @@
 #include "cli/command_line.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_command_line {
 namespace {
 
 /// What the program says of a line, without running a verb: lines of tests do not come so far.
@@ -124,4 +124,4 @@ TEST(CommandLine, WordsInTheWrongPlaceAreToldApartFromMisspeltOnes) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_command_line

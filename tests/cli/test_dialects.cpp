@@ -10,7 +10,7 @@
 
 // The same ground, written in several ways, is the same picture.
 
-namespace relevo::test {
+namespace relevo::test::test_dialects {
 namespace {
 
 constexpr int kPosts = 97;
@@ -188,4 +188,4 @@ TEST_F(DialectPicture, MapsOfTheWorldShowTheirGround) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_dialects

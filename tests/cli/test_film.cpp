@@ -15,7 +15,7 @@
 #include "film/decoded_film.h"
 #include "image/image.h"
 
-namespace relevo::test {
+namespace relevo::test::test_film {
 namespace {
 
 namespace fs = std::filesystem;
@@ -320,4 +320,4 @@ TEST_F(FilmVerb, MistakesSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_film

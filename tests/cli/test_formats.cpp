@@ -13,7 +13,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_formats {
 namespace {
 
 using testing::HasSubstr;
@@ -147,4 +147,4 @@ TEST_F(Formats, BadWishesAreOneError) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_formats

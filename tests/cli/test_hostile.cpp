@@ -12,7 +12,7 @@
 #include "dem/fixture.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_hostile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,4 +160,4 @@ TEST_F(Pipes, ADriverThatLacksMemoryEndsWithAMessage) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_hostile

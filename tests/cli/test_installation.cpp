@@ -4,7 +4,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_installation {
 namespace {
 
 TEST(Installation, TakesTheSamePictureFromWhereverItLies) {
@@ -36,4 +36,4 @@ TEST(Installation, TakesTheSamePictureFromWhereverItLies) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_installation

@@ -14,7 +14,7 @@
 #include "support/support.h"
 
 /// What a picture takes of memory, and what is kept on disk of a large DEM.
-namespace relevo::test {
+namespace relevo::test::test_memory {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ TEST_F(LargeDem, ACachedDemGivesTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_memory

@@ -10,7 +10,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_moon_verbs {
 namespace {
 
 using nlohmann::json;
@@ -219,4 +219,4 @@ TEST(SunEclipsesVerb, TakesTheDaysOfAnyZone) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_moon_verbs

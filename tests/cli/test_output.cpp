@@ -18,7 +18,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_output {
 namespace {
 
 using namespace std::chrono_literals;
@@ -432,4 +432,4 @@ TEST_F(Output, WithoutAWorkingFolderIsAnErrorThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_output

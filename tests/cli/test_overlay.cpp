@@ -7,7 +7,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_overlay {
 namespace {
 
 /// Pictures of the bundled DEM from straight above, with a raster on it.
@@ -266,4 +266,4 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_overlay

@@ -14,7 +14,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_plugin_tools {
 namespace {
 
 using ::testing::HasSubstr;
@@ -261,4 +261,4 @@ TEST_F(PluginTools, SeveralValuesOfOneSetAreExplained) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_plugin_tools

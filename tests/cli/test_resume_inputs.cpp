@@ -12,7 +12,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_resume_inputs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,4 +63,4 @@ TEST_F(ResumeInputs, APictureOfADemThatChangedIsNotKept) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_resume_inputs

@@ -13,7 +13,7 @@
 #include "scene/options.h"
 #include "support/support.h"
 
-namespace relevo::cli {
+namespace relevo::cli::test_scene_options {
 namespace {
 
 using nlohmann::ordered_json;
@@ -167,4 +167,4 @@ TEST(SceneOptions, AreThoseOfTheSchemas) {
 }
 
 }  // namespace
-}  // namespace relevo::cli
+}  // namespace relevo::cli::test_scene_options

@@ -5,7 +5,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_arguments {
 namespace {
 
 std::string out(const std::string& name) {
@@ -84,4 +84,4 @@ TEST(SunArguments, BandsAreSeparatedByCommas) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_arguments

@@ -15,7 +15,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_killed {
 namespace {
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
@@ -91,4 +91,4 @@ TEST(SunHours, KilledAtAnyMomentAreWholeOrNotThere) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_killed

@@ -8,7 +8,7 @@
 #include "cli/program.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_points {
 namespace {
 
 using nlohmann::json;
@@ -251,4 +251,4 @@ TEST(SunHorizonFormats, GoIntoFilesByTheirEnding) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_points

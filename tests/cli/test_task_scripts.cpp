@@ -11,7 +11,7 @@
 #include "cli/task_scripts.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_task_scripts {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST_F(PlanOfAJob, TasksMakeThePicturesAndTheMergeNamesMissingOnes) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_task_scripts

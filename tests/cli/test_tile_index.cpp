@@ -12,7 +12,7 @@
 #include "dem/index_fixture.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_tile_index {
 namespace {
 
 using testing::HasSubstr;
@@ -191,4 +191,4 @@ TEST(TileIndexVerb, AResultDoesNotReplaceATile) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_tile_index

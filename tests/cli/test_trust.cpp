@@ -21,7 +21,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_trust {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ TEST_F(Trust, TheCommandLineAsksTheNet) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_trust

@@ -11,7 +11,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_weather {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST_F(Weather, RastersThatAreNoCloudsAreRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_weather

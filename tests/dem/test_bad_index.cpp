@@ -12,7 +12,7 @@
 #include "dem/source.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_bad_index {
 namespace {
 
 using test::error_of;
@@ -99,4 +99,4 @@ TEST(BadIndex, LongitudesOfAnotherTurnAreTheSamePlace) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_bad_index

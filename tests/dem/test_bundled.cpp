@@ -7,7 +7,7 @@
 // The DEMs that the project ships (data/README.md) are where they say they are, the right way
 // round.
 
-namespace relevo::dem {
+namespace relevo::dem::test_bundled {
 namespace {
 
 Heightfield bundled(const char* name) {
@@ -116,4 +116,4 @@ TEST(Bundled, VancouverIslandHasTheSeaAroundIt) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_bundled

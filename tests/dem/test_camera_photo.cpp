@@ -15,7 +15,7 @@
 #include "dem/gdal_support.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_camera_photo {
 namespace {
 
 /// A field of Exif: text (type 2), a short (3), rationals (5) in millionths.
@@ -151,4 +151,4 @@ TEST(CameraPhoto, WhatCannotBeIsMissing) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_camera_photo

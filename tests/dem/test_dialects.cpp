@@ -13,7 +13,7 @@
 
 // One small file for every dialect, written here, so that all of it runs anywhere.
 
-namespace relevo::dem {
+namespace relevo::dem::test_dialects {
 namespace {
 
 using test::add_overviews;
@@ -414,4 +414,4 @@ TEST(Dialect, BoundsReplaceTheGeoreference) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_dialects

@@ -5,7 +5,7 @@
 #include "dem/encoding.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_encoding {
 namespace {
 
 // docs.mapbox.com, "Access elevation data": height = -10000 + ((R * 256 * 256 + G * 256 + B) *
@@ -62,4 +62,4 @@ TEST(PlausibleEncoding, TellsHeightsFromPhotographs) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_encoding

@@ -6,7 +6,7 @@
 #include "dem/fill_holes.h"
 #include "dem/grid.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_fill_holes {
 namespace {
 
 constexpr int kColumns = 40, kRows = 30;
@@ -46,4 +46,4 @@ TEST(FillHoles, AVoidThatReachesAnEdgeIsCutOut) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_fill_holes

@@ -9,7 +9,7 @@
 #include "dem/load.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_folder {
 namespace {
 
 using test::Raster;
@@ -169,4 +169,4 @@ TEST(Folder, PipesInItAreNotWaitedFor) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_folder

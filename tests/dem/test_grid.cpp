@@ -6,7 +6,7 @@
 #include "dem/grid.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_grid {
 namespace {
 
 constexpr double kEquatorialRadius_m = 6378137;     // WGS 84, NIMA TR8350.2, table 3.1
@@ -162,4 +162,4 @@ TEST(Grid, CoarserPartHasItsPostsInTheMiddleOfItsCells) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_grid

@@ -4,7 +4,7 @@
 #include "dem/heightfield.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_heightfield {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
@@ -81,4 +81,4 @@ TEST(Heightfield, PlaceOfAPostHasItsHeight) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_heightfield

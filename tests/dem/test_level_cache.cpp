@@ -14,7 +14,7 @@
 #include "fixture.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_level_cache {
 namespace {
 
 namespace fs = std::filesystem;
@@ -306,4 +306,4 @@ TEST(LevelCache, WhatIsNoFileOfThisMachineIsNotCached) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_level_cache

@@ -14,7 +14,7 @@
 #include "dem/lines.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_lines {
 namespace {
 
 using test::error_of;
@@ -183,4 +183,4 @@ TEST(LinesOfFiles, ThatCannotBeReadSayWhy) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_lines

@@ -5,7 +5,7 @@
 #include "dem/nodata.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_nodata {
 namespace {
 
 /// Heights from `low` to `high` in steps of one, and `mark` ten times.
@@ -60,4 +60,4 @@ TEST(FindUndeclared, AFewHeightsMakeNoRule) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_nodata

@@ -4,7 +4,7 @@
 #include "dem/placement.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_placement {
 namespace {
 
 TEST(Bounds, AreWestSouthEastNorth) {
@@ -89,4 +89,4 @@ TEST(WebTile, LiesWhereWebMapsHaveIt) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_placement

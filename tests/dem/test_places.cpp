@@ -7,7 +7,7 @@
 #include "dem/places.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_places {
 namespace {
 
 using test::error_of;
@@ -430,4 +430,4 @@ TEST(Places, MoreThanAMillionAreRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_places

@@ -13,7 +13,7 @@
 #include "dem/tile_cache.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_posts {
 namespace {
 
 using test::error_of;
@@ -287,4 +287,4 @@ TEST(TileCache, KeepsNoMoreThanItIsAllowed) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_posts

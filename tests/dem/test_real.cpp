@@ -10,7 +10,7 @@
 #include "dem/load.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_real {
 namespace {
 
 /// What dem/INDEX.md of the outside test data says of a file.
@@ -353,4 +353,4 @@ TEST(RealDem, SaysWhatItAssumed) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_real

@@ -8,7 +8,7 @@
 #include "dem/sample.h"
 #include "fixture.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_sample {
 namespace {
 
 using test::folder;
@@ -80,4 +80,4 @@ INSTANTIATE_TEST_SUITE_P(Layouts, Sample,
                                                 0.01}));
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_sample

@@ -4,7 +4,7 @@
 #include "dem/spikes.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_spikes {
 namespace {
 
 Array2d<float> slope() {
@@ -66,4 +66,4 @@ TEST(FindFrame, IsOneHeightAroundGroundThatIsNotItsOwn) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_spikes

@@ -8,7 +8,7 @@
 #include "dem/summary.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_summary {
 namespace {
 
 Summary of(const char* name, const test::Raster& raster) {
@@ -151,4 +151,4 @@ TEST(Summary, TextForPeople) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_summary

@@ -2,7 +2,7 @@
 #include "dem/unit.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_unit {
 namespace {
 
 TEST(Unit, WordsOfFilesAndPeople) {
@@ -53,4 +53,4 @@ TEST(Unit, ErrorsNameTheUnits) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_unit

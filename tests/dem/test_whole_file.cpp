@@ -4,7 +4,7 @@
 #include "dem/whole_file.h"
 #include "support/support.h"
 
-namespace relevo::dem {
+namespace relevo::dem::test_whole_file {
 namespace {
 
 using test::folder;
@@ -120,4 +120,4 @@ TEST(ClassicNetcdf, CutOrSpoiledHeadersDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace relevo::dem
+}  // namespace relevo::dem::test_whole_file

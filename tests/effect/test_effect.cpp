@@ -7,7 +7,7 @@
 #include "effect/effect.h"
 #include "effect/plugins.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_effect {
 namespace {
 
 using relevo::test::error_of;
@@ -256,4 +256,4 @@ TEST(Effect, AnotherPluginsTextureNeedsNoEntry) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_effect

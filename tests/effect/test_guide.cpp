@@ -6,7 +6,7 @@
 #include "effect/plugins.h"
 #include "shader/stitch.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_guide {
 namespace {
 
 using ::testing::HasSubstr;
@@ -190,4 +190,4 @@ TEST(PluginGuide, HasEveryAnnotation) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_guide

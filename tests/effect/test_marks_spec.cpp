@@ -7,7 +7,7 @@
 #include "effect/plugins.h"
 #include "effect/registry.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_marks_spec {
 namespace {
 
 const std::string kGlsl =
@@ -88,4 +88,4 @@ TEST(MarksSpec, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_marks_spec

@@ -13,7 +13,7 @@
 #include "effect/native_module.h"
 #include "effect/plugins.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_module_trial {
 namespace {
 
 std::filesystem::path faulty() {
@@ -169,4 +169,4 @@ TEST(ModuleCall, TheHostsTimeIsNotTheModules) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_module_trial

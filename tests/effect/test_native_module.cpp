@@ -9,7 +9,7 @@
 #include "effect/loaded_selection.h"
 #include "effect/plugins.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_native_module {
 namespace {
 
 using ::testing::ElementsAre;
@@ -171,4 +171,4 @@ TEST(NativeModule, OneThatIsOffIsNotTried) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_native_module

@@ -7,7 +7,7 @@
 #include "effect/plugins.h"
 #include "json/value.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_plugin_schema {
 namespace {
 
 using relevo::test::error_of;
@@ -94,4 +94,4 @@ TEST(PluginSchema, HasTheLoadersKeys) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_plugin_schema

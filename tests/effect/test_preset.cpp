@@ -6,7 +6,7 @@
 #include "effect/plugins.h"
 #include "effect/preset.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_preset {
 namespace {
 
 using relevo::test::error_of;
@@ -135,4 +135,4 @@ TEST(PresetErrors, AMissingFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_preset

@@ -6,7 +6,7 @@
 #include "effect/plugins.h"
 #include "effect/search_path.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_search_path {
 namespace {
 
 using relevo::test::error_of;
@@ -105,4 +105,4 @@ TEST(UnmetRequirement, OfANamedEffectIsRefusedWithItsProviders) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_search_path

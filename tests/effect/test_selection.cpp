@@ -5,7 +5,7 @@
 #include "effect/selection.h"
 #include "shader/stitch.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_selection {
 namespace {
 
 using relevo::test::error_of;
@@ -582,4 +582,4 @@ TEST_F(Settings, ErrorsNameParameterAndPlace) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_selection

@@ -9,7 +9,7 @@
 #include "effect/plugins.h"
 #include "effect/table_files.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_table_files {
 namespace {
 
 using relevo::test::error_of;
@@ -143,4 +143,4 @@ TEST_F(TableFiles, APluginHasThemByFileOrByText) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_table_files

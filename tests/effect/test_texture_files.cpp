@@ -11,7 +11,7 @@
 #include "effect/plugins.h"
 #include "image/image.h"
 
-namespace relevo::effect::test {
+namespace relevo::effect::test::test_texture_files {
 namespace {
 
 using image::TextureData;
@@ -196,4 +196,4 @@ TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace relevo::effect::test
+}  // namespace relevo::effect::test::test_texture_files

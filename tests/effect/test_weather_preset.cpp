@@ -2,7 +2,7 @@
 #include "effect/weather_preset.h"
 
 // What plugins take from the weather, and parameters that must rise.
-namespace relevo::effect {
+namespace relevo::effect::test_weather_preset {
 namespace {
 
 using relevo::test::error_of;
@@ -88,4 +88,4 @@ TEST_F(WeatherPreset, ParametersThatMustRiseAreChecked) {
 }
 
 }  // namespace
-}  // namespace relevo::effect
+}  // namespace relevo::effect::test_weather_preset

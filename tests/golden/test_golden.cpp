@@ -12,7 +12,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_golden {
 namespace {
 
 /// A picture that is kept, and how it is taken.
@@ -147,4 +147,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GoldenOverVulkan, testing::ValuesIn(read_scenes
                          [](const auto& scene) { return scene.param.name; });
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_golden

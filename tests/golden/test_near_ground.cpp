@@ -11,7 +11,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_near_ground {
 namespace {
 
 TEST(NearGround, ChangesWithoutStepsFromPixelToPixel) {
@@ -129,4 +129,4 @@ TEST(NearGround, OverviewsAndMapsOfFiguresHaveNoInventedRelief) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_near_ground

@@ -10,7 +10,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_not_numbers {
 namespace {
 
 class NotNumbers : public testing::Test {
@@ -139,4 +139,4 @@ TEST_F(NotNumbers, OfTheSkyAreSeenToo) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_not_numbers

@@ -24,7 +24,7 @@
 // Mesa forgives what other drivers refuse; Khronos' own compiler forgives nothing. No device is
 // needed: programs are stitched here as a renderer would.
 
-namespace relevo::test {
+namespace relevo::test::test_reference_compiler {
 namespace {
 
 using Ids = std::vector<std::string>;
@@ -344,4 +344,4 @@ TEST(ReferenceCompiler, SeesADiscardInTheGeometryOfSoftwareDevicesAlone) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_reference_compiler

@@ -5,7 +5,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sea {
 namespace {
 
 TEST(SeaPicture, HasNoShadowsOfItsFloorAtNoon) {
@@ -61,4 +61,4 @@ TEST(SeaPicture, IsLevelAndInTheSamePlacesWithVertexNormals) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sea

@@ -9,7 +9,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_stars {
 namespace {
 
 constexpr double kLat_deg = 36.44, kLon_deg = -84.41, kHeight_m = 3000;
@@ -152,4 +152,4 @@ TEST(Stars, ShedAsMuchLightAsTheirMagnitudeSays) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_stars

@@ -9,7 +9,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_sun_disc {
 namespace {
 
 struct Sun {
@@ -72,4 +72,4 @@ TEST(SunDisc, IsWhereTheSunIsAndOfItsSize) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_sun_disc

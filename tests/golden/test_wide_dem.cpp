@@ -12,7 +12,7 @@
 #include "image/image.h"
 #include "support/support.h"
 
-namespace relevo::test {
+namespace relevo::test::test_wide_dem {
 namespace {
 
 /// Flat ground around 46 N, 10 E, seen from 2 km above its middle by a low sun.
@@ -48,4 +48,4 @@ TEST(WideDem, HasTheLightOfASmallOne) {
 }
 
 }  // namespace
-}  // namespace relevo::test
+}  // namespace relevo::test::test_wide_dem

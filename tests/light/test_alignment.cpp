@@ -7,7 +7,7 @@
 #include "sun/position.h"
 #include "sun/position_table.h"
 
-namespace relevo::light {
+namespace relevo::light::test_alignment {
 namespace {
 
 using sun::Date;
@@ -192,4 +192,4 @@ TEST(Alignments, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_alignment

@@ -8,7 +8,7 @@
 #include "light/raster/beyond.h"
 #include "sun/zone.h"
 
-namespace relevo::light {
+namespace relevo::light::test_beyond {
 namespace {
 
 // 201 x 201 posts 10 m apart: 2 km of a plain at 100 m, and a tower of 400 m in the middle.
@@ -125,4 +125,4 @@ TEST(TerrainBeyond, SunsOfATimeStandForIt) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_beyond

@@ -5,7 +5,7 @@
 #include "light/point/carpet.h"
 #include "sun/position.h"
 
-namespace relevo::light {
+namespace relevo::light::test_carpet {
 namespace {
 
 using sun::Zone;
@@ -120,4 +120,4 @@ TEST(Carpet, TwilightLastsAllDayAroundThePolarNight) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_carpet

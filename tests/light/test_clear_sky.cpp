@@ -12,7 +12,7 @@
 #include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_clear_sky {
 namespace {
 
 /// What r.sun takes for the sun of a day: its distance and its declination.
@@ -196,4 +196,4 @@ TEST(ClearSky, LightOfTheSkyAndOfTheGroundGoByTheSkyView) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_clear_sky

@@ -9,7 +9,7 @@
 #include "sun/position.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_clearance {
 namespace {
 
 const dem::Posts& posts() {
@@ -103,4 +103,4 @@ TEST(Clearances, TheQuickShareOfADiscIsWithinTwoThousandths) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_clearance

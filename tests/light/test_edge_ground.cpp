@@ -16,7 +16,7 @@
 #include "sun/time.h"
 #include "sun/zone.h"
 
-namespace relevo::light {
+namespace relevo::light::test_edge_ground {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -198,4 +198,4 @@ TEST(EdgeGround, SunFromBelowTheLevelHorizonIsSaid) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_edge_ground

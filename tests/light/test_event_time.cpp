@@ -5,7 +5,7 @@
 #include "light/point/direct_light.h"
 #include "light/point/event_time.h"
 
-namespace relevo::light {
+namespace relevo::light::test_event_time {
 namespace {
 
 using test::error_of;
@@ -148,4 +148,4 @@ TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_event_time

@@ -7,7 +7,7 @@
 #include "light/point/direct_light.h"
 #include "light/point/ground_at.h"
 
-namespace relevo::light {
+namespace relevo::light::test_few_posts {
 namespace {
 
 using test::Raster;
@@ -127,4 +127,4 @@ TEST(LightOfFewPosts, AViewpointInAHoleIsToldOfTheSamePost) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_few_posts

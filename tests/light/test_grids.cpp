@@ -19,7 +19,7 @@
 #include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_grids {
 namespace {
 
 /// In degrees from west to east and north to south, `step_m` apart both ways in the middle.
@@ -327,4 +327,4 @@ TEST(Grids, HaveTheShadowsOfTheirLastHalfRow) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_grids

@@ -18,7 +18,7 @@
 #include "light/sweep/sweep.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_horizons {
 namespace {
 
 constexpr double kSphere_m = 6'371'000;
@@ -367,4 +367,4 @@ TEST(QuickMath, ArcTangent) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_horizons

@@ -13,7 +13,7 @@
 #include "light/raster/shadows.h"
 #include "light/raster/sun_hours.h"
 
-namespace relevo::light {
+namespace relevo::light::test_nested {
 namespace {
 
 /// A site in the middle of hills whose shadows cross its border; they on a coarse grid, and all of
@@ -274,4 +274,4 @@ TEST(Nested, ADemThatDoesNotContainTheSiteIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_nested

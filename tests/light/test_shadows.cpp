@@ -14,7 +14,7 @@
 #include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_shadows {
 namespace {
 
 ShadowOptions with_air() {
@@ -347,4 +347,4 @@ TEST(Shadows, TerrestrialRefractionBendsTheRays) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_shadows

@@ -5,7 +5,7 @@
 #include "light/point/skyline.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::light::test_skyline {
 namespace {
 
 TEST(Skyline, RangesAreThoseOfEveryEntryInThem) {
@@ -45,4 +45,4 @@ TEST(Skyline, IsLinearBetweenEntries) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_skyline

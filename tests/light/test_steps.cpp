@@ -10,7 +10,7 @@
 #include "light/hills.h"
 #include "light/raster/sun_hours.h"
 
-namespace relevo::light {
+namespace relevo::light::test_steps {
 namespace {
 
 TEST(Steps, ThatAreLongLoseNoLightAtDawnAndDusk) {
@@ -84,4 +84,4 @@ TEST(Steps, ThatAreShortComeToOneResult) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_steps

@@ -20,7 +20,7 @@
 #include "light/sweep/kernels.h"
 #include "light/sweep/sweep.h"
 
-namespace relevo::light {
+namespace relevo::light::test_sweep_bits {
 namespace {
 
 // No whole number of vectors.
@@ -148,4 +148,4 @@ TEST(SweepBits, AreTheSameOnEveryProcessor) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_sweep_bits

@@ -8,7 +8,7 @@
 #include "light/point/light_along.h"
 #include "sun/position.h"
 
-namespace relevo::light {
+namespace relevo::light::test_walk {
 namespace {
 
 using sun::Instant;
@@ -322,4 +322,4 @@ TEST(Walk, MoreLooksThanAMillionAreRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::light::test_walk

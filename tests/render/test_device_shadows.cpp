@@ -21,7 +21,7 @@
 #include "sun/zone.h"
 #include "support/device.h"
 
-namespace relevo::render {
+namespace relevo::render::test_device_shadows {
 namespace {
 
 using light::Clearances;
@@ -292,4 +292,4 @@ TEST(DeviceShadows, AreLeftToTheProcessorOnASoftwareDevice) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_device_shadows

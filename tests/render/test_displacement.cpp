@@ -7,7 +7,7 @@
 #include "light/fields.h"
 #include "render/displacement.h"
 
-namespace relevo::render {
+namespace relevo::render::test_displacement {
 namespace {
 
 using test::Drawn;
@@ -204,4 +204,4 @@ TEST(Ground, BelowSeaLevelIsDrawn) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_displacement

@@ -9,7 +9,7 @@
 #include "render/effect_textures.h"
 #include "support/device.h"
 
-namespace relevo::render {
+namespace relevo::render::test_effect_textures {
 namespace {
 
 /// The red of a texture a quarter of its side beyond its right edge.
@@ -62,4 +62,4 @@ TEST(EffectTextures, RepeatOrEndAsTheManifestSays) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_effect_textures

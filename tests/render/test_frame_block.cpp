@@ -13,7 +13,7 @@
 #include "sun/refraction.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_frame_block {
 namespace {
 
 scene::Camera camera_at(const glm::dvec3& eye_m) {
@@ -250,4 +250,4 @@ TEST(FrameBlock, RefractionFallsWithTheHeightOfTheEye) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_frame_block

@@ -11,7 +11,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_frame_runner {
 namespace {
 
 Resource kept(const std::string& name, double share) {
@@ -186,4 +186,4 @@ TEST_F(FrameRunnerTest, ASizeThatTheDeviceRefusesLeavesTheOldOne) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_frame_runner

@@ -13,7 +13,7 @@
 #include "render/graph/plan.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_graph {
 namespace {
 
 Pass pass(const std::string& name, std::vector<std::string> reads, std::vector<std::string> writes,
@@ -414,4 +414,4 @@ TEST(CorePasses, AreShownWithTheirOrderAndMemory) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_graph

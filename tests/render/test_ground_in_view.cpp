@@ -6,7 +6,7 @@
 #include "drawn.h"
 #include "render/ground_in_view.h"
 
-namespace relevo::render {
+namespace relevo::render::test_ground_in_view {
 namespace {
 
 /// Paints ground in a colour that no sky has.
@@ -88,4 +88,4 @@ TEST(GroundInView, IsFoundWhereverItIsDrawnAndSeldomElsewhere) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_ground_in_view

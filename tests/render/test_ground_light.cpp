@@ -6,7 +6,7 @@
 #include "light/fields.h"
 #include "render/ground_light.h"
 
-namespace relevo::render {
+namespace relevo::render::test_ground_light {
 namespace {
 
 using test::Drawn;
@@ -120,4 +120,4 @@ TEST(GroundLight, IsThereWhereTheFirstPictureIsOfTheSky) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_ground_light

@@ -11,7 +11,7 @@
 #include "render/instance_blocks.h"
 #include "render/instance_sites.h"
 
-namespace relevo::render {
+namespace relevo::render::test_instances {
 namespace {
 
 using test::Drawn;
@@ -147,4 +147,4 @@ TEST(Instances, SitesThatAreTooCloseAreBoundedByTheRange) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_instances

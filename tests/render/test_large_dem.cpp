@@ -8,7 +8,7 @@
 #include "drawn.h"
 #include "light/fields.h"
 
-namespace relevo::render {
+namespace relevo::render::test_large_dem {
 namespace {
 
 using test::Drawn;
@@ -58,4 +58,4 @@ TEST(LargeDem, PixelsKnowTheirPostToAHundredth) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_large_dem

@@ -14,7 +14,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_lighting {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 512;
@@ -187,4 +187,4 @@ TEST(Picture, NorthIsUpAndEastIsRight) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_lighting

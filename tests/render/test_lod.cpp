@@ -17,7 +17,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_lod {
 namespace {
 
 /// Frames of one DEM in plain grey, the sky in a colour that no ground has.
@@ -323,4 +323,4 @@ TEST(TileTree, ExaggeratedGroundIsDrawnFineFromFartherAway) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_lod

@@ -9,7 +9,7 @@
 #include "drawn.h"
 #include "light/fields.h"
 
-namespace relevo::render {
+namespace relevo::render::test_maps {
 namespace {
 
 using test::Drawn;
@@ -140,4 +140,4 @@ TEST(Maps, EffectsThatCoverWhatIsDrawnLeaveTheOverlay) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_maps

@@ -10,7 +10,7 @@
 #include "scene/camera.h"
 #include "sun/daylight.h"
 
-namespace relevo::render {
+namespace relevo::render::test_moon {
 namespace {
 
 glm::dvec3 direction(double azimuth_deg, double elevation_deg) {
@@ -113,4 +113,4 @@ TEST(Eclipse, TakesItsShareOfSunAndSky) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_moon

@@ -24,7 +24,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_native_host {
 namespace {
 
 using Act = std::function<relevo_status(const relevo_host*)>;
@@ -447,4 +447,4 @@ TEST_F(NativeHostTest, WrittenTexelsAreRead) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_native_host

@@ -12,7 +12,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_night {
 namespace {
 
 /// A sky that is red by day and blue by night, and haze that asks for it.
@@ -83,4 +83,4 @@ TEST(Night, BeginsAndEndsWithTheSunThreeDegreesBelowTheHorizonOfTheEye) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_night

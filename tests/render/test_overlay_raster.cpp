@@ -4,7 +4,7 @@
 #include "render/pages.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_overlay_raster {
 namespace {
 
 constexpr int kSide = 600;  // posts: three pages a side on the finest level
@@ -70,4 +70,4 @@ TEST_F(OverlayPage, TexelsArePremultiplied) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_overlay_raster

@@ -9,7 +9,7 @@
 #include "render/patch_net.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_patch_net {
 namespace {
 
 /// A geographic grid: `spacing_deg` from post to post, rows running south.
@@ -213,4 +213,4 @@ TEST(PatchNet, ADemOf200KmShowsTheCurveOfTheEarthWithinAMetre) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_patch_net

@@ -8,7 +8,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_phong {
 namespace {
 
 TEST(Phong, OnTheGpuIsTheReference) {
@@ -47,4 +47,4 @@ TEST(Phong, OnTheGpuIsTheReference) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_phong

@@ -15,7 +15,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_picture_hooks {
 namespace {
 
 constexpr int kWidth_px = 64, kHeight_px = 48;
@@ -191,4 +191,4 @@ INSTANTIATE_TEST_SUITE_P(, PictureHooks, testing::Bool(), [](const auto& mode) {
 });
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_picture_hooks

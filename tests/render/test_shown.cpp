@@ -14,7 +14,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo::render {
+namespace relevo::render::test_shown {
 namespace {
 
 /// The bundled DEM under the sun of a moment, and a device to draw it on.
@@ -188,4 +188,4 @@ TEST(Picture, OfALargeFirstFrameIsWhole) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_shown

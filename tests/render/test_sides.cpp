@@ -10,7 +10,7 @@
 #include "render/pages.h"
 #include "render/sides.h"
 
-namespace relevo::render {
+namespace relevo::render::test_sides {
 namespace {
 
 /// A corner of a wall: column and row of the tile, and whether it is the wall's foot.
@@ -71,4 +71,4 @@ TEST(Sides, EachStepAlongTheRimHasAWallOfItsOwnPosts) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_sides

@@ -6,7 +6,7 @@
 #include "render/pages.h"
 #include "render/water_field.h"
 
-namespace relevo::render {
+namespace relevo::render::test_water_field {
 namespace {
 
 using dem::WaterKind;
@@ -176,4 +176,4 @@ TEST(WaterField, MeansOfADemLieInTheMiddleOfTheirPosts) {
 }
 
 }  // namespace
-}  // namespace relevo::render
+}  // namespace relevo::render::test_water_field

@@ -10,7 +10,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_audit {
 namespace {
 
 /// Shadows of a test's own: three posts off, and none at all.
@@ -225,4 +225,4 @@ TEST(Audit, LeavesThePictureAsItIs) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_audit

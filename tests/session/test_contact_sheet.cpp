@@ -10,7 +10,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_contact_sheet {
 namespace {
 
 scene::Shot shot_at(const std::string& time, std::map<std::string, std::string> names) {
@@ -90,4 +90,4 @@ TEST(ContactSheet, HasTheJobsPicturesScaledDown) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_contact_sheet

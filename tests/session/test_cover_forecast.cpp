@@ -12,7 +12,7 @@
 #include "session/cover_forecast.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_cover_forecast {
 namespace {
 
 using test::error_of;
@@ -222,4 +222,4 @@ TEST(CoverForecast, ATemplateThatGdalCannotReadIsNamedInItsWords) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_cover_forecast

@@ -13,7 +13,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_effect_rasters {
 namespace {
 
 std::string jacksboro() {
@@ -220,4 +220,4 @@ TEST_F(EffectRasters, AreInputsThatNoOutputReplaces) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_effect_rasters

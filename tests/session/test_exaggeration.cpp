@@ -11,7 +11,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_exaggeration {
 namespace {
 
 scene::Scene scene_of(double exaggeration) {
@@ -115,4 +115,4 @@ TEST(ExaggeratedBlock, ItsWallsEndAtTheFloor) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_exaggeration

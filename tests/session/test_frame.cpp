@@ -14,7 +14,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_frame {
 namespace {
 
 #define SKIP_WITHOUT_BLOCK                                                  \
@@ -380,4 +380,4 @@ TEST(Frame, NoDefaultPictureIsClipped) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_frame

@@ -13,17 +13,17 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_large_pictures {
 namespace {
 
-/// Tiles of 256 pixels in frames of 768.
-constexpr double kSmallFrame_px = 768 * 768;
+/// Tiles of 128 pixels in frames of 384.
+constexpr double kSmallFrame_px = 384 * 384;
 
 scene::Scene scene_with(const std::string& effect, bool inside) {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
-    scene.width_px = 901;  // no multiple of anything
-    scene.height_px = 655;
+    scene.width_px = 451;  // no multiple of anything
+    scene.height_px = 329;
     scene.time.at = "2026-06-21T22:00:00Z";
     scene.view = scene::parse_view("az=200,el=25");
     if (inside) {
@@ -83,4 +83,4 @@ INSTANTIATE_TEST_SUITE_P(Effects, LargePictures,
                          });
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_large_pictures

@@ -4,7 +4,7 @@
 #include "session/overlay.h"
 #include "session/overlay_time.h"
 
-namespace relevo::session {
+namespace relevo::session::test_overlay_time {
 namespace {
 
 const geo::Geodetic kZurich{radians(47.4), radians(8.5), 0};
@@ -101,4 +101,4 @@ TEST(OverlayTime, WhatIsOfNoSunHasNone) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_overlay_time

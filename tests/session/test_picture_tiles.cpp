@@ -9,7 +9,7 @@
 #include "session/picture_tiles.h"
 #include "session/sample_sum.h"
 
-namespace relevo::session {
+namespace relevo::session::test_picture_tiles {
 namespace {
 
 TEST(PictureTiles, CoverEachPixelOnceWithFramesThatBeginOnSteps) {
@@ -115,4 +115,4 @@ TEST(Annotations, LieOverAPictureAsIfTheyHadBeenDrawnOnIt) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_picture_tiles

@@ -9,7 +9,7 @@
 #include "session/scene_times.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_scene_times {
 namespace {
 
 TEST(SceneTimes, ADemThatIsReadOtherwiseIsAnotherDem) {
@@ -63,4 +63,4 @@ TEST(ClimateWords, AreOfTheHeightAndTheMonthsThatTheyName) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_scene_times

@@ -13,7 +13,7 @@
 #include "sun/time.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_sun_raster {
 namespace {
 
 /// A wall in the west of a plain at 46 N, 40 m high: at sunset its shadow grows by posts a minute.
@@ -121,4 +121,4 @@ TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_sun_raster

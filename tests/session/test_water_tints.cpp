@@ -16,7 +16,7 @@
 #include "support/device.h"
 #include "support/support.h"
 
-namespace relevo::session {
+namespace relevo::session::test_water_tints {
 namespace {
 
 constexpr int kPosts = 150;
@@ -106,4 +106,4 @@ TEST(WaterTints, SeaAndLakesAreWaterAndPoldersAreLand) {
 }
 
 }  // namespace
-}  // namespace relevo::session
+}  // namespace relevo::session::test_water_tints

@@ -3,7 +3,7 @@
 #include "shader/snippet.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_colour_ramp {
 namespace {
 
 ColourRamp ramp_of(const std::string& glsl) {
@@ -112,4 +112,4 @@ TEST(ColourRamp, MistakesOfStepsAndEntriesNameTheirLine) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_colour_ramp

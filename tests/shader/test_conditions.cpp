@@ -2,7 +2,7 @@
 
 #include "shader/conditions.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_conditions {
 namespace {
 
 const Macros kMacros = {{"ONE", "1"},     {"TWO", "ONE + ONE"},
@@ -91,4 +91,4 @@ TEST(Conditions, AMacroOfAnUndecidedBranchIsUndecided) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_conditions

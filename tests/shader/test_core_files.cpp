@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_core_files {
 namespace {
 
 std::string core_file(const std::string& name) {
@@ -40,4 +40,4 @@ TEST(CoreFiles, FillEveryMemberOfASurface) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_core_files

@@ -2,7 +2,7 @@
 
 #include "shader/driver_hints.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_driver_hints {
 namespace {
 
 const LineMap kLines = {
@@ -47,4 +47,4 @@ TEST(DriverHints, KnowTheWordsOfSeveralDrivers) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_driver_hints

@@ -7,7 +7,7 @@
 
 #include "shader/fixture.h"
 
-namespace relevo::shader::test {
+namespace relevo::shader::test::test_golden {
 namespace {
 
 struct Golden {
@@ -64,4 +64,4 @@ INSTANTIATE_TEST_SUITE_P(All, GoldenText,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace relevo::shader::test
+}  // namespace relevo::shader::test::test_golden

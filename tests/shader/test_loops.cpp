@@ -4,7 +4,7 @@
 #include "shader/loops.h"
 #include "shader/snippet.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_loops {
 namespace {
 
 using ::testing::ElementsAre;
@@ -49,4 +49,4 @@ TEST(Loops, OthersAreOpen) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_loops

@@ -11,10 +11,10 @@
 #include "shader/snippet.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_params {
 namespace {
 
-using test::error_of;
+using relevo::test::error_of;
 
 Param param(const std::string& declaration) {
     return parse_snippet("haze", "haze.glsl", declaration).source.params.at(0);
@@ -388,4 +388,4 @@ TEST(BlockLayout, IsEqualByNamesTypesAndOffsets) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_params

@@ -6,7 +6,7 @@
 #include "shader/snippet.h"
 #include "support/support.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_snippet {
 namespace {
 
 using relevo::test::error_of;
@@ -536,4 +536,4 @@ TEST(Snippet, AMangledFileIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_snippet

@@ -8,7 +8,7 @@
 #include "shader/fixture.h"
 #include "shader/stitch.h"
 
-namespace relevo::shader::test {
+namespace relevo::shader::test::test_stitch {
 namespace {
 
 using relevo::test::error_of;
@@ -828,4 +828,4 @@ TEST(CoreErrors, AMissingMainIsNamed) {
 }
 
 }  // namespace
-}  // namespace relevo::shader::test
+}  // namespace relevo::shader::test::test_stitch

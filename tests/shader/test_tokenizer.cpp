@@ -84,7 +84,8 @@ struct Bad {
 class TokenizerError : public testing::TestWithParam<Bad> {};
 
 TEST_P(TokenizerError, SaysWhere) {
-    EXPECT_EQ(test::error_of([] { tokenize(GetParam().text, "a.glsl"); }), GetParam().message);
+    EXPECT_EQ(relevo::test::error_of([] { tokenize(GetParam().text, "a.glsl"); }),
+              GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -4,7 +4,7 @@
 #include "shader/conditions.h"
 #include "shader/uses.h"
 
-namespace relevo::shader {
+namespace relevo::shader::test_uses {
 namespace {
 
 using ::testing::Contains;
@@ -89,4 +89,4 @@ TEST(Uses, WhatIsSwitchedOffIsNotUsed) {
 }
 
 }  // namespace
-}  // namespace relevo::shader
+}  // namespace relevo::shader::test_uses

@@ -10,7 +10,7 @@
 #include "sun/earth_rotation.h"
 #include "support/support.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_celestial {
 namespace {
 
 struct Star {
@@ -93,4 +93,4 @@ TEST(CelestialFrame, RejectsWhatIsNoPlace) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_celestial

@@ -4,7 +4,7 @@
 #include "sun/daylight.h"
 #include "support/support.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_daylight {
 namespace {
 
 TEST(AirMass, FollowsTheTableOfKastenAndYoung) {
@@ -94,4 +94,4 @@ TEST(Daylight, ThinAirHasAllOfItsOzone) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_daylight

@@ -4,7 +4,7 @@
 #include "sun/earth_rotation.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_earth_rotation {
 namespace {
 
 class EarthRotationTables : public SunTables {};
@@ -65,4 +65,4 @@ TEST(EarthRotation, TheLastValueIsHeld) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_earth_rotation

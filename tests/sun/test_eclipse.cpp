@@ -6,7 +6,7 @@
 #include "sun/position.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_eclipse {
 namespace {
 
 /// The eclipse at a place on the day of a time.
@@ -185,4 +185,4 @@ TEST(Eclipse, IsGreatestWhereTheSunIsUp) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_eclipse

@@ -2,7 +2,7 @@
 #include "sun/event_time.h"
 #include "support/support.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_event_time {
 namespace {
 
 using test::error_of;
@@ -159,4 +159,4 @@ TEST(EventTime, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_event_time

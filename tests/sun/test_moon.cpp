@@ -11,7 +11,7 @@
 #include "sun/refraction.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_moon {
 namespace {
 
 std::filesystem::path published(const char* name) {
@@ -171,4 +171,4 @@ TEST(Moon, OutsideTheYearsIsAnError) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_moon

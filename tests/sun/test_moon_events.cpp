@@ -4,7 +4,7 @@
 #include "sun/moon_events.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_moon_events {
 namespace {
 
 TEST(MoonEvents, AreThoseOfTheNavalObservatory) {
@@ -79,4 +79,4 @@ TEST(MoonEvents, HaveTheirPhasesAndRefuseDatesBackwards) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_moon_events

@@ -7,7 +7,7 @@
 #include "sun/moonlight.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_moonlight {
 namespace {
 
 double lux(const glm::dvec3& irradiance) {
@@ -90,4 +90,4 @@ TEST(NaturalExposure, OfMoonlightAndEclipsesLeavesThemDarker) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_moonlight

@@ -9,7 +9,7 @@
 #include "sun/tables.h"
 #include "sun/zone.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_position {
 namespace {
 
 class PositionTables : public SunTables {};
@@ -321,4 +321,4 @@ TEST(Position, ImpossiblePlacesAreErrors) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_position

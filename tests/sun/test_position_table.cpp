@@ -7,7 +7,7 @@
 #include "sun/position_table.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_position_table {
 namespace {
 
 TEST(PositionTable, IsAsGoodAsTheRigorousWay) {
@@ -73,4 +73,4 @@ TEST(PositionTable, OutsideItIsAnError) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_position_table

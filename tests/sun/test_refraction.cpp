@@ -4,7 +4,7 @@
 #include "sun/refraction.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_refraction {
 namespace {
 
 TEST(Refraction, IntegratedAgreesWithPalRefro) {
@@ -169,4 +169,4 @@ TEST(Refraction, ImpossibleAirIsAnError) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_refraction

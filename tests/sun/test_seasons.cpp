@@ -3,7 +3,7 @@
 #include "sun/seasons.h"
 #include "sun/tables.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_seasons {
 namespace {
 
 TEST(Seasons, OfTheNavalObservatoryToTheMinute) {
@@ -55,4 +55,4 @@ TEST(Seasons, OfOtherYearsAreAnError) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_seasons

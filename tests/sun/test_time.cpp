@@ -4,7 +4,7 @@
 #include "sun/time.h"
 #include "support/support.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_time {
 namespace {
 
 TEST(Instant, CountsDaysOf86400Seconds) {
@@ -124,4 +124,4 @@ TEST(Date, WhatTheCalendarDoesNotHoldIsAnErrorAndNoOtherDate) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_time

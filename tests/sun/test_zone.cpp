@@ -4,7 +4,7 @@
 #include "sun/tables.h"
 #include "sun/zone.h"
 
-namespace relevo::sun {
+namespace relevo::sun::test_zone {
 namespace {
 
 CivilTime civil(std::string_view text) {
@@ -289,4 +289,4 @@ TEST(ParseTime, ImpossibleTimesAreErrors) {
 }
 
 }  // namespace
-}  // namespace relevo::sun
+}  // namespace relevo::sun::test_zone

@@ -12,7 +12,7 @@
 #include "support/support.h"
 #include "viewer/document.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_copied_command {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST(CopiedCommand, IsTheSceneInAllThatHasAnOption) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_copied_command

@@ -32,7 +32,7 @@
 #include "viewer/sun_model.h"
 #include "window/display.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_document {
 namespace {
 
 using testing::ElementsAre;
@@ -453,4 +453,4 @@ TEST(FolderWatch, TellsOfFilesOfItsKindsOnceTheyRest) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_document

@@ -8,7 +8,7 @@
 #include "support/support.h"
 #include "window/display.h"
 
-namespace relevo {
+namespace relevo::test_example {
 namespace {
 
 TEST(Window, OrbitsMovesTheSunDragsASliderAndSurvivesABrokenShader) {
@@ -78,4 +78,4 @@ TEST(Window, OrbitsMovesTheSunDragsASliderAndSurvivesABrokenShader) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_example

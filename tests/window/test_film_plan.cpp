@@ -19,7 +19,7 @@
 #include "viewer/film_plan.h"
 #include "viewer/film_preview.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_film_plan {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +332,4 @@ TEST_F(Film, CancelledLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_film_plan

@@ -10,7 +10,7 @@
 #include "session/scene_times.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_film_window {
 namespace {
 
 class FilmWindow : public Viewer {
@@ -201,4 +201,4 @@ TEST_F(FilmWindow, ClosingItAsksAboutAFilmInWork) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_film_window

@@ -15,7 +15,7 @@
 #include "viewer/scene_thread.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_large_dem {
 namespace {
 
 /// 4104 x 4100 posts, few more than are read at once, with overviews.
@@ -240,4 +240,4 @@ TEST_F(Viewer, ALargeDemWhoseRestIsDamagedIsSaidAndTheOneBeforeComesBack) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_large_dem

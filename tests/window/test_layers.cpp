@@ -8,7 +8,7 @@
 #include "viewer/sun_overlay.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_layers {
 namespace {
 
 using testing::ElementsAre;
@@ -211,7 +211,7 @@ TEST(SunFigures, AreWrittenAsByTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_layers
 
 namespace relevo {
 namespace {

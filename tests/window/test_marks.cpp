@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_marks {
 namespace {
 
 /// A name over the middle of the DEM in a colour that ground does not have.
@@ -80,4 +80,4 @@ TEST_F(MarksInTheWindow, HeightsOfContoursAreThoseOfItsPicture) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_marks

@@ -3,7 +3,7 @@
 
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_measuring {
 namespace {
 
 constexpr glm::ivec3 kLine{255, 80, 60};
@@ -70,4 +70,4 @@ TEST_F(MeasuredLine, MBeginsAnewFromTheSamePoint) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_measuring

@@ -4,7 +4,7 @@
 
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_motion {
 namespace {
 
 class Motion : public Viewer {
@@ -55,4 +55,4 @@ TEST_F(Motion, WithoutSuchAnEffectTheWindowRests) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_motion

@@ -10,7 +10,7 @@
 #include "viewer/navigation.h"
 #include "viewer/overlay.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_navigation {
 namespace {
 
 constexpr double kAspect = 1.5;
@@ -249,4 +249,4 @@ TEST(SlopeText, IsSlopeAndAspectInWords) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_navigation

@@ -12,7 +12,7 @@
 #include "viewer/window_words.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_open_files {
 namespace {
 
 using testing::HasSubstr;
@@ -277,4 +277,4 @@ TEST_F(OpenedFiles, ASceneRunsNoCodeThatTheUserHasNotNamed) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_open_files

@@ -3,7 +3,7 @@
 
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_presentation {
 namespace {
 
 /// A window whose scene draws in a context that shares with it.
@@ -99,4 +99,4 @@ TEST_F(LostDevice, OneThatIsLostAgainAtOnceIsAnError) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_presentation

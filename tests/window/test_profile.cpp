@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "viewer/measurement.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_profile {
 namespace {
 
 TEST(Profile, ClimbAndDescentAreThoseOnTheWayFromItsBeginning) {
@@ -177,4 +177,4 @@ TEST_F(Measuring, CsvHasARowForEachPointAndNoHeightInVoids) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_profile

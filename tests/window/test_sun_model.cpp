@@ -15,7 +15,7 @@
 #include "viewer/sun_model.h"
 #include "window/display.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_sun_model {
 namespace {
 
 TEST(SunModel, MinutesAndDaysOfTheYear) {
@@ -103,4 +103,4 @@ TEST(SunPanel, SaysWhatTheCommandLineSaysInTheSameAir) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_sun_model

@@ -14,7 +14,7 @@
 #include "viewer/sun_overlay.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo::viewer {
+namespace relevo::viewer::test_sun_overlay {
 namespace {
 
 std::string bundled_path() {
@@ -234,7 +234,7 @@ TEST(SunOverlay, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace relevo::viewer
+}  // namespace relevo::viewer::test_sun_overlay
 
 namespace relevo {
 namespace {

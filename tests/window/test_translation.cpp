@@ -9,7 +9,7 @@
 #include "viewer/translation.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_translation {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ TEST_F(TranslatedWindow, ItsScenesAreThoseOfTheEnglishOne) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_translation

@@ -11,7 +11,7 @@
 #include "support/support.h"
 #include "window/display.h"
 
-namespace relevo {
+namespace relevo::test_trouble {
 namespace {
 
 class Trouble : public testing::Test {
@@ -106,4 +106,4 @@ TEST_F(Trouble, WithoutItsFolderItGoesOn) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_trouble

@@ -8,7 +8,7 @@
 #include "viewer/navigation.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_view_panel {
 namespace {
 
 TEST(FindNames, AreThoseOfTheFilesThatAreShown) {
@@ -147,4 +147,4 @@ TEST_F(Viewer, EscClosesMenusListsAndTheCalendar) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_view_panel

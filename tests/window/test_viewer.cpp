@@ -16,7 +16,7 @@
 #include "image/image.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_viewer {
 namespace {
 
 using testing::HasSubstr;
@@ -434,4 +434,4 @@ TEST(WithoutADisplay, OneLineNamesTheWayWithoutOne) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_viewer

@@ -10,7 +10,7 @@
 #include "viewer/fonts.h"
 #include "window/viewer_fixture.h"
 
-namespace relevo {
+namespace relevo::test_viewer_files {
 namespace {
 
 TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
@@ -478,4 +478,4 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_viewer_files

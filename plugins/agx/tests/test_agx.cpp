@@ -3,7 +3,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_agx {
 namespace {
 
 /// Colours for greys of `first` times 4^x, as the display gets them.
@@ -74,4 +74,4 @@ TEST(Agx, MakesAColourOfDarknessAndOfLightWithoutEnd) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_agx

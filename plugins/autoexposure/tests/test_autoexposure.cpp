@@ -8,7 +8,7 @@
 #include "render/drawn.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_autoexposure {
 namespace {
 
 // Four pixels make one that is counted: the last column and row of these have fewer.
@@ -125,4 +125,4 @@ TEST(Autoexposure, KeepsItsLimitAmountAndCompensation) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_autoexposure

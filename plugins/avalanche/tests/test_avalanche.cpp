@@ -2,7 +2,7 @@
 
 #include "support/gpu_snippet.h"
 
-namespace relevo {
+namespace relevo::test_avalanche {
 namespace {
 
 /// Colours of slopes from 0 to 89.5 degrees, every half degree.
@@ -52,4 +52,4 @@ TEST(Avalanche, ASlopeIsThatOfTheGroundWhateverTheVertical) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_avalanche

@@ -7,7 +7,7 @@
 #include "render/drawn.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_bloom {
 namespace {
 
 constexpr int kSide_px = 256;
@@ -122,4 +122,4 @@ TEST(Bloom, IsTheVeilOfTheEye) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_bloom

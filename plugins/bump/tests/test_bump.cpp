@@ -9,7 +9,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_bump {
 namespace {
 
 double smoothstep(double from, double to, double x) {
@@ -192,4 +192,4 @@ TEST(Bump, ReliefRepeatsNowhere) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_bump

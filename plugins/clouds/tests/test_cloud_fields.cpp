@@ -11,7 +11,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_cloud_fields {
 namespace {
 
 /// A field of columns as wide as `step_m` around the DEM's centre, each of one value.
@@ -156,4 +156,4 @@ TEST(CloudFields, ADeckWithoutCoverLetsAllLightThrough) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_cloud_fields

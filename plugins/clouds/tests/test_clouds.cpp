@@ -14,7 +14,7 @@
 #include "support/support.h"
 #include "weather/two_stream.h"
 
-namespace relevo {
+namespace relevo::test_clouds {
 namespace {
 
 constexpr double kEarth_m = 6371000;
@@ -234,4 +234,4 @@ TEST(Clouds, PhaseFunctionSpreadsAllLight) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_clouds

@@ -6,7 +6,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_contours {
 namespace {
 
 /// Coverage of 400 pixels of a slope that climbs by a height a pixel, from a height.
@@ -67,4 +67,4 @@ TEST(Contours, HeightsAreWrittenWithTheDecimalsThatTheyNeed) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_contours

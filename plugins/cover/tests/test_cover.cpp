@@ -10,7 +10,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_cover {
 namespace {
 
 using test::Drawn;
@@ -259,4 +259,4 @@ TEST(CoverPicture, ParametersOverrideTheClimate) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_cover

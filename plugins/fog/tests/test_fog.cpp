@@ -8,7 +8,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_fog {
 namespace {
 
 TEST(Fog, DepthIsTheIntegralAlongTheRay) {
@@ -53,4 +53,4 @@ TEST(Fog, EndsAtItsTop) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_fog

@@ -6,7 +6,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_gloss {
 namespace {
 
 TEST(Gloss, TheMapMultipliesTheHighlight) {
@@ -34,4 +34,4 @@ TEST(Gloss, TheMapMultipliesTheHighlight) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_gloss

@@ -3,7 +3,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_grade {
 namespace {
 
 double luminance(const glm::vec4& c) {
@@ -68,4 +68,4 @@ TEST(Grade, TheVignetteDarkensTheCorners) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_grade

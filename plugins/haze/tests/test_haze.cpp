@@ -11,7 +11,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_haze {
 namespace {
 
 /// Optical depth of green light: the integral of the extinction along the straight line, by
@@ -285,4 +285,4 @@ TEST(Haze, FogIsGreyAndAirIsBlue) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_haze

@@ -8,7 +8,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_layering {
 namespace {
 
 using Weights = std::array<double, 4>;  // sand, grass, rock, snow
@@ -150,4 +150,4 @@ TEST(Layering, SteepGroundShowsRock) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_layering

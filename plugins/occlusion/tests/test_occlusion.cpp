@@ -6,7 +6,7 @@
 #include "render/drawn.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_occlusion {
 namespace {
 
 /// Visible share of the sky along the middle row, on ground seen from straight above.
@@ -53,4 +53,4 @@ TEST(Occlusion, ATrenchSeesLessAndItsRimAllOfIt) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_occlusion

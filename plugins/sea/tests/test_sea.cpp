@@ -11,7 +11,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_sea {
 namespace {
 
 double worst(const std::vector<double>& errors, std::string_view what) {
@@ -280,4 +280,4 @@ TEST(Sea, ItsFloorIsSeenFromHighAbove) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_sea

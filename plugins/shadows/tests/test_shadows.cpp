@@ -9,7 +9,7 @@
 #include "support/gpu_snippet.h"
 #include "support/shadow_truth.h"
 
-namespace relevo::shadow {
+namespace relevo::shadow::test_shadows {
 namespace {
 
 dem::Heightfield bundled() {
@@ -186,4 +186,4 @@ TEST(Shadows, TheShareOfADiscIsThatOfItsSegment) {
 }
 
 }  // namespace
-}  // namespace relevo::shadow
+}  // namespace relevo::shadow::test_shadows

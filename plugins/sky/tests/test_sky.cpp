@@ -15,7 +15,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_sky {
 namespace {
 
 // The paper's equations, written again in double precision; up is z.
@@ -532,4 +532,4 @@ TEST(SkyStars, AreOfTheSameSizeAllOverThePicture) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_sky

@@ -5,7 +5,7 @@
 
 #include "support/gpu_snippet.h"
 
-namespace relevo {
+namespace relevo::test_snowfall {
 namespace {
 
 constexpr int kSide = 256;
@@ -82,4 +82,4 @@ TEST(Snowfall, TheNumberOfFlakesFollowsItsFactor) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_snowfall

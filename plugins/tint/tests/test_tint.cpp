@@ -8,7 +8,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_tint {
 namespace {
 
 constexpr double kHalfAStep = 0.5 / 255;
@@ -123,4 +123,4 @@ TEST(Tint, LitColoursAreThoseOfTheLegendAsLight) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_tint

@@ -5,7 +5,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_tracks {
 namespace {
 
 /// Sum of the coverage of 200 pixels across a line, in pixels.
@@ -63,4 +63,4 @@ TEST(Tracks, ColoursAreThoseOfTheRamp) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_tracks

@@ -11,7 +11,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_trees {
 namespace {
 
 constexpr double kHighest_m = 28;
@@ -196,4 +196,4 @@ TEST(Crown, OutlinesAreThoseThatRaysFind) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_trees

@@ -14,7 +14,7 @@
 #include "support/gpu_snippet.h"
 #include "support/shadow_truth.h"
 
-namespace relevo::shadow {
+namespace relevo::shadow::test_vsm {
 namespace {
 
 dem::Heightfield jacksboro() {
@@ -514,4 +514,4 @@ TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {
 }
 
 }  // namespace
-}  // namespace relevo::shadow
+}  // namespace relevo::shadow::test_vsm

@@ -7,7 +7,7 @@
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
-namespace relevo {
+namespace relevo::test_wet {
 namespace {
 
 constexpr std::array<double, 4> kDiffuse{0.60, 0.75, 0.42, 0.92};  // sand, grass, rock, snow
@@ -97,4 +97,4 @@ TEST(Wet, WaterMirrorsAsFresnelSays) {
 }
 
 }  // namespace
-}  // namespace relevo
+}  // namespace relevo::test_wet
