@@ -61,19 +61,21 @@ climate::Box box_of(const dem::Grid& grid, const geo::Geodetic& origin) {
 }
 
 ClimateVolume::ClimateVolume(const climate::ClimateMap& map, const dem::Grid& grid,
-                             const geo::LocalFrame& frame, double lowest_m, double highest_m)
+                             const geo::LocalFrame& frame, double lowest_m, double highest_m,
+                             const climate::FineCover::Heights& height_m)
     : table_(map, box_of(grid, frame.origin()),
              std::clamp(lowest_m - kAround_m, kLowest_m, kHighest_m - kAround_m),
              std::clamp(highest_m + kAround_m, kLowest_m + kAround_m, kHighest_m)),
+      cover_(map, box_of(grid, frame.origin()), table_, height_m),
       texture_(gl::TextureKind::D3, gl::Format::RGBA16F,
-               {table_.columns(), table_.rows(), 2 * table_.heights()}, 1, kClimateTexture) {
+               {cover_.columns(), cover_.rows(), 2 * table_.heights()}, 1, kClimateTexture) {
     texture_.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
     const climate::Box box = box_of(grid, frame.origin());
     const double origin_rad = frame.origin().lon_rad;
     const glm::dvec2 column = to_texture(radians(box.west_deg) - origin_rad,
-                                         radians(box.east_deg) - origin_rad, table_.columns());
+                                         radians(box.east_deg) - origin_rad, cover_.columns());
     const glm::dvec2 row =
-        to_texture(radians(box.south_deg), radians(box.north_deg), table_.rows());
+        to_texture(radians(box.south_deg), radians(box.north_deg), cover_.rows());
     // Cover is in the lower half of the texture, snow in the upper half.
     const glm::dvec2 level =
         0.5 * to_texture(table_.lowest_m(), table_.highest_m(), table_.heights());
@@ -83,7 +85,7 @@ ClimateVolume::ClimateVolume(const climate::ClimateMap& map, const dem::Grid& gr
 
 void ClimateVolume::set_day(int day) {
     if (day_ == day) return;
-    const std::vector<float> values = table_.texels(day);
+    const std::vector<float> values = cover_.texels(day);
     std::vector<std::uint16_t> texels(values.size());
     std::transform(values.begin(), values.end(), texels.begin(),
                    [](float value) { return glm::packHalf1x16(value); });

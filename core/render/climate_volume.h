@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "climate/cover_table.h"
+#include "climate/fine_cover.h"
 #include "dem/grid.h"
 #include "geo/local_frame.h"
 #include "gl/texture.h"
@@ -22,8 +23,12 @@ class ClimateVolume {
   public:
     /// @param frame                  the DEM's local frame
     /// @param lowest_m, highest_m   range of the DEM's heights
+    /// @param height_m               of the DEM, in the mean around a place
     ClimateVolume(const climate::ClimateMap& map, const dem::Grid& grid,
-                  const geo::LocalFrame& frame, double lowest_m, double highest_m);
+                  const geo::LocalFrame& frame, double lowest_m, double highest_m,
+                  const climate::FineCover::Heights& height_m);
+    ClimateVolume(const ClimateVolume&) = delete;
+    ClimateVolume& operator=(const ClimateVolume&) = delete;
 
     /// Updates the snow for a day of the year, 0 to 364, if it has changed.
     void set_day(int day);
@@ -33,6 +38,7 @@ class ClimateVolume {
 
   private:
     climate::CoverTable table_;
+    climate::FineCover cover_;  // of the table
     gl::Texture texture_;
     std::optional<int> day_;
     glm::vec4 place_, height_;

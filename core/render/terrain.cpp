@@ -227,10 +227,20 @@ const climate::ClimateMap& Terrain::climate_map() {
     return *climate_map_;
 }
 
+float Terrain::mean_height_m(const geo::Geodetic& place) const {
+    const int level = pyramid_.levels() - 1;
+    const glm::dvec2 post = grid_.post(place), last(grid_.columns() - 1, grid_.rows() - 1);
+    if (!(post.x >= 0 && post.y >= 0 && post.x <= last.x && post.y <= last.y)) return NAN;
+    const glm::ivec2 node(
+        round(post / max(last, glm::dvec2(1)) * glm::dvec2(pyramid_.size(level) - 1)));
+    return pyramid_.height(level, node.x, node.y);
+}
+
 const ClimateVolume& Terrain::update_climate(int day) {
     if (!climate_) {
         const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
-        climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m);
+        climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m,
+                         [this](const geo::Geodetic& place) { return mean_height_m(place); });
     }
     climate_->set_day(day);
     return *climate_;

@@ -176,6 +176,8 @@ class Terrain {
     void write(FrameBlock& block) const;
 
   private:
+    /// Of the ground around a place, at the coarsest level; NaN where there is none [m].
+    float mean_height_m(const geo::Geodetic& place) const;
     TileSelection select_in_background(const LodView& view);
     /// A selection of tiles with resident pages.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
