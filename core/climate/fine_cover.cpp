@@ -13,7 +13,6 @@ constexpr double kHighLand_m = 200;
 constexpr double kWidest_deg = 12;
 constexpr double kIcelessFrom_deg = -64;  // south of the islands whose ice is not mapped
 constexpr float kSnowOnBare = 0.2F;  // wind and sun leave little snow on Antarctica's bare hills
-constexpr double kDegree_m = 111'200;
 
 /// Makes a texel of snow that of ground with a share of mapped ice, which alone decides here.
 void map_ice(float* texel, float mapped) {
@@ -39,7 +38,9 @@ struct Between {
 FineCover::FineCover(const ClimateMap& map, const Box& box, const CoverTable& table,
                      const Heights& height_m)
     : table_(table), rain_(kSide, kSide, 1.0F) {
-    if (std::max(box.east_deg - box.west_deg, box.north_deg - box.south_deg) > kWidest_deg) return;
+    const double width_deg =
+        (box.east_deg - box.west_deg) * std::cos(radians(0.5 * (box.south_deg + box.north_deg)));
+    if (std::max(width_deg, box.north_deg - box.south_deg) > kWidest_deg) return;
     refine_rain(box, height_m);
     refine_ice(map, box);
 }

@@ -21,8 +21,6 @@
 namespace relevo::dem {
 namespace {
 
-constexpr double kDegree_m = 111'195;  // of a great circle
-
 /// Voids of a quick look: what is declared, and what is no height on Earth.
 void mark_voids(Array2d<float>& heights_m, std::optional<double> nodata) {
     for (float& height : heights_m) {

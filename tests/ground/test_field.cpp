@@ -1,8 +1,6 @@
 #include <cmath>
-#include <complex>
 #include <numbers>
 
-#include "fft.h"
 #include "field.h"
 #include "noise.h"
 #include "support/support.h"
@@ -16,42 +14,6 @@ Field wave(int n, int kx, int ky, double phase = 0.3) {
     return make_field(n, [=](float s, float t) {
         return static_cast<float>(std::cos(kTurn * (kx * s + ky * t) + phase));
     });
-}
-
-TEST(Fft, AgreesWithTheSumThatDefinesIt) {
-    constexpr int n = 16;
-    ComplexField field(n, n);
-    for (int r = 0; r < n; ++r)
-        for (int c = 0; c < n; ++c)
-            field.at(c, r) = {hash_normal(1, c, r), hash_normal(2, c, r)};
-    ComplexField transformed = field;
-    fft(transformed, false);
-    for (int ky = 0; ky < n; ++ky)
-        for (int kx = 0; kx < n; ++kx) {
-            std::complex<double> sum = 0;
-            for (int r = 0; r < n; ++r)
-                for (int c = 0; c < n; ++c)
-                    sum += std::complex<double>(field.at(c, r)) *
-                           std::polar(1.0, -kTurn * (kx * c + ky * r) / n);
-            EXPECT_NEAR(std::abs(sum - std::complex<double>(transformed.at(kx, ky))), 0, 2e-5);
-        }
-}
-
-TEST(Fft, ThereAndBackIsTheSame) {
-    constexpr int n = 1024;
-    ComplexField field(n, n);
-    for (int r = 0; r < n; ++r)
-        for (int c = 0; c < n; ++c)
-            field.at(c, r) = {hash_normal(1, c, r), hash_normal(2, c, r)};
-    ComplexField back = field;
-    fft(back, false);
-    fft(back, true);
-    std::vector<double> errors;
-    for (int r = 0; r < n; ++r)
-        for (int c = 0; c < n; ++c)
-            errors.push_back(std::abs(back.at(c, r) - field.at(c, r)));
-    test::print_accuracy("fft there and back, of numbers up to 3.5", errors, "", 7e-6);
-    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 7e-6);
 }
 
 TEST(Field, SamplingAtTexelCentresGivesTheTexels) {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <sched.h>
 
+#include "base/fft.h"
 #include "base/text.h"
-#include "fft.h"
 #include "image/ktx.h"
 #include "maps.h"
 #include "material.h"

@@ -112,7 +112,8 @@ Values only_where(Values values, const Values& others) {
     return values;
 }
 
-/// Sums of `values` and how many there are, NaN left out, over kWide_px + 1 of a row or column.
+/// For each pixel, the sum and the number of those in reach along a row or a column that are not
+/// NaN. A pixel reaches kWide_px / 2 to both sides.
 struct Sums {
     Values sum, count;
 
@@ -131,7 +132,8 @@ struct Sums {
     }
 };
 
-/// Takes away the mean of what is around, kWide_px / 2 on each side and NaN left out.
+/// Values less the mean of the square around each, which reaches kWide_px / 2 to all sides. NaN
+/// does not count.
 Values narrow(const Values& values) {
     const Sums rows(values, Values(values.width(), values.height(), 1), {1, 0});
     const Sums all(rows.sum, rows.count, {0, 1});

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fft.h"
+#include "base/fft.h"
 #include "material.h"
 #include "noise.h"
 

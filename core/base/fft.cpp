@@ -1,5 +1,6 @@
-#include "fft.h"
+#include "base/fft.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -9,7 +10,7 @@
 
 #include "base/parallel_for.h"
 
-namespace relevo::ground {
+namespace relevo {
 namespace {
 
 using Complex = std::complex<float>;
@@ -72,4 +73,4 @@ void fft(ComplexField& field, bool inverse) {
     });
 }
 
-}  // namespace relevo::ground
+}  // namespace relevo
