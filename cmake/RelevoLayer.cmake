@@ -8,7 +8,8 @@ set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
     -Wno-restrict                    # GCC 12 sees overlaps in std::string at -O3 (its bug 105329)
     -Werror)
 if(CMAKE_UNITY_BUILD)
-    list(APPEND warnings -Wno-subobject-linkage)  # files of a batch are included, as headers are
+    # Files of a batch are included, as headers are: a local name may be that of another file's constant.
+    list(APPEND warnings -Wno-subobject-linkage -Wno-shadow -Wshadow=local)
 endif()
 target_compile_options(relevo_options INTERFACE $<IF:$<BOOL:${RELEVO_TESTS}>,${warnings},-w>
     # GCC compiles a tenth faster where it frees no memory before it has 1 GiB; its largest file takes 0.7.

@@ -40,7 +40,7 @@ std::optional<long> whole(const std::string& text) {
     return static_cast<long>(*number);
 }
 
-[[noreturn]] void refuse(const std::string& text, const std::string& what) {
+[[noreturn]] void refuse_shard(const std::string& text, const std::string& what) {
     bad_usage(fmt::format("--shard: {}: {}", text, what));
 }
 
@@ -51,7 +51,8 @@ std::optional<long> given(const Environment& environment, const char* name,
     if (!value) return std::nullopt;
     const auto number = whole(*value);
     if (!number)
-        refuse(text, fmt::format("expected a whole number in {} but got \"{}\"", name, *value));
+        refuse_shard(text,
+                     fmt::format("expected a whole number in {} but got \"{}\"", name, *value));
     return number;
 }
 
@@ -69,19 +70,21 @@ Shard of_array(const std::string& text, std::optional<long> count, const Environ
         if (!count) count = given(environment, scheduler.count, text);
         if (!count && last) count = (*last - first) / step + 1;
         if (!count)
-            refuse(text, fmt::format("{} does not say how many tasks its array has; write array/N",
+            refuse_shard(text,
+                         fmt::format("{} does not say how many tasks its array has; write array/N",
                                      scheduler.name));
         const long at = (task - first) / step;
         if ((task - first) % step != 0 || at < 0 || at >= *count ||
             (last && (*last - first) / step >= *count))
-            refuse(text, fmt::format("expected tasks of {} in equal steps from {} on, {} of them, "
+            refuse_shard(text,
+                         fmt::format("expected tasks of {} in equal steps from {} on, {} of them, "
                                      "but this is task {}; write --shard I/N",
                                      scheduler.name, first, *count, task));
         return {static_cast<std::size_t>(at) + 1, static_cast<std::size_t>(*count)};
     }
-    refuse(text,
-           "expected a task of an array of Slurm, PBS, LSF, Grid Engine or AWS Batch, but "
-           "none of their variables is set; write --shard I/N");
+    refuse_shard(text,
+                 "expected a task of an array of Slurm, PBS, LSF, Grid Engine or AWS Batch, but "
+                 "none of their variables is set; write --shard I/N");
 }
 
 }  // namespace
@@ -95,7 +98,7 @@ Shard parse_shard(const std::string& text, const Environment& environment) {
         return of_array(text, count, environment);
     const auto number = pieces.size() == 2 ? whole(pieces[0]) : std::nullopt;
     if (!counted || !number || *number < 1 || *number > *count)
-        refuse(text, "expected I/N with I from 1 to N, array, or array/N");
+        refuse_shard(text, "expected I/N with I from 1 to N, array, or array/N");
     return {static_cast<std::size_t>(*number), static_cast<std::size_t>(*count)};
 }
 

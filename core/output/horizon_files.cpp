@@ -27,15 +27,14 @@ double height_deg(const light::HorizonPoint& point) {
 std::string pvlib_text(const std::vector<light::HorizonPoint>& profile) {
     std::string text = "horizon_azimuth,horizon_elevation\n";
     for (const light::HorizonPoint& point : profile)
-        fmt::format_to(std::back_inserter(text), "{:.10g},{:.4f}\n", azimuth_deg(point),
-                       degrees(point.elevation_rad));
+        text += fmt::format("{:.10g},{:.4f}\n", azimuth_deg(point), degrees(point.elevation_rad));
     return text;
 }
 
 std::string pvgis_text(const std::vector<light::HorizonPoint>& profile) {
     std::string text;
     for (const light::HorizonPoint& point : profile)
-        fmt::format_to(std::back_inserter(text), "{:.3f}\n", height_deg(point));
+        text += fmt::format("{:.3f}\n", height_deg(point));
     return text;
 }
 
@@ -55,7 +54,7 @@ std::string pvsyst_text(const std::vector<light::HorizonPoint>& profile,
         degrees(place.lat_rad), degrees(place.lon_rad),
         southern ? "0 north, counterclockwise" : "0 south, clockwise, north -180");
     for (const auto& [azimuth, height] : points)
-        fmt::format_to(std::back_inserter(text), "{:.10g} {:.2f}\n", azimuth, height);
+        text += fmt::format("{:.10g} {:.2f}\n", azimuth, height);
     return text;
 }
 

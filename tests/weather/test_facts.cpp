@@ -1,3 +1,7 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "support/support.h"
 #include "weather/facts.h"
 

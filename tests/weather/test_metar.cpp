@@ -1,5 +1,7 @@
 #include <random>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "support/support.h"
 #include "weather/metar.h"

@@ -9,8 +9,8 @@
 namespace relevo::ground {
 namespace {
 
-constexpr std::uint32_t kSeed = 0x64A5;
-constexpr double kTile_m = 4;
+constexpr std::uint32_t kGrassSeed = 0x64A5;
+constexpr double kGrassTile_m = 4;
 
 /// A leaf as seen from above: a bent, tapering strip, or a round one of no length.
 struct Leaf {
@@ -56,7 +56,7 @@ class Canopy {
   private:
     int n_;
 
-    float texels_per_m() const { return static_cast<float>(n_ / kTile_m); }
+    float texels_per_m() const { return static_cast<float>(n_ / kGrassTile_m); }
 
     void draw(const Leaf& leaf, int row_begin, int row_end) {
         const float scale = texels_per_m();
@@ -114,11 +114,11 @@ constexpr glm::vec3 kGreen{0.062f, 0.098f, 0.031f}, kYellowGreen{0.120f, 0.138f,
 
 /// Fields that the leaves go by, -1..1 or so, over the unit tile.
 float vigour(float s, float t) {
-    return fractal_noise(kSeed + 1, s, t, 10, 4, 0.5f);
+    return fractal_noise(kGrassSeed + 1, s, t, 10, 4, 0.5f);
 }
 
 float dryness(float s, float t) {
-    return fractal_noise(kSeed + 2, s, t, 8, 4, 0.6f);
+    return fractal_noise(kGrassSeed + 2, s, t, 8, 4, 0.6f);
 }
 
 glm::vec2 turned(float angle) {
@@ -131,11 +131,11 @@ std::vector<Leaf> thatch() {
     std::vector<Leaf> leaves;
     for (int j = 0; j < kAcross; ++j)
         for (int i = 0; i < kAcross; ++i) {
-            const auto random = [&](int k) { return hash_unit(kSeed + 10, i, j, k); };
+            const auto random = [&](int k) { return hash_unit(kGrassSeed + 10, i, j, k); };
             const glm::vec2 unit{(static_cast<float>(i) + random(0)) / kAcross,
                                  (static_cast<float>(j) + random(1)) / kAcross};
             if (random(2) > 0.75f + 0.7f * vigour(unit.x, unit.y)) continue;
-            const glm::vec2 root = unit * static_cast<float>(kTile_m);
+            const glm::vec2 root = unit * static_cast<float>(kGrassTile_m);
             const glm::vec2 way = turned(random(3) * 6.2831853f);
             const float length_m = 0.03f + 0.07f * random(4);
             const glm::vec3 colour =
@@ -157,12 +157,12 @@ std::vector<Leaf> blades() {
     leaves.reserve(static_cast<std::size_t>(kAcross * kAcross));
     for (int j = 0; j < kAcross; ++j)
         for (int i = 0; i < kAcross; ++i) {
-            const auto random = [&](int k) { return hash_unit(kSeed + 20, i, j, k); };
+            const auto random = [&](int k) { return hash_unit(kGrassSeed + 20, i, j, k); };
             const float s = (static_cast<float>(i) + random(0)) / kAcross;
             const float t = (static_cast<float>(j) + random(1)) / kAcross;
-            const Cells tuft = cells(kSeed + 3, Lattice(kTufts), s, t, 0.95f);
+            const Cells tuft = cells(kGrassSeed + 3, Lattice(kTufts), s, t, 0.95f);
             const auto of_tuft = [&](int k) {
-                return hash_unit(kSeed + 21, static_cast<int>(tuft.id & 0xFFFFFu), k);
+                return hash_unit(kGrassSeed + 21, static_cast<int>(tuft.id & 0xFFFFFu), k);
             };
             const float strength = 0.56f + 0.80f * vigour(s, t) + 0.25f * (of_tuft(0) - 0.5f);
             // Sparse between the tufts and where little grows: thatch and soil show.
@@ -170,7 +170,7 @@ std::vector<Leaf> blades() {
                                 (1.05f - 0.75f * smoothstep(0.30f, 0.75f, tuft.nearest));
             if (random(2) > cover) continue;
             const float dry = dryness(s, t) + 0.8f * (of_tuft(1) - 0.5f);
-            const glm::vec2 root = glm::vec2(s, t) * static_cast<float>(kTile_m);
+            const glm::vec2 root = glm::vec2(s, t) * static_cast<float>(kGrassTile_m);
 
             const float out = 0.9f * smoothstep(0.0f, 0.6f, tuft.nearest);
             const glm::vec2 outwards =
@@ -207,12 +207,12 @@ std::vector<Leaf> herbs() {
     std::vector<Leaf> leaves;
     for (int j = 0; j < kAcross; ++j)
         for (int i = 0; i < kAcross; ++i) {
-            const auto random = [&](int k) { return hash_unit(kSeed + 30, i, j, k); };
+            const auto random = [&](int k) { return hash_unit(kGrassSeed + 30, i, j, k); };
             const float s = (static_cast<float>(i) + random(0)) / kAcross;
             const float t = (static_cast<float>(j) + random(1)) / kAcross;
-            const float patch = fractal_noise(kSeed + 4, s, t, 9, 3, 0.55f);
+            const float patch = fractal_noise(kGrassSeed + 4, s, t, 9, 3, 0.55f);
             if (random(2) > 0.02f + 0.95f * smoothstep(0.32f, 0.75f, patch)) continue;
-            const glm::vec2 middle = glm::vec2(s, t) * static_cast<float>(kTile_m);
+            const glm::vec2 middle = glm::vec2(s, t) * static_cast<float>(kGrassTile_m);
             const float radius_m = 0.0045f + 0.0045f * random(4);
             const float turn = random(5) * 2.0943951f, top_m = 0.015f + 0.035f * random(6);
             const glm::vec3 colour =
@@ -233,18 +233,18 @@ Material make_grass(int n) {
     Material m;
     m.name = "grass";
     m.description = "meadow with tufts, clover, dead blades and some bare soil";
-    m.tile_m = kTile_m;
+    m.tile_m = kGrassTile_m;
     m.shininess = 10;
     m.mean_albedo = {0.093f, 0.102f, 0.042f};
 
     // Blades are about as wide as a texel, so they are drawn twice as fine and averaged.
     const int fine = 2 * n;
     Canopy canopy(fine);
-    const Field crumbs =
-        make_field(n, [](float s, float t) { return fractal_noise(kSeed + 5, s, t, 90, 3, 0.7f); });
+    const Field crumbs = make_field(
+        n, [](float s, float t) { return fractal_noise(kGrassSeed + 5, s, t, 90, 3, 0.7f); });
     for_each_texel(fine, [&](int c, int r) {
         const float crumb = crumbs.at(c / 2, r / 2);
-        const float grain = hash_normal(kSeed + 6, c, r);
+        const float grain = hash_normal(kGrassSeed + 6, c, r);
         canopy.height_m.at(c, r) = 0.002f + 0.006f * crumb + 0.0008f * grain;
         canopy.colour.at(c, r) = glm::mix(kSoil, kThatch, 0.30f + 0.30f * crumb) *
                                  std::max(0.4f, 1 + 0.55f * crumb + 0.16f * grain);
@@ -256,7 +256,7 @@ Material make_grass(int n) {
 
     // Light is lost between the leaves: what lies deeper than its surroundings is darker. A normal
     // map cannot say this of strips that overlap.
-    const Field around = blurred(canopy.height_m, 0.016 / kTile_m * fine);
+    const Field around = blurred(canopy.height_m, 0.016 / kGrassTile_m * fine);
     m.height_m = Field(n, n);
     m.albedo = ColourField(n, n);
     m.gloss = Field(n, n);
@@ -279,7 +279,7 @@ Material make_grass(int n) {
     // Leaves stand over leaves: their steps, centimetres over millimetres, are no slope that a
     // normal could have. What can be said is how the sward as a whole is rounded, and a hint of the
     // blades.
-    const double per_m = n / kTile_m;
+    const double per_m = n / kGrassTile_m;
     const Field blade = blurred(m.height_m, 0.0028 * per_m);
     const Field tuft = blurred(m.height_m, 0.020 * per_m);
     for_each_texel(n, [&](int c, int r) {

@@ -8,12 +8,13 @@
 #include <glm/gtc/packing.hpp>
 
 #include "field.h"
+#include "material.h"
 #include "noise.h"
 
 namespace relevo::ground {
 namespace {
 
-constexpr std::uint32_t kSeed = 0x7A7C;
+constexpr std::uint32_t kPatchesSeed = 0x7A7C;
 constexpr double kDeviation = 0.16;
 
 /// Fractal noise read at places that are displaced by another, which frays its outlines.
@@ -34,24 +35,22 @@ void normalise(Field& field) {
         v = static_cast<float>(0.5 + scale * (v - middle));
 }
 
-float smoothstep(float low, float high, float x) {
-    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3 - 2 * t);
-}
-
 using Channels = std::array<Field, 4>;
 
 Channels make_channels(int n) {
     Channels channels{
-        make_field(n, [](float s, float t) { return warped(kSeed, 6, 7, 0.66f, 0.02f, s, t); }),
-        make_field(n, [](float s, float t) { return warped(kSeed + 1, 6, 6, 0.58f, 0.03f, s, t); }),
+        make_field(n,
+                   [](float s, float t) { return warped(kPatchesSeed, 6, 7, 0.66f, 0.02f, s, t); }),
+        make_field(
+            n, [](float s, float t) { return warped(kPatchesSeed + 1, 6, 6, 0.58f, 0.03f, s, t); }),
         make_field(n,
                    [](float s, float t) {
-                       const float group = warped(kSeed + 2, 7, 4, 0.6f, 0.02f, s, t);
-                       const float shrub = fractal_noise(kSeed + 3, s, t, 44, 3, 0.62f);
+                       const float group = warped(kPatchesSeed + 2, 7, 4, 0.6f, 0.02f, s, t);
+                       const float shrub = fractal_noise(kPatchesSeed + 3, s, t, 44, 3, 0.62f);
                        return smoothstep(0.06f, 0.36f, shrub + 0.9f * group);
                    }),
-        make_field(n, [](float s, float t) { return fractal_noise(kSeed + 4, s, t, 30, 4, 0.7f); }),
+        make_field(
+            n, [](float s, float t) { return fractal_noise(kPatchesSeed + 4, s, t, 30, 4, 0.7f); }),
     };
     for (const std::size_t c : {0, 1, 3})
         normalise(channels[c]);
@@ -85,7 +84,7 @@ image::TextureData patches_texture(int n) {
         for (std::size_t i = 0; i < bytes.size(); ++i) {
             const float value = *(channels[i % 4].data() + i / 4);
             // Dithered, as the mean of every level has to stay.
-            const float chance = hash_unit(kSeed + 9, static_cast<int>(i), level);
+            const float chance = hash_unit(kPatchesSeed + 9, static_cast<int>(i), level);
             bytes[i] = static_cast<std::byte>(
                 std::clamp(static_cast<int>(std::floor(value * 255.0f + chance)), 0, 255));
         }

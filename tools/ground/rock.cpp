@@ -7,8 +7,8 @@
 namespace relevo::ground {
 namespace {
 
-constexpr std::uint32_t kSeed = 0x50CC;
-constexpr double kTile_m = 8;
+constexpr std::uint32_t kRockSeed = 0x50CC;
+constexpr double kRockTile_m = 8;
 
 // The beds strike about 20 degrees off the tile's axes; what they shape is drawn out along them.
 const Lattice kBlocks(7, 3, -5, 15);   // blocks of 1.1 x 0.5 m
@@ -19,7 +19,7 @@ const Lattice kFlakes(24, 10, -10, 24),
 const Lattice kCrusts(44), kSpots(120);  // lichens, up to 18 and 7 cm
 
 float unit_of(std::uint32_t id, int k) {
-    return hash_unit(kSeed + 50, static_cast<int>(id & 0x7FFFFFFFu), k);
+    return hash_unit(kRockSeed + 50, static_cast<int>(id & 0x7FFFFFFFu), k);
 }
 
 /// A network of cracks and the faces between them.
@@ -105,25 +105,27 @@ Material make_rock(int n) {
     Material m;
     m.name = "rock";
     m.description = "jointed gneiss with foliation and lichens";
-    m.tile_m = kTile_m;
+    m.tile_m = kRockTile_m;
     m.shininess = 16;
     m.mean_albedo = {0.184f, 0.169f, 0.148f};
 
     // Nothing breaks along a straight line.
-    const Field warp_s = make_coarse_field(
-        n, [](float s, float t) { return 0.016f * fractal_noise(kSeed + 1, s, t, 7, 4, 0.5f); });
-    const Field warp_t = make_coarse_field(
-        n, [](float s, float t) { return 0.016f * fractal_noise(kSeed + 2, s, t, 7, 4, 0.5f); });
+    const Field warp_s = make_coarse_field(n, [](float s, float t) {
+        return 0.016f * fractal_noise(kRockSeed + 1, s, t, 7, 4, 0.5f);
+    });
+    const Field warp_t = make_coarse_field(n, [](float s, float t) {
+        return 0.016f * fractal_noise(kRockSeed + 2, s, t, 7, 4, 0.5f);
+    });
     const Field along = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 19, s, t, 16, 3, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kRockSeed + 19, s, t, 16, 3, 0.6f); });
     const Field parting = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 20, s, t, 7, 3); });
+        n, [](float s, float t) { return fractal_noise(kRockSeed + 20, s, t, 7, 3); });
     const Field warmth = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 11, s, t, 8, 4, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kRockSeed + 11, s, t, 8, 4, 0.6f); });
     const Field iron = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 12, s, t, 10, 3, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kRockSeed + 12, s, t, 10, 3, 0.6f); });
     const Field colonies = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 15, s, t, 9, 3, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kRockSeed + 15, s, t, 9, 3, 0.6f); });
 
     m.height_m = Field(n, n);
     m.albedo = ColourField(n, n);
@@ -131,36 +133,36 @@ Material make_rock(int n) {
     for_each_texel(n, [&](int c, int r) {
         const float s = (static_cast<float>(c) + 0.5f) / static_cast<float>(n);
         const float t = (static_cast<float>(r) + 0.5f) / static_cast<float>(n);
-        const float fray = 0.0011f * fractal_noise(kSeed + 21, s, t, 70, 2);
+        const float fray = 0.0011f * fractal_noise(kRockSeed + 21, s, t, 70, 2);
         const float ws = s + smooth_sample(warp_s, s, t) + fray,
                     wt = t + smooth_sample(warp_t, s, t) - fray;
         const float gaping = smooth_sample(along, s, t);
         const Fracture block =
-            fracture(kSeed + 3, kBlocks, ws, wt, 0.66f, 0.019f, 0.16f, 0.010f, gaping);
+            fracture(kRockSeed + 3, kBlocks, ws, wt, 0.66f, 0.019f, 0.16f, 0.010f, gaping);
         const Fracture slab =
-            fracture(kSeed + 4, kSlabs, ws, wt, 0.29f, 0.009f, 0.22f, 0.005f, gaping - 0.25f);
+            fracture(kRockSeed + 4, kSlabs, ws, wt, 0.29f, 0.009f, 0.22f, 0.005f, gaping - 0.25f);
         const float broken = smoothstep(0.2f, 0.6f, unit_of(block.id, 5));  // into slabs or whole
         const float open = std::max(block.open, broken * slab.open);
 
         // Foliation: thin plates that end in little steps, where the rock parts along it.
-        const float bed = fractal_noise(kSeed + 5, kBeds, ws, wt, 3, 0.6f);
+        const float bed = fractal_noise(kRockSeed + 5, kBeds, ws, wt, 3, 0.6f);
         const float parts =
             smoothstep(-0.2f, 0.6f, sample(parting, s, t) + unit_of(block.id, 8) - 0.5f);
-        const float plates = 3.0f * bed + 1.4f * fractal_noise(kSeed + 6, s, t, 15, 3, 0.55f);
+        const float plates = 3.0f * bed + 1.4f * fractal_noise(kRockSeed + 6, s, t, 15, 3, 0.55f);
         const float step = plates - std::floor(plates);
         const float ledge = std::floor(plates) + smoothstep(0.75f, 1.0f, step) + 0.3f * step;
 
-        const float rough = fractal_noise(kSeed + 7, s, t, 14, 5, 0.62f);
-        const float grain = hash_normal(kSeed + 9, c, r);
-        const float flakes = scars(kSeed + 22, kFlakes, ws, wt);
-        const float chips = scars(kSeed + 23, kChips, ws + fray, wt);
+        const float rough = fractal_noise(kRockSeed + 7, s, t, 14, 5, 0.62f);
+        const float grain = hash_normal(kRockSeed + 9, c, r);
+        const float flakes = scars(kRockSeed + 22, kFlakes, ws, wt);
+        const float chips = scars(kRockSeed + 23, kChips, ws + fray, wt);
         m.height_m.at(c, r) = block.face_m + (0.3f + 0.7f * broken) * slab.face_m +
                               0.0050f * parts * ledge + 0.014f * rough + 0.045f * flakes +
                               0.019f * chips + 0.0005f * grain - 0.016f * block.open -
                               0.008f * broken * slab.open;
 
         // The rock itself: light and dark minerals in bands, and a tint for every block.
-        const float band = fractal_noise(kSeed + 10, kBeds, ws, wt, 4, 0.8f);
+        const float band = fractal_noise(kRockSeed + 10, kBeds, ws, wt, 4, 0.8f);
         float light = 1 + 0.16f * (unit_of(block.id, 6) - 0.5f) +
                       0.20f * broken * (unit_of(slab.id, 6) - 0.5f);
         light *= 1 + 0.20f * band + 0.10f * rough + 0.06f * grain;
@@ -172,13 +174,13 @@ Material make_rock(int n) {
             smoothstep(0.2f, 0.9f, sample(iron, s, t) + 0.5f * block.near_crack + 0.2f * band);
         colour *= glm::mix(glm::vec3(1), glm::vec3(1.06f, 0.88f, 0.68f), 0.5f * rust);
         const float film =
-            smoothstep(0.15f, 0.95f, fractal_noise(kSeed + 13, ws, wt, 10, 5, 0.66f));
+            smoothstep(0.15f, 0.95f, fractal_noise(kRockSeed + 13, ws, wt, 10, 5, 0.66f));
         colour *= glm::mix(glm::vec3(1), glm::vec3(0.60f, 0.61f, 0.62f), 0.75f * film);
 
-        const float ragged = fractal_noise(kSeed + 14, s, t, 64, 3, 0.75f);
+        const float ragged = fractal_noise(kRockSeed + 14, s, t, 64, 3, 0.75f);
         const float colony = smoothstep(-0.45f, 0.35f, sample(colonies, s, t));
-        const Lichen crust = lichen(kSeed + 16, kCrusts, ws, wt, 0.50f * colony, ragged);
-        const Lichen spot = lichen(kSeed + 17, kSpots, ws, wt, 0.35f * colony, ragged);
+        const Lichen crust = lichen(kRockSeed + 16, kCrusts, ws, wt, 0.50f * colony, ragged);
+        const Lichen spot = lichen(kRockSeed + 17, kSpots, ws, wt, 0.35f * colony, ragged);
         for (const Lichen& l : {crust, spot})
             colour = glm::mix(colour, crust_colour(l.kind) * (1 + 0.10f * grain + 0.2f * ragged),
                               0.62f * l.cover * (1 - open));
@@ -187,16 +189,16 @@ Material make_rock(int n) {
         colour = glm::mix(colour, glm::vec3(0.055f, 0.048f, 0.038f), 0.65f * open);
         m.albedo.at(c, r) = glm::max(colour, glm::vec3(0.01f));
 
-        const float mica = hash_unit(kSeed + 18, c, r) > 0.985f ? 0.55f : 0.0f;
+        const float mica = hash_unit(kRockSeed + 18, c, r) > 0.985f ? 0.55f : 0.0f;
         m.gloss.at(c, r) =
             (1 - open) * (1 - 0.75f * covered) * (0.22f + 0.10f * band + 0.10f * (1 - film) + mica);
     });
 
     // Steps of a centimetre from one texel to the next would be jagged.
-    m.height_m = blurred(m.height_m, 0.0055 * n / kTile_m);
+    m.height_m = blurred(m.height_m, 0.0055 * n / kRockTile_m);
 
     // Edges that stand out are worn fresh and pale, hollows gather dirt.
-    const Field around = blurred(m.height_m, 0.04 * n / kTile_m);
+    const Field around = blurred(m.height_m, 0.04 * n / kRockTile_m);
     for_each_texel(n, [&](int c, int r) {
         const float out = (m.height_m.at(c, r) - around.at(c, r)) / 0.010f;
         m.albedo.at(c, r) *= 1 + 0.12f * std::clamp(out, -1.6f, 1.2f);

@@ -9,8 +9,8 @@
 namespace relevo::ground {
 namespace {
 
-constexpr std::uint32_t kSeed = 0x5A4D;
-constexpr double kTile_m = 4;
+constexpr std::uint32_t kSandSeed = 0x5A4D;
+constexpr double kSandTile_m = 4;
 
 /// Ripples as a wave with random phase and strength. Where its strength passes through zero the
 /// crests fork, as wind ripples do. Source: T. Tricard et al., Procedural Phasor Noise, ACM
@@ -30,9 +30,9 @@ ComplexField ripple_wave(int n) {
         if (strength < 1e-4) return;
         // The frequency, not the index, is hashed: the same ripples at every resolution.
         const int ix = static_cast<int>(kx), iy = static_cast<int>(ky);
-        waves.at(c, r) =
-            std::complex<float>(hash_normal(kSeed, ix, iy, 1), hash_normal(kSeed, ix, iy, 2)) *
-            static_cast<float>(strength * n);
+        waves.at(c, r) = std::complex<float>(hash_normal(kSandSeed, ix, iy, 1),
+                                             hash_normal(kSandSeed, ix, iy, 2)) *
+                         static_cast<float>(strength * n);
     });
     fft(waves, true);
     return waves;
@@ -45,7 +45,7 @@ Material make_sand(int n) {
     Material m;
     m.name = "sand";
     m.description = "dry dune sand with wind ripples";
-    m.tile_m = kTile_m;
+    m.tile_m = kSandTile_m;
     m.shininess = 12;
     m.mean_albedo = {0.443f, 0.329f, 0.197f};
 
@@ -57,15 +57,15 @@ Material make_sand(int n) {
 
     // Ripples fade in patches, where the sand lies smooth.
     const Field patches = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 1, s, t, 7, 3, 0.55f); });
+        n, [](float s, float t) { return fractal_noise(kSandSeed + 1, s, t, 7, 3, 0.55f); });
     const Field swell = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 2, s, t, 6, 4, 0.36f); });
+        n, [](float s, float t) { return fractal_noise(kSandSeed + 2, s, t, 6, 4, 0.36f); });
     const Field mottling = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 5, s, t, 9, 4, 0.62f); });
+        n, [](float s, float t) { return fractal_noise(kSandSeed + 5, s, t, 9, 4, 0.62f); });
     const Field minerals = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 6, s, t, 12, 3, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kSandSeed + 6, s, t, 12, 3, 0.6f); });
     const Field redness = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 7, s, t, 8, 4, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kSandSeed + 7, s, t, 8, 4, 0.6f); });
 
     Field crest(n, n);   // 0 in the trough, 1 on the crest
     Field ripple(n, n);  // strength
@@ -89,8 +89,8 @@ Material make_sand(int n) {
         const float s = (static_cast<float>(c) + 0.5f) / static_cast<float>(n);
         const float t = (static_cast<float>(r) + 0.5f) / static_cast<float>(n);
         const float a = ripple.at(c, r), k = crest.at(c, r);
-        const float grains = hash_normal(kSeed + 3, c, r);
-        const float fine = fractal_noise(kSeed + 4, s, t, 160, 2, 0.7f);
+        const float grains = hash_normal(kSandSeed + 3, c, r);
+        const float fine = fractal_noise(kSandSeed + 4, s, t, 160, 2, 0.7f);
         m.height_m.at(c, r) = 0.0072f * a * std::pow(k, 1.25f) +
                               0.016f * smooth_sample(swell, s, t) + 0.0005f * fine +
                               0.00028f * grains * texels;
@@ -103,13 +103,13 @@ Material make_sand(int n) {
         light *= 1 - a * (1 - k) * (1 - k) * (0.04f + 0.11f * heavy);
         glm::vec3 colour = m.mean_albedo * light;
         // Iron on the grains varies: redder and yellower patches and grains.
-        const float iron = 0.05f * sample(redness, s, t) + 0.03f * hash_normal(kSeed + 8, c, r);
+        const float iron = 0.05f * sample(redness, s, t) + 0.03f * hash_normal(kSandSeed + 8, c, r);
         colour *= glm::vec3(1 + 0.35f * iron, 1 - 0.1f * iron, 1 - 0.9f * iron);
         m.albedo.at(c, r) = colour;
 
         // A few quartz faces in ten thousand look just right at the sun; the troughs are dull.
-        const float quartz = hash_unit(kSeed + 9, c, r) > 0.994f ? 0.75f : 0.0f;
-        m.gloss.at(c, r) = 0.16f + 0.10f * k * a + 0.05f * hash_unit(kSeed + 10, c, r) + quartz;
+        const float quartz = hash_unit(kSandSeed + 9, c, r) > 0.994f ? 0.75f : 0.0f;
+        m.gloss.at(c, r) = 0.16f + 0.10f * k * a + 0.05f * hash_unit(kSandSeed + 10, c, r) + quartz;
     });
 
     finish(m);

@@ -12,7 +12,7 @@
 namespace relevo::ground {
 namespace {
 
-constexpr std::uint32_t kSeed = 0x9E71;
+constexpr std::uint32_t kVolumeSeed = 0x9E71;
 
 std::size_t index(int n, int c, int r, int s) {
     return static_cast<std::size_t>((s * n + r) * n + c);
@@ -32,7 +32,7 @@ image::TextureData perlin_texture(int n) {
                         const double scale = static_cast<double>(cells) / n;
                         // Shifted, so that no plane of the volume is a lattice plane of all
                         // octaves, where gradient noise is weak.
-                        sum += strength * perlin_noise(kSeed + static_cast<std::uint32_t>(o),
+                        sum += strength * perlin_noise(kVolumeSeed + static_cast<std::uint32_t>(o),
                                                        (c + 0.5) * scale + 0.31 * o,
                                                        (r + 0.5) * scale + 0.57 * o,
                                                        (s + 0.5) * scale + 0.43 * o, cells);
@@ -60,7 +60,7 @@ image::TextureData perlin_texture(int n) {
         for (std::size_t i = 0; i < bytes.size(); ++i) {
             const float value = 0.5f + 0.5f * noise[i] / peak;
             // Dithered, as the mean of every level has to be 127.5, which no byte can say.
-            const float chance = hash_unit(kSeed + 9, static_cast<int>(i), l);
+            const float chance = hash_unit(kVolumeSeed + 9, static_cast<int>(i), l);
             bytes[i] = static_cast<std::byte>(
                 std::clamp(static_cast<int>(std::floor(value * 255.0f + chance)), 0, 255));
         }
