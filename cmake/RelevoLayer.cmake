@@ -17,13 +17,15 @@ target_compile_options(relevo_options INTERFACE $<IF:$<BOOL:${RELEVO_TESTS}>,${w
 
 # The largest batches take 2.3 GB of memory: no more at once than there is memory for. Ninja alone starts two more commands
 # than there are processors.
-cmake_host_system_information(RESULT memory_mib QUERY TOTAL_PHYSICAL_MEMORY)
-math(EXPR at_once "${memory_mib} / 2500")
-if(at_once LESS 1)
-    set(at_once 1)
+if(CMAKE_UNITY_BUILD)
+    cmake_host_system_information(RESULT memory_mib QUERY TOTAL_PHYSICAL_MEMORY)
+    math(EXPR at_once "${memory_mib} / 2500")
+    if(at_once LESS 1)
+        set(at_once 1)
+    endif()
+    set_property(GLOBAL PROPERTY JOB_POOLS compile=${at_once})
+    set(CMAKE_JOB_POOL_COMPILE compile)
 endif()
-set_property(GLOBAL PROPERTY JOB_POOLS compile=${at_once})
-set(CMAKE_JOB_POOL_COMPILE compile)
 
 # relevo_layer(<name> SOURCES ... [DEPENDS <lower layers>...] [LINKS <libraries used inside>...]
 #              [PUBLIC_LINKS <libraries seen in headers>...])
