@@ -71,7 +71,8 @@ session::Named SceneArguments::named() const {
     return {.all = trust,
             .plugin_folders = effects.plugin_path,
             .dems = dem.paths,
-            .overlays = {overlay.file}};
+            .overlays = {overlay.file},
+            .land_covers = {values.text("--land-cover")}};
 }
 
 scene::Scene SceneArguments::scene() const {

@@ -51,6 +51,12 @@ bool OptionArguments::has(std::string_view flag) const {
     return std::ranges::any_of(given_, [&](const auto& one) { return one.first->flag == flag; });
 }
 
+std::string OptionArguments::text(std::string_view flag) const {
+    const auto given =
+        std::ranges::find(given_, flag, [](const auto& one) { return one.first->flag; });
+    return given == given_.end() ? std::string() : given->second.text;
+}
+
 bool OptionArguments::has_any(std::string_view object) const {
     return std::ranges::any_of(given_,
                                [&](const auto& one) { return one.first->object == object; });

@@ -27,6 +27,8 @@ class OptionArguments {
   public:
     void add_to(Verb verb, const scene::Option& option);
     bool has(std::string_view flag) const;
+    /// What was given of an option that takes a text; empty: nothing.
+    std::string text(std::string_view flag) const;
     /// Whether there is any of a JSON object: "overlay".
     bool has_any(std::string_view object) const;
     /// Puts what was given in the place of what a scene says.

@@ -129,7 +129,9 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
 void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
                                   session::NamedBy by) {
     const scene::Scene& now = state_.document.scene;
-    session::Named named{.plugin_folders = now.effects.plugin_path, .dems = now.dems};
+    session::Named named{.plugin_folders = now.effects.plugin_path,
+                         .dems = now.dems,
+                         .land_covers = {now.land_cover.file}};
     if (now.overlay) named.overlays = {now.overlay->file};
     session::Trust trusted(named, name_of(path), by);
     trusted.check_names(scene);

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem/gdal.h"
+#include "dem/gdal_support.h"
 #include "dem/photo_pixels.h"
 
 namespace relevo::dem {
@@ -95,8 +96,17 @@ std::uint32_t between(const Array2d<std::uint32_t>& rgba, const glm::dvec2& at) 
 }  // namespace
 
 struct Photo::Impl {
-    Impl(const std::string& path, Dataset opened, const Grid& of_raster, const Grid& of_dem)
-        : dem(of_dem), raster(of_raster), dataset(std::move(opened)), pixels(path, dataset.get()) {}
+    Impl(const std::string& path, Dataset opened, const Grid& of_raster, const Grid& of_dem,
+         std::vector<std::uint32_t> palette)
+        : dem(of_dem),
+          raster(of_raster),
+          dataset(std::move(opened)),
+          pixels(path, dataset.get(), std::move(palette)) {}
+
+    /// @param palette  of the first band; empty: as the file says
+    static std::unique_ptr<Impl> open(const std::string& path, const std::string& opened,
+                                      Dataset dataset, const Grid& dem,
+                                      std::vector<std::uint32_t> palette);
 
     Grid dem, raster;
     Dataset dataset;
@@ -209,6 +219,50 @@ void Photo::Impl::read(const PlacesOver& places, const Window& part, Array2d<std
         }
 }
 
+/// The band of a raster of classes.
+GDALRasterBandH band_of_classes(const std::string& path, GDALDatasetH dataset) {
+    const GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+    if (!band || GDALGetRasterDataType(band) != GDT_Byte)
+        refuse(path, "the raster's classes are no bytes; convert it with gdal_translate -ot Byte");
+    return band;
+}
+
+std::bitset<256> classes_of(const std::string& path) {
+    constexpr int kMostSide = 512;
+    std::string opened = path;
+    const Dataset dataset = open_dataset(opened);
+    const GDALRasterBandH band = band_of_classes(path, dataset.get());
+    const int columns = GDALGetRasterBandXSize(band), rows = GDALGetRasterBandYSize(band);
+    const int wide = std::min(columns, kMostSide), high = std::min(rows, kMostSide);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(wide) * static_cast<unsigned>(high));
+    const GdalMessages messages;
+    if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, bytes.data(), wide, high, GDT_Byte, 0,
+                     0) != CE_None) {
+        const std::string reason = messages.failure(path);
+        refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(path, reason)));
+    }
+    std::bitset<256> found;
+    for (const std::uint8_t byte : bytes)
+        found.set(byte);
+    int has = 0;
+    const double nodata = GDALGetRasterNoDataValue(band, &has);
+    if (has && nodata >= 0 && nodata <= 255 && nodata == std::floor(nodata))
+        found.reset(static_cast<std::size_t>(nodata));
+    return found;
+}
+
+std::unique_ptr<Photo::Impl> Photo::Impl::open(const std::string& path, const std::string& opened,
+                                               Dataset dataset, const Grid& dem,
+                                               std::vector<std::uint32_t> palette) {
+    const Georeference where = placed(path, opened, dataset.get());
+    const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
+                      where.affine, where.crs);
+    auto impl = std::make_unique<Impl>(path, std::move(dataset), raster, dem, std::move(palette));
+    impl->find_extent(path);
+    impl->find_density();
+    return impl;
+}
+
 PhotoKind photo_kind(const std::string& path) {
     std::string opened = path;
     return kind_of(open_dataset(opened).get());
@@ -220,13 +274,17 @@ std::shared_ptr<const Photo> Photo::open(const std::string& path, const Grid& de
     const PhotoKind kind = kind_of(dataset.get());
     if (kind != PhotoKind::Colours && kind != PhotoKind::Palette)
         refuse(path, "the raster is no image of 8 bits");
-    const Georeference where = placed(path, opened, dataset.get());
-    const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
-                      where.affine, where.crs);
-    auto impl = std::make_unique<Impl>(path, std::move(dataset), raster, dem);
-    impl->find_extent(path);
-    impl->find_density();
-    return std::shared_ptr<const Photo>(new Photo(std::move(impl)));
+    return std::shared_ptr<const Photo>(
+        new Photo(Impl::open(path, opened, std::move(dataset), dem, {})));
+}
+
+std::shared_ptr<const Photo> Photo::open_classes(const std::string& path, const Grid& dem,
+                                                 std::vector<std::uint32_t> palette) {
+    std::string opened = path;
+    Dataset dataset = open_dataset(opened);
+    band_of_classes(path, dataset.get());
+    return std::shared_ptr<const Photo>(
+        new Photo(Impl::open(path, opened, std::move(dataset), dem, std::move(palette))));
 }
 
 Photo::Photo(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -23,6 +25,11 @@ enum class PhotoKind {
 /// @throws Error (BadInput) as Source::open()
 PhotoKind photo_kind(const std::string& path);
 
+/// Values of bytes that a raster of classes has in its first band, of 512 x 512 of its pixels at
+/// most; those without data are left out.
+/// @throws Error (BadInput) if the band has no bytes, else as Source::open()
+std::bitset<256> classes_of(const std::string& path);
+
 /// An image of the ground in a file, in any CRS, read where it is needed.
 ///
 /// Pixels are transparent where the mask or alpha says so, or where all bands are nodata. Memory
@@ -34,6 +41,12 @@ class Photo {
     /// @throws Error (BadInput) if the file is not an image of 8 bits, has no georeference, or does
     ///     not reach the DEM
     static std::shared_ptr<const Photo> open(const std::string& path, const Grid& dem);
+    /// A raster of classes as an image: its first band, by a table.
+    /// @param palette  0xAABBGGRR, premultiplied, by class from 0; classes beyond it are
+    ///     transparent
+    /// @throws Error (BadInput) if the band has no bytes, else as open()
+    static std::shared_ptr<const Photo> open_classes(const std::string& path, const Grid& dem,
+                                                     std::vector<std::uint32_t> palette);
     ~Photo();
     Photo(const Photo&) = delete;
     Photo& operator=(const Photo&) = delete;

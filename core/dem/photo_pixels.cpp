@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -79,12 +80,15 @@ Window window_of(const glm::dvec2& first, const glm::dvec2& end, int columns, in
 
 }  // namespace
 
-PhotoPixels::PhotoPixels(const std::string& path, void* dataset)
+PhotoPixels::PhotoPixels(const std::string& path, void* dataset, std::vector<std::uint32_t> palette)
     : path_(path),
       dataset_(dataset),
       columns_(GDALGetRasterXSize(dataset)),
-      rows_(GDALGetRasterYSize(dataset)) {
-    const int bands = GDALGetRasterCount(dataset);
+      rows_(GDALGetRasterYSize(dataset)),
+      palette_(std::move(palette)) {
+    const bool is_classes = !palette_.empty();
+    const int bands = is_classes ? 1 : GDALGetRasterCount(dataset);
+    if (is_classes) numbers_ = {1, 1, 1};
     for (int i = 1; i <= bands; ++i) {
         const GDALColorInterp meaning =
             GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset, i));
@@ -95,7 +99,8 @@ PhotoPixels::PhotoPixels(const std::string& path, void* dataset)
     }
     const GDALRasterBandH first = GDALGetRasterBand(dataset, numbers_[0]);
     has_mask_ = alpha_ == 0 && (GDALGetMaskFlags(first) & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
-    if (const GDALColorTableH table = bands < 3 ? GDALGetRasterColorTable(first) : nullptr) {
+    const bool may_have_table = bands < 3 && !is_classes;
+    if (const GDALColorTableH table = may_have_table ? GDALGetRasterColorTable(first) : nullptr) {
         for (int k = 0; k < std::min(GDALGetColorEntryCount(table), 256); ++k) {
             GDALColorEntry entry{};
             GDALGetColorEntryAsRGB(table, k, &entry);

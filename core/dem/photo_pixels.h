@@ -21,7 +21,8 @@ namespace relevo::dem {
 class PhotoPixels {
   public:
     /// @param dataset  of a PhotoKind that is drawn; must outlive this
-    PhotoPixels(const std::string& path, void* dataset);
+    /// @param palette  of the first band, as Photo::open_classes(); empty: as the file says
+    PhotoPixels(const std::string& path, void* dataset, std::vector<std::uint32_t> palette = {});
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }

@@ -35,7 +35,7 @@ struct PageCache::Impl {
         : layers(std::move(given)), slots(static_cast<std::size_t>(count)) {
         for (const PageLayer& layer : layers) {
             textures.emplace_back(gl::TextureKind::D2Array, layer.format,
-                                  gl::Extent{layer.side_px, layer.side_px, count}, 1,
+                                  gl::Extent{layer.side_px, layer.side_px, count * layer.slices}, 1,
                                   layer.name.c_str());
             textures.back().set_sampling(layer.filter, gl::Wrap::Clamp);
         }
@@ -85,8 +85,13 @@ struct PageCache::Impl {
         slot = {page.key.packed(), now};
         slot_of[slot.key] = at;
         for (std::size_t i = 0; i < layers.size(); ++i) {
-            const int side = layers[i].side_px;
-            textures[i].write(0, {0, 0, at}, {side, side, 1}, page.layers[i]);
+            const int side = layers[i].side_px, slices = layers[i].slices;
+            const std::span<const std::byte> texels = page.layers[i];
+            const std::size_t of_slice = texels.size() / static_cast<unsigned>(slices);
+            for (int slice = 0; slice < slices; ++slice)
+                textures[i].write(
+                    0, {0, 0, at + slice * static_cast<int>(slots.size())}, {side, side, 1},
+                    texels.subspan(static_cast<unsigned>(slice) * of_slice, of_slice));
         }
     }
 

@@ -20,9 +20,11 @@ struct PageLayer {
     gl::Format format;
     int side_px = 0;
     gl::Filter filter = gl::Filter::Nearest;
-    /// Texels of a page, row by row. Called on several threads, possibly after the call that
-    /// requested the page; valid until the cache is destroyed.
+    /// Texels of a page, row by row, of one slice after the other. Called on several threads,
+    /// possibly after the call that requested the page; valid until the cache is destroyed.
     std::function<std::vector<std::byte>(const TileKey&)> make;
+    /// Slices of the texture for each page: that of slot i has i, slots() + i, and so on.
+    int slices = 1;
 };
 
 /// Least-recently-used slices of array textures. Layers share slot indices: a tile page has the

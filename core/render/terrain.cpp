@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <unordered_set>
 
 #include <epoxy/gl.h>
@@ -173,14 +174,29 @@ void Terrain::update_surface_layers() {
                           [this](const TileKey& key) {
                               return bytes_of(surface_page(pyramid_, key.level, key.at));
                           }});
-    if (has_water_pages_)
+    if (water_)
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
-                          [this](const TileKey& key) {
-                              return bytes_of(water_->page(pyramid_, key.level, key.at));
-                          }});
-    surface_bytes_ = std::ssize(layers) * kNormalPageBytes;
-    const int in_memory = normal_slots_in(options_.memory, std::ssize(layers));
+                          [this](const TileKey& key) { return make_water(key); },
+                          options_.land_cover ? 2 : 1});
+    std::int64_t slices = 0;
+    for (const PageLayer& layer : layers)
+        slices += layer.slices;
+    surface_bytes_ = slices * kNormalPageBytes;
+    const int in_memory = normal_slots_in(options_.memory, slices);
     surface_ = PageCache(std::move(layers), std::min(normal_layers_, in_memory));
+}
+
+std::vector<std::byte> Terrain::make_water(const TileKey& key) const {
+    std::vector<std::byte> texels = bytes_of(water_->page(pyramid_, key.level, key.at));
+    if (!options_.land_cover) return texels;
+    const double step = 1 << key.level;
+    const Array2d<std::uint32_t> cover =
+        options_.land_cover->read({.first_post = glm::dvec2(key.at * kNormalNodes - 1) * step,
+                                   .step = glm::dvec2(step),
+                                   .count = glm::ivec2(kNormalPage_px)});
+    const auto bytes = std::as_bytes(std::span(cover.data(), cover.size()));
+    texels.insert(texels.end(), bytes.begin(), bytes.end());
+    return texels;
 }
 
 void Terrain::set_overlay(std::shared_ptr<const OverlayRaster> raster) {
@@ -205,14 +221,20 @@ void Terrain::write(FrameBlock& block) const {
     const RasterPlace overlay = overlay_.place("overlay");
     block.overlay_texels = overlay.place;
     block.overlay_shape = overlay.shape;
+    block.land_cover = glm::vec4(options_.land_cover ? 1 : 0, 0, 0, 0);
 }
 
 void Terrain::require_water_pages() {
     if (has_water_pages_) return;
     has_water_pages_ = true;
     if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
-    water_.emplace(*drawn_m_, options_.water ? *options_.water : *own_water_, options_.filled,
-                   reduction_);
+    const dem::Water& water = options_.water ? *options_.water : *own_water_;
+    if (!water.any() && !options_.filled && !options_.land_cover) {
+        dry_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {1, 1, 1}, 1, "dry ground");
+        dry_.write(0, {0, 0, 0}, {1, 1, 1}, std::vector<std::byte>(4));
+        return;
+    }
+    water_.emplace(*drawn_m_, water, options_.filled, reduction_);
     surface_ = PageCache();
 }
 
@@ -249,6 +271,7 @@ const ClimateVolume& Terrain::update_climate(int day) {
 const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == kClimateTexture) return climate_ ? &climate_->texture() : nullptr;
     if (name == "page_table") return &page_table_.texture();
+    if (name == "water_pages" && dry_.name() != 0) return &dry_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     if (const gl::Texture* const light = light_.texture(name)) return light;
     if (const gl::Texture* const raster = overlay_.texture(name)) return raster;

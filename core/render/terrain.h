@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "dem/heightfield.h"
+#include "dem/photo.h"
 #include "dem/pyramid.h"
 #include "dem/water.h"
 #include "geo/local_frame.h"
@@ -46,6 +47,9 @@ struct TerrainOptions {
     /// terrain.
     const dem::Water* water = nullptr;              ///< null: found when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
+    /// Shares of the ground for lib/land_cover.glsl: red trees, green low plants, blue ice, alpha
+    /// where they are known. Null: none.
+    std::shared_ptr<const dem::Photo> land_cover{};
     SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
 };
@@ -191,6 +195,7 @@ class Terrain {
     /// Creates surface_, without pages, if a layer was added or changed since.
     void update_surface_layers();
     std::vector<std::byte> make_normals(const TileKey& key) const;
+    std::vector<std::byte> make_water(const TileKey& key) const;
     TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
 
     std::uint64_t serial_;
@@ -216,6 +221,7 @@ class Terrain {
     int reduction_;
     std::optional<dem::Water> own_water_;  // unless one was given
     std::optional<WaterField> water_;
+    gl::Texture dry_;  // for programs that read "water_pages" where there is nothing to tell
     bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
     bool complete_ = true;
     PageTable page_table_;

@@ -131,9 +131,8 @@ ordered_json overlay_json(const Scene& scene, const fs::path& folder) {
     json["file"] = from_folder(overlay.file, folder);
     add_options(scene, "overlay", Defaults::Written, json);
     if (!overlay.colours.empty())
-        json["colours"] = is_colour_file(overlay.colours)
-                              ? path_from_folder(overlay.colours, folder)
-                              : overlay.colours;
+        json["colours"] = names_file(overlay.colours) ? path_from_folder(overlay.colours, folder)
+                                                      : overlay.colours;
     if (overlay.range) json["range"] = {overlay.range->first, overlay.range->second};
     return json;
 }
@@ -160,6 +159,10 @@ ordered_json json_of(const Scene& scene, const fs::path& folder) {
     json["camera"] = camera_json(scene);
     add_options(scene, "", Defaults::Written, json);
     if (!scene.forecast.empty()) json["weather"] = from_folder(scene.forecast, folder);
+    if (!scene.land_cover.file.empty())
+        json["land_cover"] = from_folder(scene.land_cover.file, folder);
+    if (names_file(scene.land_cover.classes))
+        json["land_cover_classes"] = from_folder(scene.land_cover.classes, folder);
     json["effects"] = effects_json(scene.effects, folder);
     if (scene.overlay) json["overlay"] = overlay_json(scene, folder);
     if (scene.stamps != Stamps()) json["stamps"] = stamps_json(scene);
@@ -279,7 +282,7 @@ std::string scene_text(const Scene& scene, const fs::path& folder) {
     return text_of(json_of(scene, folder), 2) + "\n";
 }
 
-bool is_colour_file(std::string_view name_or_path) {
+bool names_file(std::string_view name_or_path) {
     return name_or_path.find_first_of("/.") != std::string_view::npos;
 }
 
@@ -299,9 +302,11 @@ Scene with_absolute_paths(Scene scene) {
     for (std::string& name : scene.dems)
         whole(name);
     whole(scene.forecast);
+    whole(scene.land_cover.file);
+    if (names_file(scene.land_cover.classes)) whole(scene.land_cover.classes);
     if (scene.overlay) {
         whole(scene.overlay->file);
-        if (is_colour_file(scene.overlay->colours)) whole(scene.overlay->colours);
+        if (names_file(scene.overlay->colours)) whole(scene.overlay->colours);
     }
     for (std::string& preset : scene.effects.presets)
         if (effect::is_preset_file(preset)) whole(preset);

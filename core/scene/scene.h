@@ -47,9 +47,17 @@ struct Overlay {
     std::string title;     ///< of the legend; empty: the band's name
 };
 
-/// Whether Overlay::colours are a colour file, whose path has a slash or a dot, and not a ramp that
-/// the program brings.
-bool is_colour_file(std::string_view name_or_path);
+/// Whether a text is the path of a file, which has a slash or a dot, and not one of the names that
+/// the program knows.
+bool names_file(std::string_view name_or_path);
+
+/// A map of what grows on the ground and what is bare, which effects take for the climate's word.
+struct LandCover {
+    std::string file;     ///< a raster of classes that GDAL opens; empty: none
+    std::string classes;  ///< what they are: a name that the program knows, or a table's file
+
+    bool operator==(const LandCover&) const = default;
+};
 
 /// What stands on a picture beside the ground, in its corners and, of the graticule, on the ground.
 struct Stamps {
@@ -76,6 +84,7 @@ struct Scene {
     std::optional<double> station_height_m;  ///< of the weather's station; none: of the ground
     View view;
     std::optional<Overlay> overlay;
+    LandCover land_cover;
     Stamps stamps;
     double exaggeration = 1;
     Effects effects;

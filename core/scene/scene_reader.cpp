@@ -108,6 +108,9 @@ void SceneReader::take_options(ObjectReader& object, std::string_view name, Scen
             check(object, "weather", [&] { option.set(scene, whole_report(*value)); });
         else
             option.set(scene, *value);
+        if (option.key == "land_cover") scene.land_cover.file = beside(scene.land_cover.file);
+        if (option.key == "land_cover_classes" && names_file(scene.land_cover.classes))
+            scene.land_cover.classes = beside(scene.land_cover.classes);
     }
 }
 
@@ -136,7 +139,7 @@ void SceneReader::overlay(const json::Value& value, const std::string& path, Sce
     Overlay& overlay = scene.overlay.emplace();
     overlay.file = beside(object.string("file"));
     overlay.colours = object.string("colours", "");
-    if (is_colour_file(overlay.colours)) overlay.colours = beside(overlay.colours);
+    if (names_file(overlay.colours)) overlay.colours = beside(overlay.colours);
     if (const json::Value* const range = object.take("range")) {
         const std::vector<double> v =
             numbers(object, *range, "range", 2, 2, "the values of the first and the last colour");

@@ -52,8 +52,7 @@ std::vector<InstalledEffects::ChosenFile> InstalledEffects::chosen_files(
     for (const effect::Effect& effect : registry.effects())
         for (const effect::RasterSpec& raster : effect.manifest.rasters) {
             if (raster.colours.empty()) continue;
-            if (const std::string colours = set.text(raster.colours);
-                scene::is_colour_file(colours))
+            if (const std::string colours = set.text(raster.colours); scene::names_file(colours))
                 files.push_back({raster.colours, colours});
         }
     return files;

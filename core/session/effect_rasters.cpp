@@ -45,7 +45,7 @@ EffectRasters::Entry EffectRasters::read(const Source& source, const dem::Grid& 
         entry.overlay = read_overlay({.file = source.file, .colours = source.colours}, grid);
     }
     entry.stamps.add(source.file);
-    if (scene::is_colour_file(source.colours)) entry.stamps.add(source.colours);
+    if (scene::names_file(source.colours)) entry.stamps.add(source.colours);
     return entry;
 }
 

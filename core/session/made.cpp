@@ -30,6 +30,7 @@ constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
                               std::pair("overlay", "the overlay has changed"),
                               std::pair("colours", "the colour file has changed"),
                               std::pair("weather", "the weather has changed"),
+                              std::pair("land_cover", "the land cover has changed"),
                               std::pair("presets", "the preset has changed"),
                               std::pair("plugins", "a plugin has changed"),
                               std::pair("files", "a file that it was made from has changed")};

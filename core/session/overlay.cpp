@@ -65,8 +65,8 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool
             stop.value = from + (stop.value - low) / (high - low) * (to - from);
         return ramp;
     }
-    return scene::is_colour_file(asked.colours) ? chart::read_ramp(asked.colours, from, to)
-                                                : chart::named_ramp(asked.colours, from, to);
+    return scene::names_file(asked.colours) ? chart::read_ramp(asked.colours, from, to)
+                                            : chart::named_ramp(asked.colours, from, to);
 }
 
 /// Whether the scene's overlay is drawn in its own colours.
@@ -172,7 +172,7 @@ std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::str
 
 void add_files(const scene::Overlay& overlay, FilesInUse& files) {
     dem::add_all(std::span(&overlay.file, 1), files);
-    if (scene::is_colour_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
+    if (scene::names_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
 }
 
 }  // namespace relevo::session

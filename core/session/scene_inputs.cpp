@@ -146,11 +146,15 @@ const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::st
 }
 
 SceneInputs::Key SceneInputs::key_of(const scene::Scene& scene) {
-    Key key{&raster_files(scene.dems), nullptr, nullptr, &of(scene.effects), {}};
+    Key key{.dems = &raster_files(scene.dems), .effects = &of(scene.effects)};
     if (!scene.forecast.empty()) key.forecast = &raster_files({scene.forecast});
+    if (!scene.land_cover.file.empty()) {
+        key.land_cover = &raster_files({scene.land_cover.file});
+        key.classes = scene.land_cover.classes;
+    }
     if (!scene.overlay) return key;
     key.overlay = &raster_files({scene.overlay->file});
-    if (scene::is_colour_file(scene.overlay->colours)) key.colours = scene.overlay->colours;
+    if (scene::names_file(scene.overlay->colours)) key.colours = scene.overlay->colours;
     return key;
 }
 
@@ -161,10 +165,16 @@ void SceneInputs::add_to(FilesInUse& files, const scene::Scene& scene) {
     if (!scene.forecast.empty())
         for (const fs::path& file : raster_files({scene.forecast}))
             files.add_input(file, "the weather");
+    if (!scene.land_cover.file.empty()) {
+        for (const fs::path& file : raster_files({scene.land_cover.file}))
+            files.add_input(file, "the land cover");
+        if (scene::names_file(scene.land_cover.classes))
+            files.add_input(scene.land_cover.classes, "the classes");
+    }
     if (scene.overlay) {
         for (const fs::path& file : raster_files({scene.overlay->file}))
             files.add_input(file, "the overlay");
-        if (scene::is_colour_file(scene.overlay->colours))
+        if (scene::names_file(scene.overlay->colours))
             files.add_input(scene.overlay->colours, "the colours");
     }
     const OfEffects& effects = of(scene.effects);
@@ -227,10 +237,16 @@ std::string SceneInputs::record_of(const scene::Scene& scene) {
     nlohmann::ordered_json json{{"relevo", version_}, {"dem", digest_of_rasters(scene.dems)}};
     if (scene.overlay) {
         json["overlay"] = digest_of_rasters({scene.overlay->file});
-        if (scene::is_colour_file(scene.overlay->colours))
+        if (scene::names_file(scene.overlay->colours))
             json["colours"] = digest({scene.overlay->colours});
     }
     if (!scene.forecast.empty()) json["weather"] = digest_of_rasters({scene.forecast});
+    if (!scene.land_cover.file.empty()) {
+        json["land_cover"] = digest_of_rasters({scene.land_cover.file});
+        if (scene::names_file(scene.land_cover.classes))
+            json["land_cover"] =
+                json["land_cover"].get<std::string>() + digest({scene.land_cover.classes});
+    }
     const OfEffects& effects = of(scene.effects);
     if (!effects.presets.empty()) json["presets"] = digest(effects.presets);
     std::string plugins;
@@ -262,6 +278,7 @@ std::vector<HashedFile> SceneInputs::hashed_dem(const scene::Scene& scene) {
 std::vector<std::string> SceneInputs::remote_names(const scene::Scene& scene) {
     std::vector<std::string> names = scene.dems, remote;
     if (scene.overlay) names.push_back(scene.overlay->file);
+    if (!scene.land_cover.file.empty()) names.push_back(scene.land_cover.file);
     for (const std::string& name : names)
         if (raster_files({name}).empty()) remote.push_back(name);
     return remote;

@@ -64,13 +64,14 @@ class SceneInputs {
     const std::string& sha256(const std::filesystem::path& path);
     std::string digest(const std::vector<std::filesystem::path>& files);
     std::string digest_of_rasters(const std::vector<std::string>& names);
-    /// Identifies a scene's files: addresses of cached lists, and the colour file's name.
+    /// Identifies a scene's files: addresses of cached lists, and the names of tables.
     struct Key {
         const void* dems = nullptr;
         const void* overlay = nullptr;
         const void* forecast = nullptr;
+        const void* land_cover = nullptr;
         const void* effects = nullptr;
-        std::string colours;
+        std::string colours, classes;
 
         auto operator<=>(const Key&) const = default;
     };

@@ -7,6 +7,7 @@
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
 #include "scene/panorama.h"
+#include "session/land_cover.h"
 #include "session/non_finite.h"
 #include "session/picture_maker.h"
 #include "session/standing.h"
@@ -33,6 +34,7 @@ std::shared_ptr<const LoadedDem> load(const scene::Scene& scene,
 Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     : options(std::move(o)), state(std::move(given), options.format.has_value()) {
     const scene::Scene& scene = state.scene;
+    add_files(scene.land_cover, files);
     if (scene.overlay) {
         add_files(*scene.overlay, files);
         overlay_time = time_of(*scene.overlay);
@@ -234,7 +236,12 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     part.reset();
     const bool other_shape = next.exaggeration != scene.exaggeration;
     scene.exaggeration = next.exaggeration;
-    if (next.pixel_error != scene.pixel_error) {
+    const bool other_cover = next.land_cover != scene.land_cover;
+    if (other_cover) {
+        land_cover = open_land_cover(next.land_cover, state.dem()->source->grid());
+        scene.land_cover = next.land_cover;
+    }
+    if (other_cover || next.pixel_error != scene.pixel_error) {
         scene.pixel_error = next.pixel_error;
         upload(state.dem());
     } else {
@@ -252,6 +259,8 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
     if (state.dem() != dem) {
         rasters = {};
         fields = {};
+        if (!state.dem() || state.dem()->source != dem->source)
+            land_cover = open_land_cover(state.scene.land_cover, dem->source->grid());
     }
     terrain.reset();  // refers to the previous DEM
     state.take_dem(dem);
@@ -263,6 +272,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
+                        .land_cover = land_cover,
                         .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
                                                                       : render::ShadowsOn::Device},

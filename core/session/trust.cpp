@@ -48,6 +48,7 @@ void Trust::check_names(const scene::Scene& scene) const {
     for (const std::string& name : scene.dems)
         check("dem.files", name, given_.dems);
     if (scene.overlay) check("overlay.file", scene.overlay->file, given_.overlays);
+    check("land_cover", scene.land_cover.file, given_.land_covers);
 }
 
 /// The plugins below a folder that have no native module.

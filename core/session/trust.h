@@ -11,7 +11,7 @@ namespace relevo::session {
 /// What the user has named, on the command line or by opening it.
 struct Named {
     bool all = false;  ///< --trust: whatever files name is used
-    std::vector<std::string> plugin_folders, dems, overlays;
+    std::vector<std::string> plugin_folders, dems, overlays, land_covers;
 };
 
 /// Whose names a scene has besides those of the user.

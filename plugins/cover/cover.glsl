@@ -1,10 +1,11 @@
 //! provides  materials: natural ground by climate, height, date and shape
 //! hook      albedo, normal
-//! reads     the climate's tables, height [m], slope and aspect, ground coordinates [m]
+//! reads     the climate's tables, a map of land cover, height [m], slope and aspect, ground coordinates [m]
 //! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess, normal
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
+//@ include lib/land_cover.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
 
@@ -142,14 +143,16 @@ vec2 cover_white_at(in vec2 place, in float height_m) {
 /// @param rain    dryness, with what the slope does to it
 /// @param growth  warmth for plants
 /// @param steep   tangent of the slope
-vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in float steep) {
+/// @param mapped  0..1: how far a map of land cover says that there is no forest, whatever the rain
+vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in float steep, in float mapped) {
     vec3 steppe = mix(cover_steppe, cover_steppe_green, ground.green * smoothstep(0.4, 1.0, rain));
     vec3 meadow = mix(cover_straw, cover_grass, ground.green);
     meadow = mix(mix(meadow, cover_tundra, 0.75), meadow, smoothstep(0.7, 1.7, growth));
     vec3 open = mix(cover_desert, steppe, smoothstep(0.25, 0.8, rain));
     open = mix(open, meadow, smoothstep(0.8, 1.9, rain));
     // Where winters are mild shrubs stay green through the drought: chaparral, maquis, fynbos.
-    float shrubs = smoothstep(0.55, 1.1, rain) * smoothstep(6.0, 11.0, ground.temperature) * smoothstep(0.06, 0.4, steep);
+    float shrubs = smoothstep(0.55, 1.1, rain) * smoothstep(6.0, 11.0, ground.temperature) * smoothstep(0.06, 0.4, steep) *
+                   (1.0 - mapped * smoothstep(1.0, 1.8, rain));
     return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
@@ -248,6 +251,20 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     return shares;
 }
 
+/// What a map of land cover says, instead of the climate.
+/// @param shares, rain  changed as far as the map tells anything
+void cover_take_map(in LandCover map, inout cover_Shares shares, inout float rain) {
+    float left = max(1.0 - map.ice, 1e-3);
+    float trees = map.trees / left, plants = map.plants / left, bare = max(1.0 - trees - plants, 0.0);
+    // Bare ground is sand where the climate is dry, and rock elsewhere: young lava, till, scree.
+    float rock = bare * max(shares.rock, smoothstep(0.25, 0.9, rain)), sand = bare - rock;
+    shares.rock = mix(shares.rock, rock, map.known);
+    shares.forest = mix(shares.forest, trees / max(1.0 - rock, 1e-3), map.known);
+    shares.ice = mix(shares.ice, map.ice, map.known);
+    float watered = mix(0.2, max(rain, 1.2), plants / max(plants + sand, 1e-3));
+    rain = mix(rain, watered, map.known * (1.0 - rock));
+}
+
 /// The grain of the heaviest materials, as a factor of mean 1, and their gloss; fades by itself.
 vec4 cover_grain_of(in Surface s) {
     vec4 grain = vec4(0.0);
@@ -280,11 +297,13 @@ void cover_on_albedo(inout Surface s) {
     float growth = cover_growth(ground, s.height_m);
     float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny * shape.fine);
     cover_Shares shares = cover_shares(ground, white, rain, growth, shape);
+    LandCover map = land_cover_at(s.post, s.pixel_posts);
+    if (map.known > 0.0) cover_take_map(map, shares, rain);
 
     // Patches are for the eye that is near: none of them is seen from afar.
     float near = 1.0 / (1.0 + pixel_m * pixel_m * 0.02);
     float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
-    vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep);
+    vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     // Dry land lies as low as the shore of the Dead Sea.
     float floor_share = max((1.0 - smoothstep(-30.0, -12.0, s.height_m)) * smoothstep(0.6, 1.2, rain),
                             1.0 - smoothstep(-600.0, -440.0, s.height_m));

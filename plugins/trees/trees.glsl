@@ -1,12 +1,13 @@
 //! provides  trees: conifers and broadleaf trees near the eye, and the forest's cover farther away
 //! hook      material; places tree
-//! reads     the climate's tables, height, slope, water
+//! reads     the climate's tables, a map of land cover, height, slope, water
 //! writes    diffuse, ambient, specular of the ground below trees and of the cover
 //! source    lib/crown.glsl: gaps between crowns
 
 //@ include lib/climate.glsl
 //@ include lib/crown.glsl
 //@ include lib/instances.glsl
+//@ include lib/land_cover.glsl
 //@ include lib/repeats.glsl
 //@ include lib/water.glsl
 
@@ -44,7 +45,9 @@ float trees_patch(in vec2 anchored_m) {
 
 /// @param normal  of the ground, not exaggerated
 /// @param water   share of the ground that is water
-trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 anchored_m, in float water) {
+/// @param map     where it tells anything, it says where forest is instead of the climate
+trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 anchored_m, in float water,
+                        in LandCover map) {
     ClimateGround ground = climate_ground(climate_place(up), height_m);
     float growth = ground.growth + trees_line_m / 450.0;
     float cosine = clamp(dot(normal, up), 0.02, 1.0);
@@ -52,6 +55,7 @@ trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 a
     vec2 slopes = tan(radians(min(trees_slope_deg, vec2(89.0))));
     trees_Stand stand;
     float wooded = smoothstep(1.0, 2.1, ground.dryness) * smoothstep(0.85, 1.2, growth - 0.06 * steep);
+    wooded = mix(wooded, map.trees, map.known);
     float closed = mix(1.0, smoothstep(0.2, 0.55, trees_patch(anchored_m)), trees_clearings);
     stand.density = trees_density * wooded * closed * (1.0 - smoothstep(slopes.x, max(slopes.y, slopes.x + 1e-3), steep)) *
                     (1.0 - smoothstep(0.0, 0.5, water));
@@ -115,7 +119,7 @@ float trees_crown_sunlight(in trees_Stand stand, in float per_m2) {
 
 void trees_place_tree(in InstanceSite at, inout Instance it) {
     trees_Stand stand = trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
-                                    water_at(at.ground.post, 1.0).x);
+                                    water_at(at.ground.post, 1.0).x, land_cover_at(at.ground.post, 1.0));
     bool conifer = at.random.y < stand.conifers;
     Crown crown = trees_crown(stand, conifer);
     it.kind = conifer ? 0 : 1;
@@ -128,7 +132,8 @@ void trees_place_tree(in InstanceSite at, inout Instance it) {
 }
 
 void trees_on_material(inout Surface s) {
-    trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x);
+    trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x,
+                                    land_cover_at(s.post, s.pixel_posts));
     float per_m2 = trees_per_m2(stand), range_m = trees_range_m();
     float shaded = per_m2 * instances_shadow_share(s.position_m, range_m);  // by shadows that are drawn
     float to_sun = dot(frame.sun_direction.xyz, s.up), apart = trees_apart(stand, -s.position_m / s.distance_m, s.up);

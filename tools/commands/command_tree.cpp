@@ -30,10 +30,10 @@ struct Row {
 const std::vector<Row>& rows() {
     static const std::vector<Row> all = {
         {Kind::File,
-         {"DEM",        "-o",       "--scene", "--save-scene", "--from",     "--timings",
-          "--overlay",  "--points", "--times", "--along",      "--save-job", "--contact-sheet",
-          "JOB",        "A",        "B",       "GOLDEN",       "OUTPUT",     "--slurm",
-          "--parallel", "--stac",   "--tiles", "--weather"}},
+         {"DEM",        "-o",       "--scene", "--save-scene", "--from",      "--timings",
+          "--overlay",  "--points", "--times", "--along",      "--save-job",  "--contact-sheet",
+          "JOB",        "A",        "B",       "GOLDEN",       "OUTPUT",      "--slurm",
+          "--parallel", "--stac",   "--tiles", "--weather",    "--land-cover"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},
@@ -48,6 +48,7 @@ const std::vector<Row>& rows() {
         {Kind::Words,
          {"--overlay-colours"},
          {"sun", "shade", "steel", "viridis", "inferno", "grey"}},
+        {Kind::Words, {"--land-cover-classes"}, {"worldcover", "nlcd", "corine"}},
         {Kind::Words, {"--time", "--start"}, {"sunrise", "sunset", "noon", "now"}},
         {Kind::Words, {"--motion"}, {"day", "year", "orbit", "flight"}},
         {Kind::Words, {"--co"}, {"COMPRESS=", "LEVEL=", "BLOCKSIZE=", "OVERVIEWS="}},

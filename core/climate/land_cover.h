@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace relevo::climate {
+
+/// Classes of a map of land cover, 0 to 255.
+using Classes = std::bitset<256>;
+
+/// What the classes of a map of land cover are: shares of the ground that is trees, low plants and
+/// ice; what is left is bare.
+class LandCoverTable {
+  public:
+    /// A table's file: lines of `CLASS,TREES,PLANTS,ICE,name`, shares from 0 to 1 or all `?` where
+    /// a class tells nothing; lines with # are skipped, names may be left out.
+    /// @throws Error (BadInput) `land cover: FILE:LINE: ...`
+    static LandCoverTable read(const std::filesystem::path& file);
+
+    /// Names of the tables that the program has: corine, nlcd, worldcover.
+    static const std::vector<std::string>& names();
+    /// One of them. @throws Error (BadInput) for another name
+    static LandCoverTable named(const std::string& name);
+    /// The name of the first of them that has all of a map's classes; empty: none has.
+    static std::string fitting(const Classes& in_map);
+
+    const Classes& classes() const { return classes_; }
+    /// By class from 0: trees in the low byte, then plants, ice, and how far the class tells
+    /// anything, 0 to 255.
+    std::vector<std::uint32_t> texels() const { return {texels_.begin(), texels_.end()}; }
+
+  private:
+    Classes classes_;
+    std::array<std::uint32_t, 256> texels_{};
+};
+
+/// "3, 17, 200", with no more than `most` of them.
+std::string text_of(const Classes& classes, int most = 8);
+
+}  // namespace relevo::climate

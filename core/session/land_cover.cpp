@@ -1,0 +1,63 @@
+#include "session/land_cover.h"
+
+#include <span>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "climate/land_cover.h"
+#include "dem/files_of.h"
+
+namespace relevo::session {
+namespace {
+
+using climate::Classes;
+using climate::LandCoverTable;
+
+LandCoverTable guessed_table(const std::string& file, const Classes& in_map) {
+    const std::string name = LandCoverTable::fitting(in_map);
+    if (name.empty())
+        bad_input(fmt::format(
+            "{}: its classes ({}) are not those of {}; --land-cover-classes FILE says what they "
+            "are",
+            printable(file), climate::text_of(in_map), fmt::join(LandCoverTable::names(), ", ")));
+    log::info(
+        fmt::format("{}: classes are taken to be those of {}; --land-cover-classes names others",
+                    printable(file), name));
+    return LandCoverTable::named(name);
+}
+
+LandCoverTable table_of(const scene::LandCover& asked) {
+    const Classes in_map = dem::classes_of(asked.file);
+    if (asked.classes.empty()) return guessed_table(asked.file, in_map);
+    LandCoverTable table = scene::names_file(asked.classes) ? LandCoverTable::read(asked.classes)
+                                                            : LandCoverTable::named(asked.classes);
+    if (const Classes unknown = in_map & ~table.classes(); unknown.any())
+        log::warning(fmt::format("{}: {} has no class {}; the climate says what grows there",
+                                 printable(asked.file), printable(asked.classes),
+                                 climate::text_of(unknown)));
+    return table;
+}
+
+}  // namespace
+
+std::shared_ptr<const dem::Photo> open_land_cover(const scene::LandCover& asked,
+                                                  const dem::Grid& grid) {
+    if (asked.file.empty()) {
+        if (!asked.classes.empty())
+            bad_input("--land-cover-classes: there is no map; --land-cover FILE sets one");
+        return nullptr;
+    }
+    return dem::Photo::open_classes(asked.file, grid, table_of(asked).texels());
+}
+
+void add_files(const scene::LandCover& asked, FilesInUse& files) {
+    if (asked.file.empty()) return;
+    dem::add_all(std::span(&asked.file, 1), files);
+    if (scene::names_file(asked.classes)) files.add_input(asked.classes, "the classes");
+}
+
+}  // namespace relevo::session
