@@ -5,6 +5,7 @@
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
+//@ include lib/ground.glsl
 //@ include lib/land_cover.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
@@ -202,6 +203,36 @@ cover_Crown cover_crown_at(in ivec2 cell, in vec2 within, in float conifers) {
     return highest;
 }
 
+/// Towards the eye over the ground, for a metre of height above it [m]. No more than for 6 degrees.
+vec2 cover_slant(in Surface s) {
+    vec3 east = east_at(s.up), to_eye = -s.position_m;
+    vec3 north = cross(s.up, east), ground = s.ground_normal / max(dot(s.ground_normal, s.up), 0.2);
+    vec2 level = vec2(dot(to_eye, east), dot(to_eye, north));
+    float rise = dot(to_eye, s.up) + dot(level, vec2(dot(ground, east), dot(ground, north)));
+    return level / max(rise, 0.1 * s.distance_m);
+}
+
+/// The crown that a point of the ground is seen through: the first one that the ray to the eye leaves, from above.
+cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in float conifers) {
+    const float top = 0.8, down = 0.4;  // in cells: crowns are from -0.9 to 0.9
+    const int down_steps = 4, all_steps = 7;
+    vec2 slant_m = size_m * cover_slant(s);
+    cover_Crown crown = cover_Crown(vec2(0.0), -2.0, 0.5), found = crown;
+    float height = top, next = down;
+    for (int i = 0; i < all_steps; ++i) {
+        vec2 within;
+        ivec2 cell = ground_cell(s.anchored_m + height * slant_m, cover_turn * (1.0 / size_m), within);
+        crown = cover_crown_at(cell, within + wander, conifers);
+        bool inside = crown.height >= height;
+        if (inside) found = crown;
+        if (!inside && next == down && i + 1 >= down_steps) break;  // through to the ground
+        // Down until inside, then half of the step before, up or down.
+        if (inside || next < down) next *= 0.5;
+        height += inside ? next : -next;
+    }
+    return found;
+}
+
 /// Near the eye, where one stands between the trees, and from so far that they are smaller than pixels, none.
 cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float conifers) {
     const float size_m = 7.5, stand_m = 96.0;
@@ -213,14 +244,16 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float conifers) 
     vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
     canopy.light += stands * (0.9 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
     if (crowns == 0.0) return canopy;
-    vec2 within;
-    ivec2 cell = ground_cell(s.anchored_m, cover_turn * (1.0 / size_m), within);
-    cover_Crown crown = cover_crown_at(cell, within + 0.5 * stand.ar, conifers);
+    cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
     bool between = crown.height < -1.0;
-    canopy.slope = between ? vec2(0.0) : crowns * (crown.slope * cover_turn);
+    canopy.slope = between ? vec2(0.0) : 0.6 * crowns * (crown.slope * cover_turn);
     float depth = between ? 0.3 : mix(0.5, 1.25, smoothstep(-0.9, 0.7, crown.height));
     vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.7, 0.4, 0.2);
-    canopy.light *= mix(vec3(1.0), 1.25 * depth * tree, crowns);  // 1.25: as bright in the mean
+    // Clumps of leaves on a crown, of a metre, shade each other.
+    const float clump_m = 9.0;
+    vec4 clump = cover_turned_patch(s, cover_turn / clump_m);
+    float leaves = between ? 0.0 : 1.6 * clump.a + 1.2 * clump.r;
+    canopy.light *= mix(vec3(1.0), 1.25 * depth * tree * (1.0 + leaves), crowns);  // 1.25: as bright in the mean
     return canopy;
 }
 

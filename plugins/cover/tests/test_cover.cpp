@@ -67,6 +67,64 @@ TEST(Cover, StepsOfPostsFarApartCountForMore) {
     EXPECT_NEAR(steepness(80), std::tan(kPi / 6) * 1.375, 1e-3);
 }
 
+// ---- crowns
+
+constexpr const char* kSeenFromTheSouth =
+    "Surface s;\n"
+    "s.up = vec3(0.0, 0.0, 1.0);\n"
+    "s.ground_normal = vec3(0.0, 0.0, 1.0);\n"
+    "s.position_m = vec3(0.0, 300.0, -300.0);\n"
+    "s.distance_m = length(s.position_m);\n"
+    "s.anchored_m = vec2(1.37 * float(x), 1.91 * float(y));\n";
+
+TEST(Cover, ARayToTheEyeLeavesTheGroundByItsSlope) {
+    test::GpuSnippet gpu("cover");
+    gpu.frame().polar_axis = glm::vec4(0, std::cos(0.8), std::sin(0.8), 0);
+    const glm::vec4 found =
+        gpu.run(std::string(kSeenFromTheSouth) +
+                    "result.xy = cover_slant(s);\n"
+                    "s.ground_normal = vec3(0.0, -0.5, sqrt(0.75));\n"  // rises to the north
+                    "result.zw = cover_slant(s);\n",
+                1, 1)[0];
+    EXPECT_NEAR(found.x, 0, 1e-4);
+    EXPECT_NEAR(found.y, -1, 1e-4);
+    EXPECT_NEAR(found.w, -1 / (1 + std::sqrt(1.0 / 3)), 1e-4);
+}
+
+TEST(Cover, TheCrownThatIsSeenIsTheFirstOnTheRay) {
+    // Against the same ray in 200 steps.
+    test::GpuSnippet gpu("cover");
+    gpu.frame().polar_axis = glm::vec4(0, std::cos(0.8), std::sin(0.8), 0);
+    const auto results = gpu.run(
+        std::string(kSeenFromTheSouth) +
+            "cover_Crown seen = cover_crown_seen(s, 7.5, vec2(0.0), 0.0), first = seen, below;\n"
+            "for (int i = 0; i < 200; ++i) {\n"
+            "    float height = 0.8 - 1.6 * float(i) / 199.0;\n"
+            "    vec2 within;\n"
+            "    ivec2 cell = ground_cell(s.anchored_m + height * 7.5 * cover_slant(s),\n"
+            "                             cover_turn / 7.5, within);\n"
+            "    first = cover_crown_at(cell, within, 0.0);\n"
+            "    if (first.height >= height) break;\n"
+            "}\n"
+            "vec2 within;\n"
+            "ivec2 cell = ground_cell(s.anchored_m, cover_turn / 7.5, within);\n"
+            "below = cover_crown_at(cell, within, 0.0);\n"
+            "result = vec4(seen.random, first.random, below.random, seen.height - first.height);",
+        64, 64);
+    int same = 0, same_below = 0;
+    for (const glm::vec4& one : results) {
+        same += one.x == one.y ? 1 : 0;
+        same_below += one.z == one.y ? 1 : 0;
+    }
+    const double count = static_cast<double>(results.size());
+    fmt::print(
+        "[ accuracy ] crowns seen from 45 degrees: {:.1f} % the first on the ray, {:.1f} % "
+        "without a ray\n",
+        100 * same / count, 100 * same_below / count);
+    EXPECT_GT(same, 0.85 * count);
+    EXPECT_LT(same_below, 0.75 * count);
+}
+
 /// cover_shares() along x, with a shape of no noise.
 std::vector<glm::vec4> shares(const std::string& inputs, int count) {
     test::GpuSnippet gpu("cover");
