@@ -82,6 +82,7 @@ void MainWindow::open_dem(const RecentDem& dem) {
     scene.holes = dem.holes;
     scene.view = {};
     scene.overlay.reset();
+    scene.land_cover = {};
     scene.time.at.clear();
     scene.time.date.clear();
     open_scene(std::move(scene));

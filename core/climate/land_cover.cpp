@@ -79,10 +79,11 @@ LandCoverTable LandCoverTable::named(const std::string& name) {
     return read(share_dir() / "data/land_cover" / (name + ".csv"));
 }
 
-std::string LandCoverTable::fitting(const Classes& in_map) {
+std::vector<std::string> LandCoverTable::fitting(const Classes& in_map) {
+    std::vector<std::string> fitting;
     for (const std::string& name : names())
-        if ((in_map & ~named(name).classes()).none()) return name;
-    return {};
+        if ((in_map & ~named(name).classes()).none()) fitting.push_back(name);
+    return fitting;
 }
 
 std::string text_of(const Classes& classes, int most) {

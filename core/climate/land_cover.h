@@ -25,8 +25,8 @@ class LandCoverTable {
     static const std::vector<std::string>& names();
     /// One of them. @throws Error (BadInput) for another name
     static LandCoverTable named(const std::string& name);
-    /// The name of the first of them that has all of a map's classes; empty: none has.
-    static std::string fitting(const Classes& in_map);
+    /// The names of those that have all of a map's classes.
+    static std::vector<std::string> fitting(const Classes& in_map);
 
     const Classes& classes() const { return classes_; }
     /// By class from 0: trees in the low byte, then plants, ice, and how far the class tells

@@ -241,13 +241,13 @@ std::bitset<256> classes_of(const std::string& path) {
         const std::string reason = messages.failure(path);
         refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(path, reason)));
     }
+    std::vector<std::uint8_t> mask(bytes.size(), 255);
+    if (GDALRasterIO(GDALGetMaskBand(band), GF_Read, 0, 0, columns, rows, mask.data(), wide, high,
+                     GDT_Byte, 0, 0) != CE_None)
+        refuse(path, fmt::format("its mask cannot be read, {}", messages.failure(path)));
     std::bitset<256> found;
-    for (const std::uint8_t byte : bytes)
-        found.set(byte);
-    int has = 0;
-    const double nodata = GDALGetRasterNoDataValue(band, &has);
-    if (has && nodata >= 0 && nodata <= 255 && nodata == std::floor(nodata))
-        found.reset(static_cast<std::size_t>(nodata));
+    for (std::size_t at = 0; at < bytes.size(); ++at)
+        if (mask[at] != 0) found.set(bytes[at]);
     return found;
 }
 

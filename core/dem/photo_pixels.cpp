@@ -85,10 +85,10 @@ PhotoPixels::PhotoPixels(const std::string& path, void* dataset, std::vector<std
       dataset_(dataset),
       columns_(GDALGetRasterXSize(dataset)),
       rows_(GDALGetRasterYSize(dataset)),
-      palette_(std::move(palette)) {
-    const bool is_classes = !palette_.empty();
-    const int bands = is_classes ? 1 : GDALGetRasterCount(dataset);
-    if (is_classes) numbers_ = {1, 1, 1};
+      palette_(std::move(palette)),
+      is_classes_(!palette_.empty()) {
+    const int bands = is_classes_ ? 1 : GDALGetRasterCount(dataset);
+    if (is_classes_) numbers_ = {1, 1, 1};
     for (int i = 1; i <= bands; ++i) {
         const GDALColorInterp meaning =
             GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset, i));
@@ -99,7 +99,7 @@ PhotoPixels::PhotoPixels(const std::string& path, void* dataset, std::vector<std
     }
     const GDALRasterBandH first = GDALGetRasterBand(dataset, numbers_[0]);
     has_mask_ = alpha_ == 0 && (GDALGetMaskFlags(first) & (GMF_PER_DATASET | GMF_ALPHA)) != 0;
-    const bool may_have_table = bands < 3 && !is_classes;
+    const bool may_have_table = bands < 3 && !is_classes_;
     if (const GDALColorTableH table = may_have_table ? GDALGetRasterColorTable(first) : nullptr) {
         for (int k = 0; k < std::min(GDALGetColorEntryCount(table), 256); ++k) {
             GDALColorEntry entry{};
@@ -208,8 +208,8 @@ void PhotoPixels::keep_reduced() {
     if (const double pixels = double{1} * columns_ * rows_; pixels > kMany)
         log::info(
             fmt::format("{}: it has no overviews, so all of its {:.0f} million pixels are read "
-                        "first; gdaladdo -r average makes some",
-                        path_, pixels / 1e6));
+                        "first; gdaladdo -r {} makes some",
+                        path_, pixels / 1e6, is_classes_ ? "mode" : "average"));
     reduced_ = read_level(levels_.front(), {0, 0, columns_, rows_}, times);
 }
 

@@ -62,6 +62,7 @@ class PhotoPixels {
     bool has_mask_ = false;                // of the dataset
     std::array<std::optional<int>, 3> nodata_{};
     std::vector<std::uint32_t> palette_;  // empty: none
+    bool is_classes_;                     // the palette is not the file's own
     std::vector<Level> levels_;           // finest first
     std::optional<Part> reduced_;         // of a large file without overviews
 };

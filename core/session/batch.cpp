@@ -1,6 +1,7 @@
 #include "session/batch.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <map>
@@ -168,15 +169,18 @@ void settle(std::vector<scene::Shot>& shots, SceneTimes& times, SceneInputs& inp
 }
 
 void order_for_drawing(std::vector<scene::Shot>& shots) {
-    std::map<std::string, std::size_t> dems, effects;
-    std::vector<std::pair<std::size_t, std::size_t>> places;
+    std::map<std::string, std::size_t> dems, maps, effects;
+    std::vector<std::array<std::size_t, 3>> places;
     std::vector<std::size_t> order;
     for (const scene::Shot& shot : shots) {
         const std::size_t dem = dems.try_emplace(dem_key(shot.scene), dems.size()).first->second;
+        const scene::LandCover& cover = shot.scene.land_cover;
+        const std::size_t map =
+            maps.try_emplace(cover.file + '\n' + cover.classes, maps.size()).first->second;
         const std::size_t effect =
             effects.try_emplace(effects_key(shot.scene.effects), effects.size()).first->second;
         order.push_back(places.size());
-        places.emplace_back(dem, effect);
+        places.push_back({dem, map, effect});
     }
     std::ranges::stable_sort(order,
                              [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });

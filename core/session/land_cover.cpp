@@ -18,12 +18,20 @@ using climate::Classes;
 using climate::LandCoverTable;
 
 LandCoverTable guessed_table(const std::string& file, const Classes& in_map) {
-    const std::string name = LandCoverTable::fitting(in_map);
-    if (name.empty())
-        bad_input(fmt::format(
-            "{}: its classes ({}) are not those of {}; --land-cover-classes FILE says what they "
-            "are",
-            printable(file), climate::text_of(in_map), fmt::join(LandCoverTable::names(), ", ")));
+    const std::vector<std::string> names = LandCoverTable::fitting(in_map);
+    if (names.empty()) {
+        std::string lacks;
+        for (const std::string& name : LandCoverTable::names())
+            lacks += fmt::format("; {} has no class {}", name,
+                                 climate::text_of(in_map & ~LandCoverTable::named(name).classes()));
+        bad_input(fmt::format("{}: what are its classes? --land-cover-classes NAME|FILE says it{}",
+                              printable(file), lacks));
+    }
+    if (names.size() > 1)
+        bad_input(
+            fmt::format("{}: its classes may be those of {}; --land-cover-classes NAME says which",
+                        printable(file), fmt::join(names, " and of ")));
+    const std::string& name = names.front();
     log::info(
         fmt::format("{}: classes are taken to be those of {}; --land-cover-classes names others",
                     printable(file), name));

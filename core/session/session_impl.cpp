@@ -212,6 +212,10 @@ void Session::Impl::resize(int width_px, int height_px) {
 void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     context->make_current();
     state.inputs.deterministic = true;
+    // First what may fail, so that the scene is still the one before.
+    const bool other_cover = next.land_cover != state.scene.land_cover;
+    const std::shared_ptr<const dem::Photo> cover =
+        other_cover ? open_land_cover(next.land_cover, state.dem()->source->grid()) : land_cover;
     if (next.weather != state.scene.weather || next.forecast != state.scene.forecast ||
         next.station_height_m != state.scene.station_height_m) {
         state.scene.weather = next.weather;
@@ -236,14 +240,11 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     part.reset();
     const bool other_shape = next.exaggeration != scene.exaggeration;
     scene.exaggeration = next.exaggeration;
-    const bool other_cover = next.land_cover != scene.land_cover;
-    if (other_cover) {
-        land_cover = open_land_cover(next.land_cover, state.dem()->source->grid());
-        scene.land_cover = next.land_cover;
-    }
     if (other_cover || next.pixel_error != scene.pixel_error) {
         scene.pixel_error = next.pixel_error;
+        land_cover = cover;
         upload(state.dem());
+        scene.land_cover = next.land_cover;
     } else {
         state.take_shape(other_shape);
     }

@@ -285,8 +285,13 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
 }
 
 /// What a map of land cover says, instead of the climate.
-/// @param shares, rain  changed as far as the map tells anything
+/// @param shares, rain  changed as far as the map has a class
 void cover_take_map(in LandCover map, inout cover_Shares shares, inout float rain) {
+    if (cover_trees == 2) {
+        map.plants += map.trees;
+        map.trees = 0.0;
+    }
+    if (!cover_ice) map.ice = 0.0;
     float left = max(1.0 - map.ice, 1e-3);
     float trees = map.trees / left, plants = map.plants / left, bare = max(1.0 - trees - plants, 0.0);
     // Bare ground is sand where the climate is dry, and rock elsewhere: young lava, till, scree.

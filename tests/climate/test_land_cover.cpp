@@ -47,10 +47,12 @@ TEST(LandCoverTable, TheProgramsOwnSayWhatEachClassIs) {
 }
 
 TEST(LandCoverTable, AMapIsKnownByItsClasses) {
-    EXPECT_EQ(LandCoverTable::fitting(of({10, 30, 60})), "worldcover");
-    EXPECT_EQ(LandCoverTable::fitting(of({11, 41, 52})), "nlcd");
-    EXPECT_EQ(LandCoverTable::fitting(of({2, 12, 23, 44})), "corine");
-    EXPECT_EQ(LandCoverTable::fitting(of({200})), "");
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(LandCoverTable::fitting(of({10, 30, 60})), Names{"worldcover"});
+    EXPECT_EQ(LandCoverTable::fitting(of({0, 11, 41, 52})), Names{"nlcd"});
+    EXPECT_EQ(LandCoverTable::fitting(of({2, 12, 23, 44, 48})), Names{"corine"});
+    EXPECT_EQ(LandCoverTable::fitting(of({12, 23, 24, 31})), (Names{"nlcd", "corine"}));
+    EXPECT_EQ(LandCoverTable::fitting(of({200})), Names{});
     EXPECT_EQ(text_of(of({3, 17, 200})), "3, 17, 200");
     EXPECT_EQ(text_of(of({3, 17, 200}), 2), "3, 17, ...");
 }

@@ -114,6 +114,7 @@ TEST_F(LandCover, IsTakenAndLeftByALaterScene) {
     EXPECT_EQ(session_->picture().values, climate.values);
     scene::Scene missing = with;
     missing.land_cover.file = "/none.tif";
+    missing.exaggeration = 2;
     EXPECT_THAT(error_of([&] { session_->show(missing, session_->time()); }),
                 HasSubstr("/none.tif"));
     session_->draw();
@@ -142,7 +143,11 @@ TEST_F(LandCover, SaysWhatIsWrongWithAMap) {
         return error_of([&] { open_land_cover(asked, grid); });
     };
     EXPECT_THAT(fault({.file = write_map("odd.tif", [](int, int) { return 200; }), .classes = ""}),
-                HasSubstr("its classes (200) are not those of worldcover, nlcd, corine"));
+                HasSubstr("what are its classes? --land-cover-classes NAME|FILE says it; "
+                          "worldcover has no class 200; nlcd has no class 200"));
+    EXPECT_THAT(
+        fault({.file = write_map("either.tif", [](int, int) { return 12; }), .classes = ""}),
+        HasSubstr("may be those of nlcd and of corine; --land-cover-classes NAME"));
     EXPECT_THAT(fault({.file = write_map(
                            "deep.tif", [](int, int) { return 10; }, "Int16"),
                        .classes = ""}),
@@ -150,7 +155,7 @@ TEST_F(LandCover, SaysWhatIsWrongWithAMap) {
     EXPECT_THAT(fault({.file = "", .classes = "nlcd"}), HasSubstr("there is no map"));
     const std::string elsewhere =
         test::write_raster(test::folder() / "elsewhere.tif",
-                           {.type = "Byte", .value = [](int, int, int) { return 10.0; }});
+                           {.type = "Byte", .value = [](int, int, int) { return 70.0; }});
     EXPECT_THAT(fault({.file = elsewhere, .classes = ""}), HasSubstr("does not cover this DEM"));
 }
 
