@@ -47,7 +47,7 @@ struct TerrainOptions {
     /// terrain.
     const dem::Water* water = nullptr;              ///< null: found when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
-    /// Shares of the ground for lib/land_cover.glsl: red trees, green low plants, blue ice, alpha
+    /// Shares of the ground for lib/land.glsl: red trees, green low plants, blue ice, alpha
     /// where they are known. Null: none.
     std::shared_ptr<const dem::Photo> land_cover{};
     SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed

@@ -6,7 +6,7 @@
 
 //@ include lib/climate.glsl
 //@ include lib/ground.glsl
-//@ include lib/land_cover.glsl
+//@ include lib/land.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
 

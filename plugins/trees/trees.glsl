@@ -7,7 +7,7 @@
 //@ include lib/climate.glsl
 //@ include lib/crown.glsl
 //@ include lib/instances.glsl
-//@ include lib/land_cover.glsl
+//@ include lib/land.glsl
 //@ include lib/repeats.glsl
 //@ include lib/water.glsl
 

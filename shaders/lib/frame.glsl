@@ -51,7 +51,7 @@ layout(std140, binding = 0) uniform Frame {
                               // whole steps of 2048 m; zw: from there to the eye [m]
     vec4 overlay_texels;        // of an overlay, for lib/overlay.glsl; xy: post of its first texel, zw: texels per post
     vec4 overlay_shape;          // xy: its last texel, z: levels, w: 1 where it is lit
-    vec4 land_cover;          // x: 1 where there is a map for lib/land_cover.glsl, else 0
+    vec4 land_cover;          // x: 1 where there is a map of what covers the ground, else 0
     vec4 eye_post;            // below the eye, column and row of the DEM; xy: whole parts, zw: fractions
     vec4 eye_axes;            // xy: columns and rows to a metre east, zw: north, there; 0 where that is unknown
     float seconds;            // of effects that move [s]: --seconds, or the time that the window has been open
