@@ -16,12 +16,13 @@ using Classes = std::bitset<256>;
 /// ice; what is left is bare.
 class LandCoverTable {
   public:
-    /// A table's file: lines of `CLASS,TREES,PLANTS,ICE,name`, shares from 0 to 1 or all `?` where
-    /// a class tells nothing; lines with # are skipped, names may be left out.
+    /// Reads a table's file. Each line is `CLASS,TREES,PLANTS,ICE,name`. Shares are 0 to 1; all
+    /// three are `?` if nothing is known of the class. The name is optional. Lines that begin with
+    /// # are skipped.
     /// @throws Error (BadInput) `land cover: FILE:LINE: ...`
     static LandCoverTable read(const std::filesystem::path& file);
 
-    /// Names of the tables that the program has: corine, nlcd, worldcover.
+    /// Names of the tables that the program has: worldcover, nlcd, corine.
     static const std::vector<std::string>& names();
     /// One of them. @throws Error (BadInput) for another name
     static LandCoverTable named(const std::string& name);
@@ -29,8 +30,8 @@ class LandCoverTable {
     static std::vector<std::string> fitting(const Classes& in_map);
 
     const Classes& classes() const { return classes_; }
-    /// By class from 0: trees in the low byte, then plants, ice, and how far the class tells
-    /// anything, 0 to 255.
+    /// By class from 0: shares of trees (low byte), low plants and ice, 0 to 255. The high byte is
+    /// 255, or 0 if nothing is known of the class.
     std::vector<std::uint32_t> texels() const { return {texels_.begin(), texels_.end()}; }
 
   private:

@@ -93,6 +93,14 @@ std::uint32_t between(const Array2d<std::uint32_t>& rgba, const glm::dvec2& at) 
     return result;
 }
 
+/// The band of a raster of classes.
+GDALRasterBandH band_of_classes(const std::string& path, GDALDatasetH dataset) {
+    const GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+    if (!band || GDALGetRasterDataType(band) != GDT_Byte)
+        refuse(path, "the raster's classes are no bytes; convert it with gdal_translate -ot Byte");
+    return band;
+}
+
 }  // namespace
 
 struct Photo::Impl {
@@ -217,14 +225,6 @@ void Photo::Impl::read(const PlacesOver& places, const Window& part, Array2d<std
             rgba.at(part.column + column, part.row + row) = between(
                 pixel_part.rgba, (place + 0.5 - pixel_part.first) / pixel_part.reduced - 0.5);
         }
-}
-
-/// The band of a raster of classes.
-GDALRasterBandH band_of_classes(const std::string& path, GDALDatasetH dataset) {
-    const GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-    if (!band || GDALGetRasterDataType(band) != GDT_Byte)
-        refuse(path, "the raster's classes are no bytes; convert it with gdal_translate -ot Byte");
-    return band;
 }
 
 std::bitset<256> classes_of(const std::string& path) {

@@ -25,8 +25,8 @@ enum class PhotoKind {
 /// @throws Error (BadInput) as Source::open()
 PhotoKind photo_kind(const std::string& path);
 
-/// Values of bytes that a raster of classes has in its first band, of 512 x 512 of its pixels at
-/// most; those without data are left out.
+/// The classes in the first band of a raster: those of 512 x 512 pixels at most, spread all over
+/// it. Pixels without data do not count.
 /// @throws Error (BadInput) if the band has no bytes, else as Source::open()
 std::bitset<256> classes_of(const std::string& path);
 

@@ -88,20 +88,6 @@ std::uint32_t times_opacity(std::uint32_t texel, double opacity) {
     return result;
 }
 
-std::vector<std::uint32_t> photo_page(const OverlayRaster& raster, const OverlayTexels& texels,
-                                      int level, glm::ivec2 page) {
-    const glm::dvec2 step = double(1 << level) / texels.per_post;
-    const Array2d<std::uint32_t> rgba = raster.photo->read(
-        {.first_post = texels.first_post + glm::dvec2(page * kNormalNodes - 1) * step,
-         .step = step,
-         .count = glm::ivec2(kNormalPage_px)});
-    std::vector<std::uint32_t> result(rgba.begin(), rgba.end());
-    if (raster.opacity < 1)
-        for (std::uint32_t& texel : result)
-            texel = times_opacity(texel, raster.opacity);
-    return result;
-}
-
 }  // namespace
 
 std::uint32_t overlay_texel(double red, double green, double blue, double alpha) {
@@ -128,10 +114,25 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
     return texels;
 }
 
+std::vector<std::uint32_t> photo_page(const dem::Photo& photo, const OverlayTexels& texels,
+                                      int level, glm::ivec2 page) {
+    const glm::dvec2 step = double(1 << level) / texels.per_post;
+    const Array2d<std::uint32_t> rgba =
+        photo.read({.first_post = texels.first_post + glm::dvec2(page * kNormalNodes - 1) * step,
+                    .step = step,
+                    .count = glm::ivec2(kNormalPage_px)});
+    return {rgba.begin(), rgba.end()};
+}
+
 std::vector<std::uint32_t> overlay_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,
                                         int level, glm::ivec2 page) {
-    if (raster.photo) return photo_page(raster, overlay_texels(raster, pyramid), level, page);
-    return page_of(raster.rgba, pyramid, level, page);
+    if (!raster.photo) return page_of(raster.rgba, pyramid, level, page);
+    std::vector<std::uint32_t> texels =
+        photo_page(*raster.photo, overlay_texels(raster, pyramid), level, page);
+    if (raster.opacity < 1)
+        for (std::uint32_t& texel : texels)
+            texel = times_opacity(texel, raster.opacity);
+    return texels;
 }
 
 std::vector<glm::vec2> value_page(const OverlayRaster& raster, const dem::Pyramid& pyramid,

@@ -37,6 +37,10 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
 /// A texel of an OverlayRaster from sRGB and alpha, each 0 to 1.
 std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
+/// Colours of a photo at the nodes of a page of `texels` with its border, kNormalPage_px a side.
+std::vector<std::uint32_t> photo_page(const dem::Photo& photo, const OverlayTexels& texels,
+                                      int level, glm::ivec2 page);
+
 /// Colours at the nodes of a raster's page with its border, kNormalPage_px a side. Each is the mean
 /// of the texels nearest to its node. A photo's nodes are those of overlay_texels(), others the
 /// DEM's posts.

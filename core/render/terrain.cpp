@@ -178,9 +178,7 @@ void Terrain::update_surface_layers() {
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
                           [this](const TileKey& key) { return make_water(key); },
                           options_.land_cover ? 2 : 1});
-    std::int64_t slices = 0;
-    for (const PageLayer& layer : layers)
-        slices += layer.slices;
+    const std::int64_t slices = std::ssize(layers) + (water_ && options_.land_cover ? 1 : 0);
     surface_bytes_ = slices * kNormalPageBytes;
     const int in_memory = normal_slots_in(options_.memory, slices);
     surface_ = PageCache(std::move(layers), std::min(normal_layers_, in_memory));
@@ -189,13 +187,9 @@ void Terrain::update_surface_layers() {
 std::vector<std::byte> Terrain::make_water(const TileKey& key) const {
     std::vector<std::byte> texels = bytes_of(water_->page(pyramid_, key.level, key.at));
     if (!options_.land_cover) return texels;
-    const double step = 1 << key.level;
-    const Array2d<std::uint32_t> cover =
-        options_.land_cover->read({.first_post = glm::dvec2(key.at * kNormalNodes - 1) * step,
-                                   .step = glm::dvec2(step),
-                                   .count = glm::ivec2(kNormalPage_px)});
-    const auto bytes = std::as_bytes(std::span(cover.data(), cover.size()));
-    texels.insert(texels.end(), bytes.begin(), bytes.end());
+    const std::vector<std::byte> cover =
+        bytes_of(photo_page(*options_.land_cover, OverlayTexels{}, key.level, key.at));
+    texels.insert(texels.end(), cover.begin(), cover.end());
     return texels;
 }
 
