@@ -212,20 +212,21 @@ vec2 cover_slant(in Surface s) {
     return level / max(rise, 0.1 * s.distance_m);
 }
 
+const int cover_down_steps = 4, cover_all_steps = 7;  // along a ray, until it is in a crown and to its surface
+
 /// The crown that a point of the ground is seen through: the first one that the ray to the eye leaves, from above.
 cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in float conifers) {
     const float top = 0.8, down = 0.4;  // in cells: crowns are from -0.9 to 0.9
-    const int down_steps = 4, all_steps = 7;
     vec2 slant_m = size_m * cover_slant(s);
     cover_Crown crown = cover_Crown(vec2(0.0), -2.0, 0.5), found = crown;
     float height = top, next = down;
-    for (int i = 0; i < all_steps; ++i) {
+    for (int i = 0; i < cover_all_steps; ++i) {
         vec2 within;
         ivec2 cell = ground_cell(s.anchored_m + height * slant_m, cover_turn * (1.0 / size_m), within);
         crown = cover_crown_at(cell, within + wander, conifers);
         bool inside = crown.height >= height;
         if (inside) found = crown;
-        if (!inside && next == down && i + 1 >= down_steps) break;  // through to the ground
+        if (!inside && next == down && i + 1 >= cover_down_steps) break;  // through to the ground
         // Down until inside, then half of the step before, up or down.
         if (inside || next < down) next *= 0.5;
         height += inside ? next : -next;
