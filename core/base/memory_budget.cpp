@@ -13,9 +13,9 @@ namespace {
 /// The tile pages of one view, and light for a DEM that just fills it.
 constexpr std::int64_t kLeastOfPictures_mib = 64;
 
-/// Light is computed for no more, and finer heights are read where a view needs them: more means
-/// would only have to be read.
-constexpr std::int64_t kMostMeans = std::int64_t{1} << 25;
+/// Finer heights are read where a view needs them: more means would only have to be read. So many
+/// have 100 000 x 100 000 posts at a reduction of 16, which a picture of all of them needs.
+constexpr std::int64_t kMostMeans = std::int64_t{1} << 26;
 /// A DEM of more posts is drawn from means and finer heights sooner than from all of them.
 constexpr std::int64_t kMostDrawn = std::int64_t{1} << 26;
 

@@ -274,14 +274,9 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     return surface_.find(name);
 }
 
-bool Terrain::in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const {
-    return wanted.tolerance <= 0 || static_cast<double>(draws.size() * kGridVertices) <=
-                                        wanted.frames * options_.vertex_budget;
-}
-
 double Terrain::tolerance_in_budget(const LodView& wanted) {
     LodView view = wanted;
-    while (!in_budget(wanted, tree_.select(view)))
+    while (!in_budget(wanted, view.tolerance, tree_.select(view)))
         view.tolerance = coarser(view.tolerance);
     return view.tolerance;
 }
@@ -309,7 +304,7 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
         for (const TileDraw& draw : draws)
             name(draw.key);
         const auto pages = static_cast<int>(keys.size());
-        const bool is_coarse_enough = !view.eye_m || in_budget(wanted, draws);
+        const bool is_coarse_enough = !view.eye_m || in_budget(wanted, view.tolerance, draws);
         if (pages <= room && is_coarse_enough) break;
         if (is_coarse_enough && pages <= room_in_more_memory)
             refuse_coarser(options_.memory,
@@ -335,7 +330,7 @@ TileSelection Terrain::select_in_background(const LodView& wanted) {
     while (true) {
         keys.clear();
         draws = tree_.select(view, TileTree::Resident{is_there, keys});
-        if (static_cast<int>(keys.size()) <= room && in_budget(wanted, draws)) break;
+        if (static_cast<int>(keys.size()) <= room && in_budget(wanted, view.tolerance, draws)) break;
         view.tolerance = coarser(view.tolerance);
     }
     complete_ = std::ranges::all_of(keys, is_there);

@@ -38,7 +38,7 @@ struct TerrainOptions {
     /// px. 0 draws all posts.
     double pixel_error = 4;
     /// Vertices of a frame above which the error is increased.
-    int vertex_budget = 250000;
+    int vertex_budget = 180000;
     int max_array_layers = 2048;  ///< of the device
     MemoryBudget memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
     /// The heightfield's pyramid; must outlive the terrain. Null: built by the terrain.
@@ -187,7 +187,8 @@ class Terrain {
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     /// What a frame draws, with the option's pixel error.
     LodView view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const;
-    bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
+    bool in_budget(const LodView& wanted, double tolerance,
+                   const std::vector<TileDraw>& draws) const;
     /// The view's tolerance, or the smallest larger one within the vertex budget.
     double tolerance_in_budget(const LodView& wanted);
     int raster_slots() const;  ///< pages of a raster at most

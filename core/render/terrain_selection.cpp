@@ -6,6 +6,13 @@
 #include "render/terrain.h"
 
 namespace relevo::render {
+namespace {
+
+/// How many times the wanted tolerance may be, at most, to save vertices. Rings of tiles around the
+/// eye, one for each level, are left beyond: with less than these all detail would be lost at once.
+constexpr double kMostCoarser = 3;
+
+}  // namespace
 
 int TileSelection::finest_level() const {
     int finest = tiles_.empty() ? 0 : tiles_.front().draw.key.level;
@@ -29,6 +36,13 @@ bool Terrain::sees_ground(const TileSelection& selection, const LodView& view) {
                is_ground_in_view(pyramid_, tile.draw, tree_.net(tile.draw.key), morph_start_m,
                                  tree_.displacement(), view);
     });
+}
+
+bool Terrain::in_budget(const LodView& wanted, double tolerance,
+                        const std::vector<TileDraw>& draws) const {
+    return tolerance >= kMostCoarser * wanted.tolerance ||
+           static_cast<double>(draws.size() * kGridVertices) <=
+               wanted.frames * options_.vertex_budget;
 }
 
 TileSelection Terrain::select_below(const FrameInputs& inputs, const glm::ivec2& picture_px) {

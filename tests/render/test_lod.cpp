@@ -53,9 +53,10 @@ class Flight {
                                      ground_, dem_.grid);
     }
 
-    void set_pixel_error(double pixel_error) {
-        terrain_.emplace(dem_, ground_.frame,
-                         TerrainOptions{.pixel_error = pixel_error, .vertex_budget = 100000000});
+    void set_pixel_error(double pixel_error, int vertex_budget = 100000000) {
+        terrain_.emplace(
+            dem_, ground_.frame,
+            TerrainOptions{.pixel_error = pixel_error, .vertex_budget = vertex_budget});
     }
 
     /// From a share of the way along the rows and columns, above the highest ground there or
@@ -264,6 +265,22 @@ TEST(Lod, TheSkirtHangsDownByTwoPixels) {
         EXPECT_GE(rows, 2) << x;
         EXPECT_LE(rows, 3) << x;
     }
+}
+
+TEST(Lod, AVertexBudgetThatCannotBeMetCostsDetailByALimit) {
+    Flight flight(bundled(), 64, 48);
+    flight.stand(0.5, 0.5, 60, 30, 0);
+    const auto triangles = [&](double pixel_error, int vertex_budget) {
+        flight.set_pixel_error(pixel_error, vertex_budget);
+        flight.draw();
+        return flight.triangles();
+    };
+    constexpr int kEnough = 100000000;
+    const int wanted = triangles(4, kEnough), least = triangles(4, 1);
+    fmt::print("[ lod ] {} triangles as wanted, {} with a budget of a vertex\n", wanted, least);
+    EXPECT_LT(least, wanted);
+    EXPECT_LE(least, triangles(12, kEnough));
+    EXPECT_GE(least, triangles(15, kEnough));
 }
 
 TEST(TileTree, BoxesHoldTheRoundEarth) {
