@@ -111,9 +111,9 @@ double natural_exposure(double elevation_rad, double visible_fraction, double mo
                eclipsed_sky(visible) * sky_illuminance_lux(h_rad);
     };
     static const double kReference_lux = level_lux(radians(45), 1);
-    // From nautical dusk on, as long exposures do, white ground is held at what is left.
-    // Of moonlight a quarter (in its logarithm) is left over that: ground is seen, and dark.
-    constexpr double kNightLevel = 0.05, kMoonlit = 0.25;
+    // Under stars alone, as long exposures do, white ground is held at what is left.
+    // Of moonlight this share of its logarithm is left over that: ground is seen, and dark.
+    constexpr double kNightLevel = 0.02, kMoonlit = 0.44;
     const double moonless = level_lux(elevation_rad, visible_fraction);
     const double level = moonless + moonlight_lux;
     return std::max(
