@@ -1,5 +1,6 @@
 #include "dem/nodata.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -27,6 +28,11 @@ Undeclared find_undeclared(std::span<const double> stored, double metres) {
         double nearest = std::numeric_limits<double>::infinity();  // of the others
     };
     std::array<Candidate, kCandidates.size()> candidates;
+    const auto is_candidate = [](double value) {
+        return value == 0 || (std::abs(value) >= 9999 &&
+                              std::ranges::find(kCandidates, value) != kCandidates.end());
+    };
+    bool any = false;
     Undeclared found;
     const double beyond = no_height_beyond(metres);
     double lowest = std::numeric_limits<double>::infinity();
@@ -39,16 +45,21 @@ Undeclared find_undeclared(std::span<const double> stored, double metres) {
             continue;
         }
         ++heights;
+        any = any || is_candidate(value);
+        if (value != 0) {
+            lowest = value < lowest ? value : lowest;
+            highest = value > highest ? value : highest;
+        }
+    }
+    if (!any) return found;
+    for (const double value : stored) {
+        if (!std::isfinite(value) || std::abs(value) > beyond) continue;
         for (std::size_t i = 0; i < kCandidates.size(); ++i) {
             const double away = std::abs(value - kCandidates[i]);
             if (away == 0)
                 ++candidates[i].count;
             else if (away < candidates[i].nearest)
                 candidates[i].nearest = away;
-        }
-        if (value != 0) {
-            lowest = value < lowest ? value : lowest;
-            highest = value > highest ? value : highest;
         }
     }
     for (std::size_t i = 0; i < kCandidates.size() && !found.nodata; ++i) {

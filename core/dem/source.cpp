@@ -126,8 +126,13 @@ int Source::block_rows() const {
     return tallest;
 }
 
+bool Source::is_of_many_files() const {
+    constexpr int kMany = 400;
+    return impl_->rasters->count() > kMany;
+}
+
 glm::ivec2 Source::block_size() const {
-    constexpr int kOfMany = 256;
+    constexpr int kOfMany = 64;
     const Rasters& rasters = *impl_->rasters;
     const Piece* const only = rasters.is_one_file() ? rasters.if_open(0) : nullptr;
     return only ? glm::ivec2(only->block_columns, only->block_rows) : glm::ivec2(kOfMany, kOfMany);

@@ -330,7 +330,8 @@ TileSelection Terrain::select_in_background(const LodView& wanted) {
     while (true) {
         keys.clear();
         draws = tree_.select(view, TileTree::Resident{is_there, keys});
-        if (static_cast<int>(keys.size()) <= room && in_budget(wanted, view.tolerance, draws)) break;
+        if (static_cast<int>(keys.size()) <= room && in_budget(wanted, view.tolerance, draws))
+            break;
         view.tolerance = coarser(view.tolerance);
     }
     complete_ = std::ranges::all_of(keys, is_there);

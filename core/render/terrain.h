@@ -38,7 +38,7 @@ struct TerrainOptions {
     /// px. 0 draws all posts.
     double pixel_error = 4;
     /// Vertices of a frame above which the error is increased.
-    int vertex_budget = 180000;
+    int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< of the device
     MemoryBudget memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
     /// The heightfield's pyramid; must outlive the terrain. Null: built by the terrain.

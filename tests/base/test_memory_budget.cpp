@@ -10,7 +10,7 @@ TEST(MemoryBudget, TheDefaultHoldsAGiBOfHeights) {
     const MemoryBudget budget = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
     EXPECT_EQ(budget.posts, std::int64_t{1} << 28);
     EXPECT_EQ(budget.for_pictures().posts, std::int64_t{1} << 26);
-    EXPECT_EQ(budget.means, std::int64_t{1} << 25) << "as many as light is computed for";
+    EXPECT_EQ(budget.means, std::int64_t{1} << 26);
     EXPECT_GE(budget.light_posts, 1 << 25) << "all that shadows are computed for";
     EXPECT_EQ(budget.mib(), 3072);
 }

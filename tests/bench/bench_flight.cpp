@@ -100,7 +100,7 @@ int main(int count, char** words) {
     scene.width_px = 1280;
     scene.height_px = 1024;
     if (count > 4) std::sscanf(words[4], "%dx%d", &scene.width_px, &scene.height_px);
-    scene.time = {"10:00", "2026-06-21", ""};
+    scene.time = {"2026-06-21T10:00", "", ""};
     FilesInUse files;
     session::Session session(scene, {.device = "software"}, files);
     session.link_rest();
