@@ -56,7 +56,7 @@ class Trust : public testing::Test {
     json scene(const std::string& key, const json& value) const {
         json scene = {{"format", 1},
                       {"dem", {{"files", json::array({bundled_dem()})}}},
-                      {"time", {{"at", "2026-06-21T08:00Z"}}},
+                      {"time", {{"at", "2026-06-21T14:00Z"}}},
                       {"picture", {{"size", {64, 48}}}}};
         scene[key] = value;
         return scene;

@@ -360,12 +360,14 @@ TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
         return (std::stod(words.at(11)) + std::stod(words.at(12))) /
                static_cast<double>(sysconf(_SC_CLK_TCK));
     };
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    const double before_s = processor_s();
-    std::this_thread::sleep_for(std::chrono::seconds(5));
-    const double share = (processor_s() - before_s) / 5;
-    fmt::print("[ measured ] idle: {:.2f} % of a processor (limit 2)\n", 100 * share);
-    EXPECT_LT(share, 0.02);
+    // Refinement may still be under way: on a slow machine it pauses longer than settles() waits.
+    EXPECT_TRUE(wait([&] {
+        const double before_s = processor_s();
+        std::this_thread::sleep_for(std::chrono::seconds(5));
+        const double share = (processor_s() - before_s) / 5;
+        fmt::print("[ measured ] idle: {:.2f} % of a processor (limit 2)\n", 100 * share);
+        return share < 0.02;
+    }));
     act({"key", "ctrl+q"});
     EXPECT_EQ(program_->status(), 0) << program_->output();
 }
