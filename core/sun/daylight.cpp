@@ -113,7 +113,7 @@ double natural_exposure(double elevation_rad, double visible_fraction, double mo
     static const double kReference_lux = level_lux(radians(45), 1);
     // Under stars alone, as long exposures do, white ground is held at what is left.
     // Of moonlight this share of its logarithm is left over that: ground is seen, and dark.
-    constexpr double kNightLevel = 0.02, kMoonlit = 0.44;
+    constexpr double kNightLevel = 0.03, kMoonlit = 0.36;
     const double moonless = level_lux(elevation_rad, visible_fraction);
     const double level = moonless + moonlight_lux;
     return std::max(

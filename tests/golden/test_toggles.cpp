@@ -351,7 +351,7 @@ TEST_F(Toggles, ExposureHoldsFromNoonOnSnowToCivilTwilightToNight) {
     // Night without a moon: dark, and not black.
     const image::Image8 night = shown("2026-06-22T01:00-04:00", {});
     fmt::print("[ exposure ] ground at night: mean {:.0f}\n", mean(night));
-    EXPECT_GT(mean(night), 8);
+    EXPECT_GT(mean(night), 5);
     EXPECT_LT(mean(night), mean(dusk));
 }
 
