@@ -39,8 +39,8 @@ int reduction_of(const Grid& full, const MemoryBudget& memory);
 /// what looks wrong, see is_refused(). A sample is a DEM of its own: its reduction is 1, because no
 /// finer level of it can be read.
 /// @param most_posts  that are kept; files are read for up to four times as many cells of
-///     overviews, or for an eighth of the posts but no more than 200 million,
-///     of many files in about 400 places
+///     overviews, or for an eighth of the posts but no more than 200 million;
+///     400 blocks of a DEM that opens_slowly()
 /// @returns none if all posts are few, or no mean has a height
 /// @throws Error (BadInput) as Source::read()
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);

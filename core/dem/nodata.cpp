@@ -28,6 +28,7 @@ Undeclared find_undeclared(std::span<const double> stored, double metres) {
         double nearest = std::numeric_limits<double>::infinity();  // of the others
     };
     std::array<Candidate, kCandidates.size()> candidates;
+    // Heights that are none pass quickly: all candidates but 0 are far from it.
     const auto is_candidate = [](double value) {
         return value == 0 || (std::abs(value) >= 9999 &&
                               std::ranges::find(kCandidates, value) != kCandidates.end());

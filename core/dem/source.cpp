@@ -126,9 +126,9 @@ int Source::block_rows() const {
     return tallest;
 }
 
-bool Source::is_of_many_files() const {
-    constexpr int kMany = 400;
-    return impl_->rasters->count() > kMany;
+bool Source::opens_slowly() const {
+    constexpr int kFilesOfASecond = 400;
+    return impl_->rasters->count() > kFilesOfASecond;
 }
 
 glm::ivec2 Source::block_size() const {

@@ -113,11 +113,11 @@ class Source {
     /// Rows that are read best at once, those of the files' blocks; of many files, of a file.
     int block_rows() const;
 
-    /// Whether opening all of its files takes seconds.
-    bool is_of_many_files() const;
+    /// Whether opening all of its files takes seconds: there are more than 400.
+    bool opens_slowly() const;
 
-    /// Columns and rows of the file's blocks; 64 x 64 for several files, few of which
-    /// lie in two.
+    /// Columns and rows of the file's blocks; 64 x 64 for several files, since few such blocks lie
+    /// in two files.
     glm::ivec2 block_size() const;
 
     /// The height at a place, as Heightfield::height_at() has it: four posts are read.

@@ -187,9 +187,10 @@ class Terrain {
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     /// What a frame draws, with the option's pixel error.
     LodView view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const;
+    /// Whether that is few enough vertices, or as coarse as it may be to save them.
     bool in_budget(const LodView& wanted, double tolerance,
                    const std::vector<TileDraw>& draws) const;
-    /// The view's tolerance, or the smallest larger one within the vertex budget.
+    /// The view's tolerance, or the smallest larger one that is in_budget().
     double tolerance_in_budget(const LodView& wanted);
     int raster_slots() const;  ///< pages of a raster at most
     void prepare_surface(const LodView& view, Loading loading, bool deterministic);

@@ -59,7 +59,7 @@ void write_row(const Atmosphere& air, const EyeLayout& layout, int row, std::spa
               {layout.height_m, sine, suns}, step_ends(path, view_steps(layout.height_m)),
               path.ground, brought);
     const glm::vec3 through = colour(brought.front().through);
-    const glm::vec3 night(night_radiance(layout.height_m, sine, glm::dvec3(through)));
+    const glm::vec3 night(night_radiance(layout.height_m, sine, double{through.g}));
     const glm::vec3 ground = path.ground ? glm::vec3(night_irradiance()) * through : glm::vec3(0);
     constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
     const auto pi = static_cast<float>(kPi);

@@ -29,10 +29,9 @@ glm::dvec3 night_irradiance() {
     return kNight * glm::dvec3(0.66, 0.98, 1.95);
 }
 
-glm::dvec3 night_radiance(double height_m, double sine, const glm::dvec3& through) {
+glm::dvec3 night_radiance(double height_m, double sine, double through) {
     const double h = std::max(height_m, 0.0);
-    // Eyes that see no colours see no red horizon, either.
-    const double passes = std::clamp(through.g, 0.0, 1.0);
+    const double passes = std::clamp(through, 0.0, 1.0);
     const double glow = kAirglow * slant(h, sine);
     const bool above = h > kLayer_m, ground = sine < 0 && path_of(h, sine).ground;
     double light = 0.5 * (1.0 - passes);  // air that the whole sky lights from above

@@ -13,8 +13,9 @@ glm::dvec3 night_irradiance();
 /// Radiance in a direction, without the light of the ground. Airglow is a thin layer 100 km up:
 /// from below it is overhead, from orbit it covers the Earth and stands on its limb.
 /// @param height_m  of the eye above sea level  @param sine  of the elevation
-/// @param through   share of light that passes along the ray, to space or to the ground
+/// @param through   share of light that passes along the ray, to space or to the ground: of green,
+///                  because eyes that see no colours see no red horizon, either
 /// Source: P. van Rhijn 1921, in F. E. Roach and J. L. Gordon, The Light of the Night Sky, 1973.
-glm::dvec3 night_radiance(double height_m, double sine, const glm::dvec3& through);
+glm::dvec3 night_radiance(double height_m, double sine, double through);
 
 }  // namespace relevo::sky

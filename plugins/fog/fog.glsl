@@ -67,9 +67,9 @@ vec3 fog_light(in vec3 view, in float over, in float under) {
     float x = fog_gamma * over, y = fog_gamma * under;
     float all = mix(y, 1.0 + y, 0.5 + 0.5 * sine) / (1.0 + x + y);
     const float pi = 3.14159265;
-    // Seen from above, light that was scattered once comes from all depths of the fog, the less deep the lower the sun.
-    float passes = sine < 0.0 && frame.eye_m.w > fog_top_m * frame.height_range.z ? mu / (mu - sine) : exp(-over / max(mu, 0.08));
-    float once = pi * air_aerosol_phase(dot(view, to_sun)) * passes;
+    // From above one sees light that was scattered once at all depths: S. Chandrasekhar, Radiative Transfer (1950).
+    float from_above = mu / (mu + max(-sine, 1e-4)), inside = fog_density(frame.eye_m.w, fog_top_m * frame.height_range.z);
+    float once = pi * air_aerosol_phase(dot(view, to_sun)) * mix(from_above, exp(-over / max(mu, 0.08)), inside);
     return air_lit * ((mu * all + 0.5 * once) * light_at_eye() + all * frame.sky_irradiance.rgb);
 }
 

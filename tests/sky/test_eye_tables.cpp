@@ -73,7 +73,7 @@ TEST(EyeTables, BetweenTheirTexelsAreTheAtmospheresRadiance) {
                     const double sine = tables.layout.sine_above(v);
                     const double azimuth_cos = EyeLayout::azimuth_cos(u);
                     const glm::dvec3 night = night_radiance(
-                        height, sine, colour_of(clean().transmittance(height, sine, 1e9)));
+                        height, sine, colour_of(clean().transmittance(height, sine, 1e9)).g);
                     const double expected = luminance(
                         colour_of(clean().radiance({height, sine, sun, azimuth_cos})) + night);
                     const double phase = aerosol_phase(ray_sun_cosine(sine, {sun, azimuth_cos}));
@@ -245,7 +245,7 @@ TEST(Night, ShedsTwoThousandthsOfALux) {
     for (int i = 0; i < kSteps; ++i) {
         const double sine = (i + 0.5) / kSteps;
         const glm::dvec3 through = colour_of(clean().transmittance(0, sine, 1e9));
-        lux += 127500 * 2 * sine / kSteps * luminance(night_radiance(0, sine, through));
+        lux += 127500 * 2 * sine / kSteps * luminance(night_radiance(0, sine, through.g));
     }
     fmt::print("[ sky ] moonless night: {:.5f} lux\n", lux);
     EXPECT_NEAR(lux, 0.002, 0.0001);
@@ -277,7 +277,7 @@ TEST(Night, KeepsItsBlueDownToTheHorizon) {
         for (double v = 0; v < 1; v += 0.02) {
             const double sine = EyeLayout(height).sine_above(v) + 1e-6;
             const glm::dvec3 light =
-                night_radiance(height, sine, colour_of(clean().transmittance(height, sine, 1e9)));
+                night_radiance(height, sine, colour_of(clean().transmittance(height, sine, 1e9)).g);
             EXPECT_GT(light.b, 0.6 * light.g) << height << " " << sine;
             EXPECT_GT(light.r, 0.5 * light.g) << height << " " << sine;
         }

@@ -55,7 +55,7 @@ Skies make_skies(const sky::Atmosphere& air, double sun_sine) {
                     kPi * colour(row[x].air) + (sky::aerosol_phase(cosine) - ring) * aerosol;
                 // Interpolated texels must not reach below black where a colour is outside of sRGB.
                 skies.bare[at] = glm::max(bare, glm::dvec3(0)) +
-                                 sky::night_radiance(0, sine, colour(row[x].through));
+                                 sky::night_radiance(0, sine, colour(row[x].through).g);
                 skies.whole[at] = skies.bare[at] + glm::max(ring * aerosol, glm::dvec3(0));
             }
         }
