@@ -116,10 +116,11 @@ void fog_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     vec2 place = fog_entry(s, drawn_m);
     float top_m = fog_top_at(place);
     float depth = fog_depth(frame.eye_m.w, drawn_m, s.distance_m, top_m);
-    // The visible part of thick fog lies at an optical depth of 1 from the eye.
-    float over = min(fog_above(min(frame.eye_m.w, drawn_m), top_m), frame.eye_m.w < top_m ? 1e9 : 1.0);
+    // From above, the visible part of thick fog lies at an optical depth of 1 from the eye.
+    float above = fog_above(min(frame.eye_m.w, drawn_m), top_m), inside = fog_density(frame.eye_m.w, top_m);
+    float over = mix(min(above, 1.0), above, inside);
     float under = max(fog_above(drawn_m, top_m) - over, 0.0) + 2.0;
-    float relief = frame.eye_m.w > top_m ? fog_relief(place, top_m) : 1.0;
+    float relief = mix(fog_relief(place, top_m), 1.0, inside);
     radiance = mix(relief * fog_light(view, over, under), radiance, exp(-depth));
 #endif
 }
