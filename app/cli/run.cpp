@@ -175,10 +175,6 @@ class Run {
     /// Removes the pictures from the list that exist and can be kept.
     /// @returns why other files cannot be kept; empty if all can
     std::string leave_out_made() {
-        for (const scene::Shot& shot : shots_)
-            if (object_store_of(shot.output.native()))
-                bad_usage(fmt::format("--resume: {}: reads pictures of this machine only",
-                                      printable(shot.output.string())));
         std::vector<session::Wanted> wanted;
         std::set<std::string> remote;
         for (const scene::Shot& shot : shots_) {

@@ -16,7 +16,6 @@
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
-#include "base/object_store.h"
 #include "base/parallel_for.h"
 #include "base/sha256.h"
 #include "base/text.h"
@@ -148,9 +147,6 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
     const std::filesystem::path folder = output.path;
-    if (object_store_of((folder / output::kPlanFile).native()))
-        bad_usage(fmt::format("-o: {}: tiles are made in a folder of this machine, and read there",
-                              printable(output.path)));
     dem::add_named(dem.paths, files);
     if (output.overwrite)
         for (const std::filesystem::path& path : dem::files_of(dem.paths))

@@ -195,15 +195,11 @@ void TileFolder::take(const std::vector<output::PlannedTile>& wanted, bool keep,
 }
 
 void TileFolder::write_plan(const dem::Posts& posts, const FarGround* far) const {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error)
-        bad_input(fmt::format("-o: {}: the folder cannot be made, {}", printable(folder_.string()),
-                              error.message()));
+    make_folder_of(folder_ / output::kPlanFile, "-o");
     for (const std::string& name : outdated_)
-        fs::remove(folder_ / name, error);
-    const bool has_heights = (posts.in_memory() || fs::exists(folder_ / output::kPostsFile)) &&
-                             (!far || fs::exists(folder_ / output::kMeansFile)) &&
+        remove_result(folder_ / name);
+    const bool has_heights = (posts.in_memory() || is_taken(folder_ / output::kPostsFile)) &&
+                             (!far || is_taken(folder_ / output::kMeansFile)) &&
                              output::foreign_plan_files(folder_).empty();
     if (has_plan_ && has_heights) return;
     if (!posts.in_memory()) output::write_posts_facts(folder_, posts);

@@ -20,6 +20,11 @@ class ObjectStore {
     /// Makes an object of a file from its beginning to its end, whole or not at all.
     /// @throws Error (Failed) `NAME: cannot be written, why`
     virtual void put(int descriptor, const std::string& name) const = 0;
+    /// Copies an object into a file, from its beginning.
+    /// @returns false where there is no such object
+    /// @throws Error (BadInput) where the store does not say or does not give it, (Failed) where the
+    ///     disk refuses
+    virtual bool get(const std::string& name, int descriptor) const = 0;
     /// Does nothing where it cannot.
     virtual void remove(const std::string& name) const noexcept = 0;
 };

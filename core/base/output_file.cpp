@@ -465,6 +465,13 @@ bool is_taken(const std::filesystem::path& path) {
     return std::filesystem::exists(std::filesystem::symlink_status(path, missing));
 }
 
+void remove_result(const std::filesystem::path& path) noexcept {
+    if (const ObjectStore* store = object_store_of(path.native()))
+        return store->remove(path.native());
+    std::error_code error;
+    std::filesystem::remove(path, error);
+}
+
 void make_folder_of(const std::filesystem::path& path, std::string_view who) {
     const std::filesystem::path folder = path.parent_path();
     if (folder.empty() || object_store_of(path.native())) return;

@@ -78,6 +78,9 @@ class OutputFile {
 /// @throws Error (BadInput) where a store does not say
 bool is_taken(const std::filesystem::path& path);
 
+/// Removes a result, a file or an object. Does nothing where it cannot.
+void remove_result(const std::filesystem::path& path) noexcept;
+
 /// Makes the folder that a result is to lie in, and those around it; stores have none.
 /// @throws Error (BadInput) `who: folder: the folder cannot be made, why`
 void make_folder_of(const std::filesystem::path& path, std::string_view who);

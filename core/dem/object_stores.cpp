@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
@@ -50,6 +51,7 @@ class GdalObjectStore : public ObjectStore {
     bool exists(const std::string& name) const override {
         prepare_gdal();
         allow_remote();
+        VSICurlPartialClearCache(name.c_str());  // another process may have made it
         const Presence presence = remote_presence(name);
         if (presence == Presence::Hidden)
             bad_input(
@@ -76,9 +78,39 @@ class GdalObjectStore : public ObjectStore {
         failed(fmt::format("{}: cannot be written, {}", printable(name), fault));
     }
 
+    bool get(const std::string& name, int descriptor) const override {
+        if (!exists(name)) return false;
+        const GdalMessages messages;
+        VSILFILE* const object = VSIFOpenL(name.c_str(), "rb");
+        const auto close_it = [](VSILFILE* open) { VSIFCloseL(open); };
+        const std::unique_ptr<VSILFILE, decltype(close_it)> open(object, close_it);
+        std::vector<char> buffer(kAtOnce);
+        bool is_whole = object != nullptr;
+        for (off_t at = 0; is_whole;) {
+            const std::size_t got = VSIFReadL(buffer.data(), 1, buffer.size(), object);
+            if (got > 0 && pwrite(descriptor, buffer.data(), got, at) != ssize_t(got))
+                failed(
+                    fmt::format("{}: cannot be copied, {}", printable(name), std::strerror(errno)));
+            at += static_cast<off_t>(got);
+            if (got == buffer.size()) continue;
+            is_whole = !messages.any_failure() && at == size_of(name);
+            break;
+        }
+        if (is_whole) return true;
+        bad_input(
+            fmt::format("{}: cannot be read, {}; the net or the store may have failed, try "
+                        "again",
+                        printable(name), messages.failure(name)));
+    }
+
     void remove(const std::string& name) const noexcept override { VSIUnlink(name.c_str()); }
 
   private:
+    static off_t size_of(const std::string& name) {
+        VSIStatBufL status{};
+        return VSIStatL(name.c_str(), &status) == 0 ? off_t(status.st_size) : -1;
+    }
+
     /// @param is_read  becomes false where the file cannot be read to its end
     /// @returns what went wrong; empty: nothing
     static std::string copy(int descriptor, VSILFILE* object, bool& is_read) {

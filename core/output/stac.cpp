@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/stat.h>
 
 #include "base/error.h"
 #include "base/percent.h"
@@ -121,9 +120,9 @@ std::optional<std::string> utc(const std::map<std::string, std::string>& metadat
 
 /// The time of the file's last change.
 std::string time_of_file(const fs::path& path) {
-    struct stat found {};
-    if (stat(path.c_str(), &found) != 0) return sun::to_iso(sun::Instant{});
-    return sun::to_iso(sun::Instant::from_unix_us(found.st_mtim.tv_sec * std::int64_t{1'000'000}));
+    VSIStatBufL found{};
+    if (VSIStatL(path.c_str(), &found) != 0) return sun::to_iso(sun::Instant{});
+    return sun::to_iso(sun::Instant::from_unix_us(found.st_mtime * std::int64_t{1'000'000}));
 }
 
 void add_times(Json& properties, GDALDatasetH dataset, const fs::path& path) {

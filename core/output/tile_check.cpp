@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "base/output_file.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/gdal.h"
@@ -68,12 +68,13 @@ std::string other_reason(GDALDatasetH dataset, const TilePlan& plan, const Plann
 
 TileOnDisk tile_on_disk(const fs::path& folder, const TilePlan& plan, const PlannedTile& tile) {
     const std::string path = (folder / tile.name).string();
-    std::error_code missing;
-    if (!fs::exists(fs::symlink_status(path, missing))) return {State::Missing, "is missing"};
+    if (!is_taken(path)) return {State::Missing, "is missing"};
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const char* const drivers[] = {"GTiff", nullptr};
-    const dem::Dataset dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, nullptr));
+    const char* const siblings[] = {tile.name.c_str(), nullptr};  // a tile has no files beside it
+    const dem::Dataset dataset(
+        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, siblings));
     if (!dataset)
         return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
     for (int band = 1; band <= GDALGetRasterCount(dataset.get()); ++band)

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/object_store.h"
 #include "base/text.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
@@ -31,12 +33,17 @@ std::string source_text(const std::string& name, const dem::Window& tile, const 
                         int band, const std::string& type) {
     const std::string size = fmt::format("xSize=\"{}\" ySize=\"{}\"", tile.columns, tile.rows);
     return fmt::format(
-        "<SimpleSource><SourceFilename relativeToVRT=\"1\">{}</SourceFilename>"
+        "<SimpleSource><SourceFilename relativeToVRT=\"{}\">{}</SourceFilename>"
         "<SourceBand>{}</SourceBand><SourceProperties RasterXSize=\"{}\" RasterYSize=\"{}\" "
         "DataType=\"{}\" BlockXSize=\"512\" BlockYSize=\"512\"/>"
         "<SrcRect xOff=\"0\" yOff=\"0\" {}/><DstRect xOff=\"{}\" yOff=\"{}\" {}/></SimpleSource>",
-        escaped_xml(name), band, tile.columns, tile.rows, type, size, tile.column - all.column,
-        tile.row - all.row, size);
+        name.starts_with('/') ? 0 : 1, escaped_xml(name), band, tile.columns, tile.rows, type, size,
+        tile.column - all.column, tile.row - all.row, size);
+}
+
+/// Where names count from one another: "/vsis3" for objects of such stores; empty for files.
+fs::path place_of(const fs::path& path) {
+    return object_store_of(path.native()) ? *std::next(path.begin()) : fs::path();
 }
 
 void copy_metadata(GDALMajorObjectH from, GDALMajorObjectH to) {
@@ -74,6 +81,7 @@ dem::Window window_of(const TilePlan& plan) {
 }
 
 std::string name_from(const fs::path& file, const fs::path& tile) {
+    if (place_of(file) != place_of(tile)) return fs::absolute(tile).generic_string();
     std::error_code error;
     const fs::path base = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
     const fs::path full =

@@ -12,7 +12,9 @@
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/local_copy.h"
 #include "base/log.h"
+#include "base/output_file.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "dem/clip.h"
@@ -123,7 +125,8 @@ std::optional<dem::Window> window_within(const dem::Grid& grid, const dem::Clip&
 bool is_plan(const fs::path& path) {
     constexpr std::size_t kHead = 64;
     std::string head(kHead, '\0');
-    std::ifstream file(path, std::ios::binary);
+    const LocalCopy copy(path, "plan");
+    std::ifstream file(copy.path(), std::ios::binary);
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     return head.find(kVersionKey) != std::string::npos;
 }
@@ -221,8 +224,7 @@ std::vector<fs::path> plan_files(const fs::path& folder) {
 std::vector<fs::path> foreign_plan_files(const fs::path& folder) {
     std::vector<fs::path> foreign;
     for (const fs::path& path : plan_files(folder)) {
-        std::error_code missing;
-        if (!fs::exists(fs::symlink_status(path, missing))) continue;
+        if (!is_taken(path)) continue;
         if (!(path.filename() == kPlanFile ? is_plan(path) : has_heights_of_plan(path)))
             foreign.push_back(path);
     }
@@ -231,7 +233,8 @@ std::vector<fs::path> foreign_plan_files(const fs::path& folder) {
 
 std::optional<TilePlan> read_plan(const fs::path& folder) {
     const fs::path path = folder / kPlanFile;
-    std::ifstream file(path, std::ios::binary);
+    const LocalCopy copy(path, "plan");
+    std::ifstream file(copy.path(), std::ios::binary);
     if (!file) return std::nullopt;
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::string name = "plan: " + printable(path.string());
@@ -257,8 +260,7 @@ void write_plan(const fs::path& folder, const TilePlan& plan) {
 
 std::optional<Array2d<float>> read_heights(const fs::path& file) {
     const std::string path = file.string();
-    std::error_code missing;
-    if (!fs::exists(path, missing) || !has_heights_of_plan(file)) return std::nullopt;
+    if (!is_taken(file) || !has_heights_of_plan(file)) return std::nullopt;
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const dem::Dataset dataset(

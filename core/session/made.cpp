@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/local_copy.h"
+#include "base/output_file.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "image/image.h"
@@ -19,11 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-bool is_there(const fs::path& path) {
-    std::error_code missing;
-    return fs::exists(fs::symlink_status(path, missing));
-}
 
 /// Keys of SceneInputs::record(), and the message if their values differ.
 constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
@@ -54,7 +51,8 @@ std::string difference(const std::string& before, const std::string& now) {
 
 std::string fault_of_picture(const scene::Shot& shot, const Wanted& wanted) {
     try {
-        const image::Metadata metadata = image::read_metadata(shot.output);
+        const LocalCopy file(shot.output, "--resume");
+        const image::Metadata metadata = image::read_metadata(file.path());
         const auto text = [&](const char* keyword) {
             const auto found = metadata.find(keyword);
             return found == metadata.end() ? std::string() : found->second;
@@ -68,7 +66,7 @@ std::string fault_of_picture(const scene::Shot& shot, const Wanted& wanted) {
         if (std::string why = difference(text(kInputsKeyword), wanted.record); !why.empty())
             return why;
         if (text(kFormatKeyword) != wanted.format) return "it has other bits, quality or layers";
-        const image::Image8 picture = image::read(shot.output);
+        const image::Image8 picture = image::read(file.path());
         if (picture.width == shot.scene.width_px && picture.height == shot.scene.height_px)
             return {};
     } catch (const Error&) {
@@ -79,7 +77,8 @@ std::string fault_of_picture(const scene::Shot& shot, const Wanted& wanted) {
 
 std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
     std::error_code ignored;
-    const fs::path path = sidecar_of(shot.output);
+    const LocalCopy file(sidecar_of(shot.output), "--resume");
+    const fs::path& path = file.path();
     if (!fs::is_regular_file(path, ignored)) return "its sidecar is not a file";
     std::string content;
     try {
@@ -105,15 +104,15 @@ std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
 }  // namespace
 
 OnDisk on_disk(const scene::Shot& shot, const Wanted& wanted) {
-    const bool picture = is_there(shot.output),
-               sidecar = wanted.sidecar && is_there(sidecar_of(shot.output));
+    const bool picture = is_taken(shot.output),
+               sidecar = wanted.sidecar && is_taken(sidecar_of(shot.output));
     if (!picture && !sidecar) return {};
     std::string why;
     if (sidecar) why = fault_of_sidecar(shot, wanted);
     if (picture && why.empty()) why = fault_of_picture(shot, wanted);
     if (!why.empty()) return {OnDisk::State::Other, std::move(why)};
     const bool all = picture && sidecar == wanted.sidecar &&
-                     std::ranges::all_of(files_beside(shot.scene, shot.output), is_there);
+                     std::ranges::all_of(files_beside(shot.scene, shot.output), is_taken);
     return {all ? OnDisk::State::Whole : OnDisk::State::Part, {}};
 }
 

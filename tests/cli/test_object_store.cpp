@@ -118,14 +118,6 @@ TEST_F(ObjectStore, NothingIsReplacedUnaskedWhereTheStoreDoesNotSayWhatExists) {
     EXPECT_NE(store.objects().at("/bucket/shadow.tif"), "old");
 }
 
-TEST_F(ObjectStore, TilesAreMadeOnThisMachine) {
-    const ObjectStoreServer store;
-    const Result refused = shadow(store, bundled_dem(), "/vsis3/bucket/tiles", {"--tiles", "200"});
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_THAT(refused.err, HasSubstr("-o: /vsis3/bucket/tiles: tiles are made in a folder of "
-                                       "this machine"));
-}
-
 TEST_F(ObjectStore, TheDemIsNotReplaced) {
     ObjectStoreServer store;
     store.put("/bucket/dem.tif", content_);
@@ -217,10 +209,6 @@ TEST_F(ObjectStore, AJobWritesItsPicturesThere) {
     const Result again = relevo({"run", job}, environment(store));
     EXPECT_EQ(again.status, 3);
     EXPECT_THAT(again.err, HasSubstr("/vsis3/bucket/day/1000.png: exists, the first of 3"));
-    const Result resumed = relevo({"run", job, "--resume"}, environment(store));
-    EXPECT_EQ(resumed.status, 2);
-    EXPECT_THAT(resumed.err, HasSubstr("--resume: /vsis3/bucket/day/1000.png: reads pictures of "
-                                       "this machine only"));
 }
 
 TEST_F(ObjectStore, TimingsCountWhatTheNetWasAsked) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/units.h"
 #include "climate/fine_cover.h"
 #include "support/support.h"
 
