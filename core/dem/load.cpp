@@ -181,8 +181,8 @@ int reduction_of(const Grid& full, const MemoryBudget& memory) {
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts) {
     refuse_endless_sides(source);
     constexpr std::int64_t kFew = std::int64_t{1} << 26;  // all of them are read as soon
-    // Read in a second or two; 400 blocks where each is one more file that is opened.
-    const std::int64_t most_sampled = source.opens_slowly() ? 400 * 64 * 64 : 200'000'000;
+    // Read in a second or two; 15 x 15 blocks where each is one more file that is opened.
+    const std::int64_t most_sampled = source.opens_slowly() ? 225 * 64 * 64 : 200'000'000;
     const std::int64_t posts = posts_at(source.grid(), 1);
     const int reduction = reduction_to(source.grid(), most_posts);
     if (reduction == 1 || posts_at(source.grid(), reduction) > most_posts) return std::nullopt;

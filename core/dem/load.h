@@ -40,7 +40,7 @@ int reduction_of(const Grid& full, const MemoryBudget& memory);
 /// finer level of it can be read.
 /// @param most_posts  that are kept; files are read for up to four times as many cells of
 ///     overviews, or for an eighth of the posts but no more than 200 million;
-///     400 blocks of a DEM that opens_slowly()
+///     15 x 15 blocks of a DEM that opens_slowly()
 /// @returns none if all posts are few, or no mean has a height
 /// @throws Error (BadInput) as Source::read()
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);
