@@ -146,7 +146,7 @@ vec4 clouds_pass_columns(in Texel t) {
     vec2 place = clouds_of_map(t.at);
     vec2 cells = clouds_cells(place);
     uint stream = uint(clouds_seed) * 4099u + 700u;
-    float vary = 0.6 * clouds_octaves(0.55 * cells, 4, stream) + 0.4 * clouds_domes(0.8 * cells, stream + 9u);
+    float vary = 0.6 * clouds_octaves(0.55 * cells, 2, stream) + 0.4 * clouds_domes(0.8 * cells, stream + 9u);
     vec3 shares = vec3(-4.0);
     int count = clouds_count();
     for (int i = 0; i < 3; ++i) {
@@ -159,6 +159,11 @@ vec4 clouds_pass_columns(in Texel t) {
 /// The same at any place, from 0 to 1. Clamped after the texture's filter, so that edges are smooth.
 vec4 clouds_at(in vec2 place) {
     return clamp(textureLod(clouds_columns, clouds_map_at(place), 0.0), 0.0, 1.0);
+}
+
+/// How much of an anvil a deck's clouds have, 0..1: cumulus as tall as a thundercloud.
+float clouds_anvil(in clouds_Deck d) {
+    return d.kind == 0 ? smoothstep(4000.0, 6000.0, d.top_m - d.base_m) : 0.0;
 }
 
 /// Height of a cloud over its deck's, 0..1. @param share  clouds_share()
@@ -174,7 +179,31 @@ float clouds_tau(in clouds_Deck d, in float share, in float vary) {
     return d.depth * of_deck * (1.0 + d.varies * (2.0 * vary - 1.0));
 }
 
+/// Height above the deck's base that the tallest clouds of a place have [m].
+float clouds_tall_m(in clouds_Deck d, in float vary) {
+    float uneven = d.kind == 1 ? 1.6 : mix(0.8, 0.3, clouds_anvil(d));
+    return (d.top_m - d.base_m) * (1.0 - uneven * clouds_variation * vary);
+}
+
 /// Top of a column [m].
 float clouds_column_top_m(in clouds_Deck d, in float share, in float vary) {
-    return mix(d.base_m, d.top_m, max(clouds_height(d, share) * (1.0 - (d.kind == 1 ? 1.6 : 0.8) * clouds_variation * vary), 1e-3));
+    float height = mix(clouds_height(d, share), share > 0.0 ? 0.92 + 0.08 * share : 0.0, clouds_anvil(d));
+    return d.base_m + max(clouds_tall_m(d, vary) * height, 1e-3 * (d.top_m - d.base_m));
+}
+
+const float clouds_waist = 0.45;  // share from which a thundercloud reaches from its base to its anvil
+
+/// Share from which a cloud reaches a height: the inverse of clouds_height(); with an anvil, a narrow tower below a
+/// wide top. @param within  0 at the base, 1 at the tallest tops
+float clouds_needed(in clouds_Deck d, in float within) {
+    if (d.kind == 2) return 0.0;
+    if (d.kind == 1) return 1.0 - sqrt(max(1.0 - within, 0.0));
+    float dome = 1.0 - sqrt(max(1.0 - within * within, 0.0));
+    float tower = clouds_waist * smoothstep(0.03, 0.25, within) * (1.0 - smoothstep(0.6, 0.86, within));
+    return mix(dome, tower + max(12.5 * within - 11.5, 0.0), clouds_anvil(d));
+}
+
+/// Share of the height of a column that is cloud. @param share  clouds_share()
+float clouds_filled(in clouds_Deck d, in float share) {
+    return mix(1.0, mix(0.2, 1.0, smoothstep(0.0, clouds_waist, share)), clouds_anvil(d));
 }

@@ -23,6 +23,11 @@ float clouds_lumps_at(in vec2 place, in float height_m, in int kind) {
     return textureLod(clouds_detail, at, 0.0).r;
 }
 
+/// How far billows lower the top of a sheet, of its height. @param lump  clouds_lumps_at()
+float clouds_billow(in float lump) {
+    return 0.4 * clouds_lumpy * clamp(0.5 - 0.5 * lump, 0.0, 1.0);
+}
+
 /// A point of a deck.
 struct clouds_Point {
     float extinction;  // [1/m]
@@ -36,22 +41,25 @@ clouds_Point clouds_point(in clouds_Deck d, in int deck, in vec3 position_m, in 
     clouds_Point p = clouds_Point(0.0, 0.0, 0.0, 0.0);
     vec2 place = clouds_place(position_m, height_m);
     vec4 columns = textureLod(clouds_columns, clouds_map_at(place), 0.0);
-    float vary = clamp(columns.a, 0.0, 1.0), widest = clouds_lumpy * clouds_widest_lump;
-    float share = columns[deck];
-    p.gap_m = max(-share - widest, 0.0) * 0.3 * clouds_cell_m;
-    if (share <= -widest || height_m < d.base_m - soft_m || height_m > d.top_m + soft_m) return p;
-    if (share < 1.0 + widest && soft_m < 0.2 * clouds_cell_m)
-        share += widest * clouds_lumps_at(place, height_m, d.kind) * min(4.0 * (height_m - d.base_m) / (d.top_m - d.base_m) + 0.3, 1.0);
-    share = clamp(share, 0.0, 1.0);
+    float vary = clamp(columns.a, 0.0, 1.0), tallest_m = clouds_tall_m(d, vary);
+    float within = (height_m - d.base_m) / tallest_m;
+    float widest = clouds_lumpy * clouds_widest_lump * (1.0 + clouds_anvil(d)) * clamp(4.0 * within + 0.3, 0.3, 1.0);
+    float needed = clouds_needed(d, clamp(within, 0.0, 1.0));
+    float share = columns[deck] - needed;  // beyond what is needed at this height
+    p.gap_m = max(max(-share - widest, 0.0) * 0.15 * clouds_cell_m, height_m - d.base_m - tallest_m);
+    if (p.gap_m > 0.0 || height_m < d.base_m - soft_m) return p;
+    float lump = soft_m < 0.2 * clouds_cell_m ? clouds_lumps_at(place, height_m, d.kind) : 0.0;
+    share += widest * lump;
     if (share <= 0.0) return p;
-    float top_m = clouds_column_top_m(d, share, vary), tall_m = top_m - d.base_m;
-    float within = clamp((height_m - d.base_m) / tall_m, 0.0, 1.0);
-    float tau = clouds_tau(d, share, vary);
+    float column = min(share + needed, 1.0);
+    float top_m = clouds_column_top_m(d, column, vary), tall_m = top_m - d.base_m;
+    if (d.kind == 1) top_m -= clouds_billow(lump) * tall_m;
+    within = clamp((height_m - d.base_m) / tall_m, 0.0, 1.0);
+    float tau = clouds_tau(d, column, vary);
     float inside_m = min(top_m - height_m, 0.3 * clouds_cell_m * share);
     float edge = smoothstep(0.0, 1.0, inside_m / soft_m) * clamp((height_m - d.base_m) / soft_m + 0.5, 0.0, 1.0);
-    p.extinction = edge * tau / tall_m;
+    p.extinction = edge * tau / (tall_m * clouds_filled(d, column));
     p.above = tau * (1.0 - within);
     p.below = tau * within;
-    p.gap_m = max(0.5 * (height_m - top_m), 0.0);
     return p;
 }

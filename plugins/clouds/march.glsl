@@ -5,7 +5,7 @@
 //@ include lib/pixel.glsl
 //@ include lib/screen.glsl
 
-uniform int clouds_steps = 48; //@ range(8, 128) label("Steps") description("Samples along a ray through a deck")
+uniform int clouds_steps = 96; //@ range(8, 128) label("Steps") description("Samples along a ray through a deck")
 
 uniform sampler2D clouds_depths; //@ from(core.ground_depth)
 uniform sampler2D clouds_near;
@@ -59,12 +59,19 @@ float clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in 
     return exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu);
 }
 
+/// Top of a sheet with its billows [m].
+float clouds_sheet_m(in clouds_Deck d, in int deck, in vec2 place, in float height_m) {
+    vec4 columns = clouds_at(place);
+    float tall_m = clouds_column_top_m(d, columns[deck], columns.a) - d.base_m;
+    return d.base_m + tall_m * (1.0 - clouds_billow(clouds_lumps_at(place, height_m, d.kind)));
+}
+
 /// Light on the waves of a sheet's top over that of a level one: slopes towards the sun have more.
 float clouds_relief(in clouds_Deck d, in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float mu) {
-    const float step_m = 250.0;
+    const float step_m = 120.0;
     vec2 place = clouds_place(position_m, height_m);
-    vec4 here = clouds_at(place), there = clouds_at(place + step_m * normalize(to_sun.xy + 1e-6));
-    float rise = (clouds_column_top_m(d, there[deck], there.a) - clouds_column_top_m(d, here[deck], here.a)) / step_m;
+    vec2 there = place + step_m * normalize(to_sun.xy + 1e-6);
+    float rise = (clouds_sheet_m(d, deck, there, height_m) - clouds_sheet_m(d, deck, place, height_m)) / step_m;
     return clamp(1.0 - 0.9 * rise / max(mu, 0.25), 0.4, 1.5);
 }
 
@@ -100,7 +107,7 @@ float clouds_ray_height(in float sine, in float way_m) {
 
 /// Over how many metres edges are soft at a distance: the width of a pixel of clouds.view.
 float clouds_soft_m(in clouds_Deck d, in float way_m) {
-    return max(0.1 * (d.top_m - d.base_m), 4.0 * length(frame.pixel_ray_dx.xyz) * way_m);
+    return max(min(0.1 * (d.top_m - d.base_m), 250.0), 4.0 * length(frame.pixel_ray_dx.xyz) * way_m);
 }
 
 clouds_Point clouds_point_of_ray(in clouds_Deck d, in int deck, in vec3 direction, in float sine, in float way_m) {
@@ -161,7 +168,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
             if (!found) {
                 last_m = at_m;
                 float rest_m = (ends.y - at_m) / float(clouds_steps - samples);
-                float least_m = max(0.5 * clouds_soft_m(d, at_m), min(0.5 * rest_m, 0.1 * clouds_cell_m + 0.02 * at_m));
+                float least_m = max(0.5 * clouds_soft_m(d, at_m), samples > clouds_steps / 2 ? rest_m : min(0.5 * rest_m, 0.05 * clouds_cell_m + 0.015 * at_m));
                 at_m += max(p.gap_m, samples == 0 ? jitter * least_m : least_m);
             }
             ++samples;

@@ -26,7 +26,8 @@ float clouds_domes(in vec2 at, in uint stream) {
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             ivec2 cell = ivec2(whole) + ivec2(x, y);
-            vec2 away = vec2(x, y) + 0.15 + 0.7 * vec2(noise_random(cell, stream), noise_random(cell, stream + 77u)) - part;
+            float random = 4096.0 * noise_random(cell, stream);  // its upper bits east, its lower ones north
+            vec2 away = vec2(x, y) + 0.15 + 0.7 * vec2(floor(random) / 4096.0, fract(random)) - part;
             nearest2 = min(nearest2, dot(away, away));
         }
     }
