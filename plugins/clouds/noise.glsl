@@ -9,13 +9,13 @@ const mat2 clouds_turn = mat2(0.8, 0.6, -0.6, 0.8);  // from octave to octave, s
 /// Octaves of value noise, each of half the height and the length of the one before; about 0..1.
 float clouds_octaves(in vec2 at, in int count, in uint stream) {
     float sum = 0.0, height = 0.5, all = 0.0;
-    for (int i = 0; i < 6; ++i) {
-        if (i >= count) break;
+    int i = 0;
+    do {
         sum += height * noise_smooth(at, stream + uint(i));
         all += height;
         height *= 0.5;
         at = clouds_turn * at * 2.03;
-    }
+    } while (++i < count);
     return sum / all;
 }
 
@@ -34,28 +34,6 @@ float clouds_domes(in vec2 at, in uint stream) {
     return 1.0 - nearest2;
 }
 
-/// Heaps in clusters: large domes with smaller ones on them. @param at  [cells]
-float clouds_cumulus(in vec2 at, in uint stream) {
-    float clusters = clouds_octaves(0.18 * at, 3, stream);
-    float bent = noise_smooth(1.7 * at, stream + 20u);
-    vec2 moved = at + 0.35 * (bent - 0.5);
-    float heaps = 0.62 * clouds_domes(moved, stream + 5u) + 0.26 * clouds_domes(clouds_turn * moved * 2.3, stream + 6u) +
-                  0.12 * clouds_domes(moved * 5.1, stream + 7u);
-    return 0.55 * clusters + 0.45 * heaps;
-}
-
-/// Smooth sheets. @param at  [cells]
-float clouds_stratus(in vec2 at, in uint stream) {
-    return clouds_octaves(0.22 * at, 5, stream + 30u);
-}
-
-/// Streaks along x, bent by slow winds. @param at  [cells]
-float clouds_cirrus(in vec2 at, in uint stream) {
-    float bent = noise_smooth(0.07 * at, stream + 40u) - 0.5;
-    vec2 streak = vec2(0.07 * at.x, 0.45 * at.y + 2.5 * bent);
-    return 0.6 * clouds_octaves(streak, 5, stream + 41u) + 0.4 * clouds_octaves(0.08 * at, 3, stream + 50u);
-}
-
 /// Cells around random points of a volume that repeats: 1 at a point, 0 half way to the next ones.
 /// @param at  0..1 along each side of it, @param count  cells along each side
 float clouds_lumps(in vec3 at, in int count, in uint stream) {
@@ -72,11 +50,24 @@ float clouds_lumps(in vec3 at, in int count, in uint stream) {
     return 1.0 - nearest2;
 }
 
-/// A field of a kind. @param kind  0 cumulus, 1 stratus, 2 cirrus
+/// Heaps in clusters, large domes with smaller ones on them; smooth sheets; or streaks along x, bent by slow winds.
+/// Software devices compute all sides of a branch: so kinds differ in numbers, and loops end after what a kind needs.
+/// @param kind  0 cumulus, 1 stratus, 2 cirrus, @param at  [cells]
 float clouds_field(in int kind, in vec2 at, in uint stream) {
-    if (kind == 0) return clouds_cumulus(at, stream);
-    if (kind == 1) return clouds_stratus(at, stream);
-    return clouds_cirrus(at, stream);
+    bool heaps = kind == 0, streaks = kind == 2;
+    float bent = noise_smooth((heaps ? 1.7 : 0.07) * at, stream + (heaps ? 20u : 40u)) - 0.5;
+    vec2 wide = heaps ? 0.18 * at : streaks ? vec2(0.07 * at.x, 0.45 * at.y + 2.5 * bent) : 0.22 * at;
+    float field = clouds_octaves(wide, heaps ? 3 : 5, stream + (heaps ? 0u : streaks ? 41u : 30u));
+    float slow = clouds_octaves(0.08 * at, streaks ? 3 : 1, stream + 50u);
+    if (streaks) field = 0.6 * field + 0.4 * slow;
+    float domes = 0.0;
+    uint i = 0u;
+    do {
+        vec2 moved = at + 0.35 * bent;
+        vec2 dome = i == 0u ? moved : i == 1u ? clouds_turn * moved * 2.3 : moved * 5.1;
+        domes += vec3(0.62, 0.26, 0.12)[i] * clouds_domes(dome, stream + 5u + i);
+    } while (++i < (heaps ? 3u : 1u));
+    return heaps ? 0.55 * field + 0.45 * domes : field;
 }
 
 // Fields below which so much of all places is: 0, 0.05 ... 1; the ends are where next to nothing is.
