@@ -9,7 +9,6 @@
 
 uniform float clouds_visibility = 180.0; //@ range(0.1, 1000) unit(km) label("Visibility") description("How far the air before the clouds lets one see, at sea level: 3.912 / extinction")
 
-uniform sampler2D clouds_below;
 uniform sampler2D clouds_view;
 uniform sampler2D clouds_dome;
 

@@ -161,9 +161,9 @@ vec4 clouds_at(in vec2 place) {
     return clamp(textureLod(clouds_columns, clouds_map_at(place), 0.0), 0.0, 1.0);
 }
 
-/// How much of an anvil a deck's clouds have, 0..1: cumulus as tall as a thundercloud.
-float clouds_anvil(in clouds_Deck d) {
-    return d.kind == 0 ? smoothstep(4000.0, 6000.0, d.top_m - d.base_m) : 0.0;
+/// Whether a deck's clouds are thunderclouds, with anvils: cumulus of 5 km and more.
+bool clouds_anvil(in clouds_Deck d) {
+    return d.kind == 0 && d.top_m - d.base_m >= 5000.0 * frame.height_range.z;
 }
 
 /// Height of a cloud over its deck's, 0..1. @param share  clouds_share()
@@ -181,13 +181,16 @@ float clouds_tau(in clouds_Deck d, in float share, in float vary) {
 
 /// Height above the deck's base that the tallest clouds of a place have [m].
 float clouds_tall_m(in clouds_Deck d, in float vary) {
-    float uneven = d.kind == 1 ? 1.6 : mix(0.8, 0.3, clouds_anvil(d));
+    float uneven = d.kind == 1 ? 1.6 : clouds_anvil(d) ? 0.3 : 0.8;
     return (d.top_m - d.base_m) * (1.0 - uneven * clouds_variation * vary);
 }
 
 /// Top of a column [m].
 float clouds_column_top_m(in clouds_Deck d, in float share, in float vary) {
-    float height = mix(clouds_height(d, share), share > 0.0 ? 0.92 + 0.08 * share : 0.0, clouds_anvil(d));
+    float height = clouds_height(d, share);
+    if (clouds_anvil(d)) height = 0.92 + 0.08 * share;
+    if (d.kind == 1) height = 0.5 + 0.5 * height;  // sheets thin out sideways
+    if (share <= 0.0) height = 0.0;
     return d.base_m + max(clouds_tall_m(d, vary) * height, 1e-3 * (d.top_m - d.base_m));
 }
 
@@ -197,13 +200,13 @@ const float clouds_waist = 0.45;  // share from which a thundercloud reaches fro
 /// wide top. @param within  0 at the base, 1 at the tallest tops
 float clouds_needed(in clouds_Deck d, in float within) {
     if (d.kind == 2) return 0.0;
-    if (d.kind == 1) return 1.0 - sqrt(max(1.0 - within, 0.0));
-    float dome = 1.0 - sqrt(max(1.0 - within * within, 0.0));
+    if (d.kind == 1) return 1.0 - sqrt(min(2.0 - 2.0 * within, 1.0));
+    if (!clouds_anvil(d)) return 1.0 - sqrt(max(1.0 - within * within, 0.0));
     float tower = clouds_waist * smoothstep(0.03, 0.25, within) * (1.0 - smoothstep(0.6, 0.86, within));
-    return mix(dome, tower + max(12.5 * within - 11.5, 0.0), clouds_anvil(d));
+    return tower + max(12.5 * within - 11.5, 0.0);
 }
 
 /// Share of the height of a column that is cloud. @param share  clouds_share()
 float clouds_filled(in clouds_Deck d, in float share) {
-    return mix(1.0, mix(0.2, 1.0, smoothstep(0.0, clouds_waist, share)), clouds_anvil(d));
+    return clouds_anvil(d) ? mix(0.15 + 0.95 * share, 1.0, smoothstep(0.42, 0.46, share)) : 1.0;
 }

@@ -43,13 +43,13 @@ clouds_Point clouds_point(in clouds_Deck d, in int deck, in vec3 position_m, in 
     vec4 columns = textureLod(clouds_columns, clouds_map_at(place), 0.0);
     float vary = clamp(columns.a, 0.0, 1.0), tallest_m = clouds_tall_m(d, vary);
     float within = (height_m - d.base_m) / tallest_m;
-    float widest = clouds_lumpy * clouds_widest_lump * (1.0 + clouds_anvil(d)) * clamp(4.0 * within + 0.3, 0.3, 1.0);
+    float widest = clouds_lumpy * clouds_widest_lump * (clouds_anvil(d) ? 2.0 : 1.0) * clamp(4.0 * within + 0.3, 0.3, 1.0);
     float needed = clouds_needed(d, clamp(within, 0.0, 1.0));
     float share = columns[deck] - needed;  // beyond what is needed at this height
     p.gap_m = max(max(-share - widest, 0.0) * 0.15 * clouds_cell_m, height_m - d.base_m - tallest_m);
     if (p.gap_m > 0.0 || height_m < d.base_m - soft_m) return p;
     float lump = soft_m < 0.2 * clouds_cell_m ? clouds_lumps_at(place, height_m, d.kind) : 0.0;
-    share += widest * lump;
+    share += (d.kind == 1 ? 0.3 : 1.0) * widest * lump;
     if (share <= 0.0) return p;
     float column = min(share + needed, 1.0);
     float top_m = clouds_column_top_m(d, column, vary), tall_m = top_m - d.base_m;

@@ -7,10 +7,16 @@
 
 uniform int clouds_steps = 96; //@ range(8, 128) label("Steps") description("Samples along a ray through a deck")
 
+uniform float clouds_rain = 0.0; //@ range(0, 1) label("Rain") description("Shafts of rain below the thick parts of the lowest deck: 1 is heavy rain")
+
+uniform sampler2D clouds_below;
 uniform sampler2D clouds_depths; //@ from(core.ground_depth)
 uniform sampler2D clouds_near;
 
 const float clouds_far_m = 500000.0;
+const int clouds_rain_steps = 12;
+const float clouds_rain_step_m = 1700.0;  // at most, and at most 0.6 of clouds_cell_m: shafts are wider
+const float clouds_rain_extinction = 1e-3;  // of heavy rain [1/m]
 
 /// Where a ray is inside of a deck, from x to y along it [m]; empty if y <= x.
 /// @param height_m  of the eye
@@ -43,8 +49,8 @@ float clouds_towards(in clouds_Deck d, in int deck, in vec3 position_m, in float
     return tau;
 }
 
-/// Share of the sun's light that the decks above one let through, at a point [m].
-float clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
+/// Shares of the light that the decks above one let through, at a point [m]: x of the sun's, y of the sky's.
+vec2 clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
     float tau = 0.0;
     int count = clouds_count();
     for (int above = 1; above < 3; ++above) {
@@ -56,7 +62,7 @@ float clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in 
         tau += clouds_tau(d, columns[above], columns.a);
     }
     float mu = max(sine, 0.1);
-    return exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu);
+    return vec2(exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu), 1.0 - clouds_reflected_sky(tau));
 }
 
 /// Top of a sheet with its billows [m].
@@ -153,8 +159,8 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     ends.y = min(ends.y, min(limit_m, clouds_far_m));
     if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
     vec3 to_sun = light_at_eye_direction();
-    float shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
-                                     dot(to_sun, up_at(ends.x * direction)));
+    vec2 shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
+                                    dot(to_sun, up_at(ends.x * direction)));
     float at_m = ends.x, last_m = ends.x;
     int samples = 0;
     // Each turn finds the next cloud, follows the ray into it and lights it once: light is dear, and a
@@ -179,7 +185,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
         vec3 position_m = dug.y * direction;
         float here_m = clouds_ray_height(sine, dug.y);
         clouds_Point p = clouds_point(d, deck, position_m, here_m, clouds_soft_m(d, dug.y));
-        vec2 lit = clouds_lit(d, deck, position_m, here_m, p, direction, to_sun, up_at(position_m)) * vec2(shade, 1.0);
+        vec2 lit = clouds_lit(d, deck, position_m, here_m, p, direction, to_sun, up_at(position_m)) * shade;
         seen.xy += seen.z * dug.x * lit;
         seen.w += seen.z * dug.x * 0.001 * dug.y;
         seen.z *= 1.0 - dug.x;
@@ -188,15 +194,46 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     return seen;
 }
 
+/// Where a ray is below a deck, from x to y along it [m].
+vec2 clouds_below_deck(in clouds_Deck d, in float sine, in float limit_m) {
+    float down_m = (frame.eye_m.w - d.base_m) / max(-sine, 1e-4);
+    if (frame.eye_m.w >= d.base_m) return vec2(sine < 0.0 ? down_m : limit_m, limit_m);
+    return vec2(0.0, min(limit_m, clouds_way_up(d.base_m - frame.eye_m.w, sine)));
+}
+
+/// Rain of the lowest deck along a ray, added to what is before it as clouds_through() does.
+vec4 clouds_rained(in vec3 direction, in float limit_m, in float jitter, in vec4 seen) {
+    clouds_Deck d = clouds_deck(0);
+    float sine = dot(direction, frame.eye_up.xyz);
+    vec2 ends = clouds_below_deck(d, sine, limit_m);
+    float step_m = min((ends.y - ends.x) / float(clouds_rain_steps), min(clouds_rain_step_m, 0.6 * clouds_cell_m));
+    vec2 below = textureLod(clouds_below, vec2(0.5), 0.0).rg * vec2(max(frame.sun_apparent.z, 0.0), 1.0);
+    int i = clouds_rain > 0.0 && step_m > 0.0 ? 0 : clouds_rain_steps;
+    for (; i < clouds_rain_steps; ++i) {
+        float at_m = ends.x + (float(i) + jitter) * step_m;
+        vec4 columns = textureLod(clouds_columns, clouds_map_at(clouds_place(at_m * direction, clouds_ray_height(sine, at_m))), 0.0);
+        float fades = 1.0 - float(i) / float(clouds_rain_steps);
+        float shaft = fades * smoothstep(0.3, 1.2, columns.x) * smoothstep(0.5, 0.95, columns.a);
+        float opaque = 1.0 - exp(-clouds_rain * clouds_rain_extinction * shaft * step_m);
+        seen.xy += 0.35 * seen.z * opaque * below;
+        seen.w += seen.z * opaque * 0.001 * at_m;
+        seen.z *= 1.0 - opaque;
+    }
+    return seen;
+}
+
 /// All decks along a ray, the nearest first. @param jitter  0..1, where in a step samples are
 vec4 clouds_seen(in vec3 direction, in float limit_m, in float jitter) {
     vec4 seen = vec4(0.0, 0.0, 1.0, 0.0);
     bool upwards = frame.eye_m.w < clouds_deck(0).top_m || dot(direction, frame.eye_up.xyz) > 0.0;
+    bool beneath = frame.eye_m.w < clouds_deck(0).base_m;
     int count = clouds_count();
+    if (beneath) seen = clouds_rained(direction, limit_m, jitter, seen);
     for (int i = 0; i < 3; ++i) {
         seen = clouds_through(upwards ? i : count - 1 - i, direction, limit_m, jitter, seen);
         if (i + 1 >= count) break;
     }
+    if (!beneath) seen = clouds_rained(direction, limit_m, jitter, seen);
     seen.w /= max(1.0 - seen.z, 1e-4);
     return seen;
 }

@@ -93,6 +93,43 @@ TEST(Clouds, MoveWithTheWindAndComeAgain) {
     EXPECT_EQ(later, again);
 }
 
+// ---- shape
+
+/// Largest difference between how much of a column is cloud and what its density reckons with.
+double worst_filled(test::GpuSnippet& gpu) {
+    double worst = 0;
+    for (const glm::vec4& one :
+         gpu.run("clouds_Deck d = clouds_deck(0);\n"
+                 "float share = (float(x) + 1.0) / 40.0, vary = 0.25 * float(y), inside = 0.0;\n"
+                 "float top = clouds_column_top_m(d, share, vary) - d.base_m;\n"
+                 "for (int i = 0; i < 500; ++i) {\n"
+                 "    float within = (float(i) + 0.5) / 500.0 * top / clouds_tall_m(d, vary);\n"
+                 "    if (clouds_needed(d, within) <= share) inside += 1.0 / 500.0;\n"
+                 "}\n"
+                 "result = vec4(inside, clouds_filled(d, share), share, 0.0);",
+                 40, 5))
+        if (std::abs(one.z - 0.44F) > 0.03F)  // where a tower closes
+            worst = std::max(worst, std::abs(double{one.x} - one.y));
+    return worst;
+}
+
+TEST(Clouds, ColumnsAreCloudAsFarAsTheirDensityReckons) {
+    // So that what the eye sees is as deep as what shades the ground. Above a share's top is none
+    // of it.
+    test::GpuSnippet gpu("clouds");
+    place_eye(gpu.frame(), 3000);
+    for (const char* const kind : {"cumulus", "stratus", "cirrus"})
+        for (const double top_m :
+             {3700.0, 7600.0, 12000.0}) {  // cumulus: none, half, a whole anvil
+            gpu.values().set("clouds.kind_1", kind);
+            gpu.values().set("clouds.top_1_m", fmt::format("{}", top_m));
+            const double worst = worst_filled(gpu);
+            fmt::print("[ accuracy ] filled part of a column, {} up to {} m: worst {:.3f}\n", kind,
+                       top_m, worst);
+            EXPECT_LT(worst, 0.05) << kind << ' ' << top_m;
+        }
+}
+
 // ---- shadows
 
 /// Where the sun's ray to a point meets a deck, in double precision on a sphere: the place below.
