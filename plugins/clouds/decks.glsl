@@ -74,7 +74,7 @@ float clouds_way_up(in float rise_m, in float sine) {
     return 2.0 * rise_m / max(sine + sqrt(max(sine * sine + 2.0 * bend * rise_m, 0.0)), 1e-6);
 }
 
-// The map of columns: its texels are the finer the nearer to the eye, 30 m below it.
+// The map of columns: its texels are the finer the nearer to the eye, 32 m below it.
 float clouds_near_m() {
     return max(3000.0, 0.5 * frame.eye_m.w);
 }

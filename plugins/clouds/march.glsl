@@ -134,7 +134,7 @@ vec3 clouds_dig(in clouds_Deck d, in int deck, in vec3 direction, in float sine,
         passes *= 1.0 - opaque;
         from_m += step_m;
         step_m *= 1.4;
-        if (extinction <= 0.0) break;
+        if (extinction <= 0.0 || passes < 0.01) break;
     }
     return vec3(1.0 - passes, mean_m / max(1.0 - passes, 1e-6), from_m);
 }
@@ -174,7 +174,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
             if (!found) {
                 last_m = at_m;
                 float rest_m = (ends.y - at_m) / float(clouds_steps - samples);
-                float least_m = max(0.5 * clouds_soft_m(d, at_m), samples > clouds_steps / 2 ? rest_m : min(0.5 * rest_m, 0.05 * clouds_cell_m + 0.015 * at_m));
+                float least_m = max(0.5 * clouds_soft_m(d, at_m), samples > clouds_steps / 2 ? rest_m : min(0.5 * rest_m, min(0.1 * clouds_cell_m, 400.0) + 0.015 * at_m));
                 at_m += max(p.gap_m, samples == 0 ? jitter * least_m : least_m);
             }
             ++samples;
