@@ -21,19 +21,18 @@ class FineCover {
     FineCover(const ClimateMap& map, const Box& box, const CoverTable& table,
               const Heights& height_m);
 
-    int columns() const { return fine_ ? kSide : table_.columns(); }  ///< from west to east
-    int rows() const { return fine_ ? kSide : table_.rows(); }        ///< from south to north
+    int columns() const { return fine_ ? columns_ : table_.columns(); }  ///< from west to east
+    int rows() const { return fine_ ? rows_ : table_.rows(); }           ///< from south to north
     /// As CoverTable has them, at these places.
     std::vector<float> texels(double day) const;
 
   private:
-    static constexpr int kSide = 33;
-
     void refine_rain(const Box& box, const Heights& height_m);
     void refine_ice(const ClimateMap& map, const Box& box);
-    static geo::Geodetic place_of(const Box& box, int column, int row);
+    geo::Geodetic place_of(const Box& box, int column, int row) const;
 
     const CoverTable& table_;
+    int columns_, rows_;  // of the finer net
     bool fine_ = false;
     TradeWind wind_;
     Array2d<float> rain_;  // factors
