@@ -13,6 +13,7 @@
 //@ include lib/ground.glsl
 //@ include lib/repeats.glsl
 //@ include lib/surface.glsl
+//@ include lib/surround.glsl
 //@ include lib/water.glsl
 
 uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("0: water where the DEM has sea and lakes. Otherwise all ground at or below this height is flooded")
@@ -89,6 +90,14 @@ float sea_shade(in vec3 normal, in vec3 up, in vec3 to_sun, in float steeper) {
 float sea_steeper(in float pixel_m) {
     float apart_m = max(pixel_m, 1.0 / frame.normal_texels_per_m);
     return sea_relief * max(pow(apart_m / sea_smooth_m, 1.0 / 3.0), 1.0);
+}
+
+const float sea_rim = 0.08;  // of the DEM's shorter side: so far from its rim a seen floor becomes the sea beyond
+
+/// How far a seen floor is that of the sea around the DEM, of which nobody knows the relief: 1 at the rim.
+float sea_at_rim(in vec2 post) {
+    vec2 within = min(post, frame.posts.xy - 1.0 - post) / (sea_rim * min(frame.posts.x, frame.posts.y));
+    return surround_sea() * (1.0 - smoothstep(0.0, 1.0, min(within.x, within.y)));
 }
 
 /// Mean square slope of the waves. source: Cox and Munk, clean surface
@@ -256,10 +265,12 @@ void sea_on_material(inout Surface s) {
     vec3 albedo = sea_albedo(sea_level_m != 0.0 ? s.diffuse : sea_sand, water.seen_m);
     float pixel_m = s.pixel_posts / frame.normal_texels_per_m;
     vec3 map = albedo - sea_scattered + sea_map_albedo(water.depth_m);
-    albedo = mix(albedo, map * sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m)), seen);
+    map *= sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m));
+    float rim = seen > 0.0 ? sea_at_rim(s.post) : 0.0;
+    albedo = mix(albedo, mix(map, surround_sea_albedo, rim), seen);
 
     sea_Waves waves = sea_waves_of(s, water, 1.0 - seen);
-    sea_here = water.share;
+    sea_here = water.share * (1.0 - seen * rim);  // the sea beyond mirrors nothing
     sea_rough = waves.roughness;
     sea_normal = normalize(s.up - vec3(waves.slope, 0.0));
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m, waves.roughness);

@@ -10,6 +10,7 @@
 //@ include lib/filtered.glsl
 //@ include lib/ground.glsl
 //@ include lib/moon.glsl
+//@ include lib/surround.glsl
 
 uniform sampler3D sky_light;  // irradiance of slopes over that of level ground, by azimuth from the sun, normal and sun's elevation (tools/sky/textures.h)
 uniform sampler2DArray sky_times;  // the paper's day, sunset and night
@@ -33,6 +34,7 @@ uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Br
 
 uniform bool sky_earth = true; //@ static label("Earth") description("On: plain ground below the horizon, lit by sun and sky and seen through its air. Off: the colour of the horizon, as in the paper")
 uniform vec3 sky_earth_albedo = vec3(0.13, 0.14, 0.10); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
+uniform bool sky_earth_sea = true; //@ static label("Sea around the DEM") description("On: the sea continues beyond a DEM that is mostly sea. Off: the albedo of the Earth")
 uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("For sky.colours three: vertical optical depth of the air over the ground outside the DEM")
 
 uniform bool sky_slopes = true; //@ static label("Light by direction") description("On: a slope receives light from the part of the sky that it faces and from the ground around it. Off: the same light everywhere")
@@ -88,10 +90,15 @@ vec3 sky_air_light(in float cosine) {
     return 0.2 * phase * frame.sun_light[0].rgb + 0.5 * frame.sky_irradiance.rgb;
 }
 
+/// Albedo of the plain ground beyond the DEM.
+vec3 sky_beyond() {
+    return sky_earth_sea ? mix(sky_earth_albedo, surround_sea_albedo, surround_sea()) : sky_earth_albedo;
+}
+
 /// What level ground sends upwards.
 vec3 sky_ground(in float sun_sine) {
     float sine = frame.eye_moon_light.a > 0.0 ? frame.sun_apparent.z : sun_sine;
-    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sine, 0.0) * frame.sun_light[0].rgb);
+    return sky_beyond() * (frame.sky_irradiance.rgb + max(sine, 0.0) * frame.sun_light[0].rgb);
 }
 
 /// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
@@ -285,7 +292,7 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 radiance;
     if (sky_colours == 0) {
         // What fades into the sky, and mirrors, see no ground.
-        radiance = with_disc && sky_earth ? air_radiance(direction) + sky_earth_albedo * air_ground(direction)
+        radiance = with_disc && sky_earth ? air_radiance(direction) + sky_beyond() * air_ground(direction)
                                           : air_radiance_of_sky(direction);
     } else {
         radiance = sky_of_paper(direction, with_disc);
