@@ -55,6 +55,7 @@ const float sea_low_m = 4000.0;  // eyes higher than this above the water see ma
 const float sea_least_sine = 0.5;  // the sun shades the floor from no lower: long shadows are of no use in a map
 const float sea_shadeless = 0.25;  // share of that light that comes from everywhere
 const float sea_smooth_m = 30.0;  // posts or pixels that far apart have the floor's own slopes
+const float sea_land_smooth_m = 300.0;  // posts that far apart have the land's own slopes
 
 /// How much of the floor's relief is seen, 0 to 1.
 float sea_seen() {
@@ -74,6 +75,11 @@ vec3 sea_map_albedo(in float depth_m) {
     return sea_basin + sea_shallows * exp(-sqrt(depth_m / sea_fade_m));
 }
 
+/// Normal of a steeper slope. @param steeper  factor on its tangent
+vec3 sea_steep(in vec3 normal, in vec3 up, in float steeper) {
+    return normalize(normal + (1.0 / max(steeper, 1e-3) - 1.0) * dot(normal, up) * up);
+}
+
 /// Light on a floor over that on level ground.
 /// @param normal  of the floor, unit
 /// @param steeper  factor on its slope
@@ -81,8 +87,7 @@ float sea_shade(in vec3 normal, in vec3 up, in vec3 to_sun, in float steeper) {
     float sine = clamp(dot(to_sun, up), sea_least_sine, 1.0);
     vec3 level = to_sun - dot(to_sun, up) * up;
     vec3 light = level * (sqrt(1.0 - sine * sine) / max(length(level), 1e-4)) + sine * up;
-    vec3 steep = normalize(normal + (1.0 / max(steeper, 1e-3) - 1.0) * dot(normal, up) * up);
-    return mix(max(dot(steep, light), 0.0) / sine, 1.0, sea_shadeless);
+    return mix(max(dot(sea_steep(normal, up, steeper), light), 0.0) / sine, 1.0, sea_shadeless);
 }
 
 /// Factor on the slopes of a floor for its shading. Slopes between points d apart fall with d^(H - 1),
@@ -96,8 +101,18 @@ const float sea_rim = 0.08;  // of the DEM's shorter side: so far from its rim a
 
 /// How far a seen floor is that of the sea around the DEM, of which nobody knows the relief: 1 at the rim.
 float sea_at_rim(in vec2 post) {
+#if HAS_outside || defined(ORTHOGRAPHIC)
+    return 0.0;  // nothing is beyond
+#else
     vec2 within = min(post, frame.posts.xy - 1.0 - post) / (sea_rim * min(frame.posts.x, frame.posts.y));
     return surround_sea() * (1.0 - smoothstep(0.0, 1.0, min(within.x, within.y)));
+#endif
+}
+
+/// Factor on the slopes of land for its shading, where the floor is seen: as the floor's, but less, and only where
+/// posts are so far apart that mountains are plains.
+float sea_land_steeper() {
+    return pow(max(1.0 / (frame.normal_texels_per_m * sea_land_smooth_m), 1.0), 1.0 / 3.0);
 }
 
 /// Mean square slope of the waves. source: Cox and Munk, clean surface
@@ -277,7 +292,8 @@ void sea_on_material(inout Surface s) {
     // The surface of this pixel is that of the water, not the drawn floor's.
     s.height_m = mix(s.height_m, height_m, water.share);
     s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
-    s.normal = normalize(mix(s.normal, sea_normal, water.share));
+    vec3 land = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), sea_seen()));
+    s.normal = normalize(mix(land, sea_normal, water.share));
     // Light from below comes out of the water whichever way a wave leans.
     float facing = (max(dot(s.up, to_sun), 0.0) + 0.02) / (max(dot(sea_normal, to_sun), 0.0) + 0.02);
     s.diffuse = mix(s.diffuse, albedo * min(facing, 4.0), water.share);
