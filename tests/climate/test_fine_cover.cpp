@@ -58,6 +58,36 @@ TEST(FineCover, IslandsInTheTradeWindsHaveADrySide) {
               0.4F * wet.dryness);
 }
 
+TEST(FineCover, IslandsOfAWholeChainHaveADrySide) {
+    const ClimateMap map = ClimateMap::shipped();
+    const auto heights = [](const geo::Geodetic& place) {
+        const double lat = degrees(place.lat_rad) - 19.6, lon = degrees(place.lon_rad) + 155.5;
+        return static_cast<float>(4000 * std::exp(-8 * (lat * lat + lon * lon)) - 300);
+    };
+    for (const double width_deg : {15.0, 23.0}) {
+        const Box box{-155.5 - 0.75 * width_deg, -155.5 + 0.25 * width_deg, 16, 25};
+        const CoverTable table(map, box, -600, 4500);
+        const FineCover cover(map, box, table, heights);
+        EXPECT_EQ(cover.rows(), 33);
+        const auto column = [&](double lon_deg) {
+            return static_cast<int>(
+                std::lround((lon_deg - box.west_deg) / width_deg * (cover.columns() - 1)));
+        };
+        const int shore = static_cast<int>(600 / table.step_m());
+        const int row = static_cast<int>(std::lround((19.6 - 16) / 9 * 32));
+        const Read wet = read(cover, table, 200, column(-155.1), row, shore);
+        const Read dry = read(cover, table, 200, column(-155.9), row, shore);
+        fmt::print(
+            "[ climate ] {:.0f} degrees wide, {} columns: dryness {:.2f} before the wind, {:.2f} "
+            "behind\n",
+            width_deg, cover.columns(), wet.dryness, dry.dryness);
+        EXPECT_GT(wet.dryness, 2 * dry.dryness);
+    }
+    const Box ocean{-180, -140, 0, 30};
+    const CoverTable table(map, ocean, -600, 4500);
+    EXPECT_EQ(FineCover(map, ocean, table, heights).columns(), table.columns());
+}
+
 TEST(FineCover, AntarcticasHillsWithoutMappedIceAreBare) {
     const ClimateMap map = ClimateMap::shipped();
     const auto heights = [](const geo::Geodetic&) { return 50.0F; };

@@ -279,5 +279,40 @@ TEST(Sea, ItsFloorIsSeenFromHighAbove) {
     EXPECT_EQ(seen("seen", 0.01, 500e3), (Values{1, 1, 1, 1, 1, 1}));
 }
 
+/// Of 201 x 101 posts: how far a seen floor is the sea beyond, every 2 posts on the middle row.
+std::vector<float> at_rim(double share) {
+    test::GpuSnippet gpu("sea");
+    gpu.frame().sea_floor_share = static_cast<float>(share);
+    gpu.frame().posts = {201, 101, 1 / 201.0F, 1 / 101.0F};
+    std::vector<float> values;
+    for (const glm::vec4& value :
+         gpu.run("result = vec4(sea_at_rim(vec2(2.0 * float(x), 50.0)));", 101, 1))
+        values.push_back(value.x);
+    return values;
+}
+
+TEST(Sea, ItsFloorEndsInTheSeaAroundTheDem) {
+    const std::vector<float> mostly_sea = at_rim(0.99);
+    EXPECT_EQ(mostly_sea.front(), 1);
+    EXPECT_EQ(mostly_sea.back(), 1);
+    EXPECT_NEAR(mostly_sea[2], 0.5, 0.02) << "4 of 8 posts from the rim";
+    for (std::size_t x = 5; x + 5 < mostly_sea.size(); ++x)
+        EXPECT_EQ(mostly_sea[x], 0) << x;
+    EXPECT_EQ(at_rim(0.5), std::vector<float>(101, 0.0F)) << "land may be around it";
+}
+
+TEST(Sea, LandOfCoarsePostsIsShadedSteeper) {
+    test::GpuSnippet gpu("sea");
+    for (const auto& [apart_m, factor] : {std::pair{90.0, 1.0}, {300.0, 1.0}, {8100.0, 3.0}}) {
+        gpu.frame().normal_texels_per_m = static_cast<float>(1 / apart_m);
+        EXPECT_NEAR(gpu.run("result = vec4(sea_land_steeper());", 1, 1)[0].x, factor, 1e-3);
+    }
+    const auto steep = gpu.run(
+        "vec3 n = sea_steep(normalize(vec3(-0.1, 0.0, 1.0)), vec3(0.0, 0.0, 1.0), 3.0);\n"
+        "result.x = -n.x / n.z;",
+        1, 1);
+    EXPECT_NEAR(steep[0].x, 0.3, 1e-4);
+}
+
 }  // namespace
 }  // namespace relevo::test_sea

@@ -365,6 +365,20 @@ TEST(SkyAir, GroundOfTheEarthIsSeenThroughItsAir) {
     EXPECT_LT(worst(errors, "ground of the Earth, GPU against the atmosphere", 0.03), 0.03);
 }
 
+TEST(SkyAir, AroundADemThatIsMostlySeaIsSea) {
+    const auto beyond = [](double share, const std::string& sea) {
+        test::GpuSnippet gpu("sky");
+        gpu.values().set("sky.earth_sea", sea);
+        gpu.frame().sea_floor_share = static_cast<float>(share);
+        return glm::vec3(gpu.run("result = vec4(sky_beyond(), 0.0);", 1, 1)[0]);
+    };
+    const glm::vec3 land{0.13, 0.14, 0.10}, sea{0.007, 0.043, 0.133};
+    EXPECT_EQ(beyond(0, "true"), land);
+    EXPECT_EQ(beyond(0.5, "true"), land);
+    EXPECT_LT(glm::distance(beyond(0.99, "true"), sea), 1e-6F);
+    EXPECT_EQ(beyond(0.99, "false"), land);
+}
+
 TEST(SkyAir, BelowTheHorizonTheSkyGoesOnAsTheHorizon) {
     // What fades into the sky, and what stands where there is no ground.
     test::GpuSnippet gpu("sky");
