@@ -22,8 +22,8 @@ class ObjectStore {
     virtual void put(int descriptor, const std::string& name) const = 0;
     /// Copies an object into a file, from its beginning.
     /// @returns false where there is no such object
-    /// @throws Error (BadInput) where the store gives no answer or not all of it, (Failed) where the
-    ///     disk refuses
+    /// @throws Error (BadInput) where the store gives no answer or not all of it, (Failed) where
+    ///     the disk refuses
     virtual bool get(const std::string& name, int descriptor) const = 0;
     /// Does nothing where it cannot.
     virtual void remove(const std::string& name) const noexcept = 0;
