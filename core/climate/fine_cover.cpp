@@ -15,6 +15,8 @@ constexpr double kHighLand_m = 200;
 constexpr int kLeastSide = 33, kMostSide = 65;
 constexpr double kApart_deg = 12.0 / (kLeastSide - 1);
 constexpr double kWidest_deg = kApart_deg * (kMostSide - 1);
+// Where places are 40 km apart no lee is desert throughout, unless the climate itself is.
+constexpr float kLeastDryness = 0.65F;
 constexpr double kIcelessFrom_deg = -64;  // south of the islands whose ice is not mapped
 constexpr float kSnowOnBare = 0.2F;  // wind and sun leave little snow on Antarctica's bare hills
 
@@ -108,6 +110,7 @@ std::vector<float> FineCover::texels(double day) const {
     const std::vector<float> coarse = table_.texels(day);
     if (!fine_) return coarse;
     const int heights = table_.heights();
+    const bool wide = std::max(columns_, rows_) > kLeastSide;
     const auto index = [](int column, int row, int level, int columns, int rows) {
         return 4 * (static_cast<std::size_t>((level * rows + row) * columns + column));
     };
@@ -128,10 +131,11 @@ std::vector<float> FineCover::texels(double day) const {
                     for (int k = 0; k < 4; ++k)
                         texel[k] += share * of[k];
                 }
-                if (level < heights)
-                    texel[0] *= below * rain_.at(column, row);
-                else if (!ice_.empty())
-                    map_ice(texel, ice_.at(column, row));
+                if (level < heights) {
+                    const float least = wide ? std::min(texel[0], kLeastDryness) : 0.0F;
+                    texel[0] = std::max(least, texel[0] * below * rain_.at(column, row));
+                }
+                if (level >= heights && !ice_.empty()) map_ice(texel, ice_.at(column, row));
             }
     }
     return fine;

@@ -274,7 +274,7 @@ float sea_rough = 1.0;
 void sea_on_material(inout Surface s) {
     float height_m = sea_height_m(s);
     sea_Water water = sea_water(s, height_m);
-    float seen = sea_seen() * water.known;
+    float overview = sea_seen(), seen = overview * water.known;
     vec3 to_sun;
     sun_light(s.up, to_sun);
     vec3 albedo = sea_albedo(sea_level_m != 0.0 ? s.diffuse : sea_sand, water.seen_m);
@@ -292,8 +292,9 @@ void sea_on_material(inout Surface s) {
     // The surface of this pixel is that of the water, not the drawn floor's.
     s.height_m = mix(s.height_m, height_m, water.share);
     s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
-    vec3 land = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), sea_seen()));
-    s.normal = normalize(mix(land, sea_normal, water.share));
+    if (overview > 0.0 && water.share < 1.0)
+        s.normal = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), overview));
+    s.normal = normalize(mix(s.normal, sea_normal, water.share));
     // Light from below comes out of the water whichever way a wave leans.
     float facing = (max(dot(s.up, to_sun), 0.0) + 0.02) / (max(dot(sea_normal, to_sun), 0.0) + 0.02);
     s.diffuse = mix(s.diffuse, albedo * min(facing, 4.0), water.share);
