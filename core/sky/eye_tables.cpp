@@ -207,7 +207,7 @@ EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine) {
     const std::vector<Sun> around = suns_around(EyeLayout::kAzimuths, sun_sine);
     const std::vector<Sun> between_around = suns_around(EyeLayout::kBetweenAzimuths, sun_sine);
     const Between between(air, made.layout, made.colour, between_around);
-    parallel_for(0, kRows + EyeLayout::kBetweenElevations, 4, [&](int first, int last) {
+    parallel_for(0, kRows + EyeLayout::kBetweenElevations, 1, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
             if (row < kRows)
                 write_row(air, made.layout, row, around, made.sky);
