@@ -102,7 +102,7 @@ int main(int count, char** words) {
     if (count > 4) std::sscanf(words[4], "%dx%d", &scene.width_px, &scene.height_px);
     scene.time = {"2026-06-21T10:00", "", ""};
     FilesInUse files;
-    session::Session session(scene, {.device = "software"}, files);
+    session::Session session(scene, {}, files);
     session.link_rest();
     scene::View view;
     view.heading_deg = 90;
