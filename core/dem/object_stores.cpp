@@ -56,7 +56,8 @@ class GdalObjectStore : public ObjectStore {
         if (presence == Presence::Hidden)
             bad_input(
                 fmt::format("{}: the store does not say whether it exists (HTTP response "
-                            "code: 403); pass --overwrite to replace what may be there",
+                            "code: 403); allow listing (s3:ListBucket), or pass --overwrite to "
+                            "replace what may be there",
                             printable(name)));
         return presence == Presence::There;
     }
@@ -85,18 +86,15 @@ class GdalObjectStore : public ObjectStore {
         const auto close_it = [](VSILFILE* open) { VSIFCloseL(open); };
         const std::unique_ptr<VSILFILE, decltype(close_it)> open(object, close_it);
         std::vector<char> buffer(kAtOnce);
-        bool is_whole = object != nullptr;
-        for (off_t at = 0; is_whole;) {
-            const std::size_t got = VSIFReadL(buffer.data(), 1, buffer.size(), object);
+        off_t at = 0;
+        for (std::size_t got = buffer.size(); object && got == buffer.size();) {
+            got = VSIFReadL(buffer.data(), 1, buffer.size(), object);
             if (got > 0 && pwrite(descriptor, buffer.data(), got, at) != ssize_t(got))
                 failed(
                     fmt::format("{}: cannot be copied, {}", printable(name), std::strerror(errno)));
             at += static_cast<off_t>(got);
-            if (got == buffer.size()) continue;
-            is_whole = !messages.any_failure() && at == size_of(name);
-            break;
         }
-        if (is_whole) return true;
+        if (object && !messages.any_failure() && at == size_of(name)) return true;
         bad_input(
             fmt::format("{}: cannot be read, {}; the net or the store may have failed, try "
                         "again",

@@ -72,9 +72,10 @@ TileOnDisk tile_on_disk(const fs::path& folder, const TilePlan& plan, const Plan
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const char* const drivers[] = {"GTiff", nullptr};
-    const char* const siblings[] = {tile.name.c_str(), nullptr};  // a tile has no files beside it
+    // GDAL need not look for overviews and metadata in files of their own.
+    const char* const all_files[] = {tile.name.c_str(), nullptr};
     const dem::Dataset dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, siblings));
+        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, all_files));
     if (!dataset)
         return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
     for (int band = 1; band <= GDALGetRasterCount(dataset.get()); ++band)

@@ -41,8 +41,8 @@ std::string source_text(const std::string& name, const dem::Window& tile, const 
         tile.column - all.column, tile.row - all.row, size);
 }
 
-/// Where names count from one another: "/vsis3" for objects of such stores; empty for files.
-fs::path place_of(const fs::path& path) {
+/// Within which names can be relative: "vsis3" for objects of such stores; empty for files.
+fs::path root_of(const fs::path& path) {
     return object_store_of(path.native()) ? *std::next(path.begin()) : fs::path();
 }
 
@@ -81,7 +81,7 @@ dem::Window window_of(const TilePlan& plan) {
 }
 
 std::string name_from(const fs::path& file, const fs::path& tile) {
-    if (place_of(file) != place_of(tile)) return fs::absolute(tile).generic_string();
+    if (root_of(file) != root_of(tile)) return fs::absolute(tile).generic_string();
     std::error_code error;
     const fs::path base = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
     const fs::path full =
