@@ -45,7 +45,8 @@ float smooth_phase(const Coefficients& air, double cosine) {
     constexpr double g = kAerosolAsymmetry;
     const double f = air.forward, c2 = cosine * cosine;
     return static_cast<float>((1 - f + 3 * (g - f) * cosine + 2.5 * (g * g - f) * (3 * c2 - 1) +
-                               3.5 * (g * g * g - f) * cosine * (5 * c2 - 3)) /
+                               3.5 * (g * g * g - f) * cosine * (5 * c2 - 3) +
+                               1.125 * (g * g * g * g - f) * (c2 * (35 * c2 - 30) + 3)) /
                               (4 * kPi));
 }
 

@@ -16,7 +16,7 @@ namespace relevo::sky {
 ///
 /// Tables for an air: the columns of its constituents towards space (so that any wavelength
 /// follows by an exponential), and the diffuse light by height and sun, as spherical harmonics up
-/// to the third degree. Orders of scattering follow each other until what is left is a geometric
+/// to the fourth degree. Orders of scattering follow each other until what is left is a geometric
 /// series. S. Hillaire's model, which this follows elsewhere, takes all orders from the second on
 /// as isotropic and local to a place: at dusk, when light comes from beyond the horizon, it is
 /// wrong by factors.

@@ -12,11 +12,11 @@ namespace relevo::sky {
 namespace {
 
 /// Share of a species' scattering in harmonics of degree l: by the phase function's moment.
-constexpr std::array<float, kDegrees> kRayleighMoments{1, 0, 0.1f, 0};
+constexpr std::array<float, kDegrees> kRayleighMoments{1, 0, 0.1f, 0, 0};
 std::array<float, kDegrees> aerosol_moments(const Coefficients& air) {
     constexpr auto kG = static_cast<float>(kAerosolAsymmetry);
     const float f = air.forward;
-    return {1 - f, kG - f, kG * kG - f, kG * kG * kG - f};
+    return {1 - f, kG - f, kG * kG - f, kG * kG * kG - f, kG * kG * kG * kG - f};
 }
 
 /// One step, as it is for all rays.
@@ -35,7 +35,8 @@ class Scattered {
         : aerosol_(aerosol_moments(air)),
           table_(table),
           step_(step),
-          row_(DiffuseTable::row_of(step.height_m)) {
+          row_(DiffuseTable::row_of(step.height_m)),
+          harmonics_(step.height_m > kHighestAerosol_m ? kOfAir : kHarmonics) {
         made_.fill(false);
     }
 
@@ -49,7 +50,7 @@ class Scattered {
         const DiffuseTable::Place at = DiffuseTable::column_of(sun_sine);
         const auto& a = node(at.first);
         const auto& b = node(at.first + 1);
-        for (std::size_t c = 0; c < kHarmonics; ++c) {
+        for (std::size_t c = 0; c < harmonics_; ++c) {
             const float first = (1 - at.share) * direction[c], second = at.share * direction[c];
             for (std::size_t k = 0; k < kWavelengths; ++k)
                 to.air[k] += first * a[c][k] + second * b[c][k];
@@ -57,13 +58,18 @@ class Scattered {
     }
 
   private:
+    /// Air alone scatters by the harmonics up to the second degree. Above a height of 15 km, 4e-6
+    /// of the aerosol is left.
+    static constexpr std::size_t kOfAir = 6;
+    static constexpr double kHighestAerosol_m = 15e3;
+
     const std::array<Values, kHarmonics>& node(int column) {
         auto& values = nodes_[static_cast<std::size_t>(column)];
         if (made_[static_cast<std::size_t>(column)]) return values;
         made_[static_cast<std::size_t>(column)] = true;
         const auto& low = table_.at(row_.first, column).moments;
         const auto& high = table_.at(row_.first + 1, column).moments;
-        for (std::size_t c = 0; c < kHarmonics; ++c) {
+        for (std::size_t c = 0; c < harmonics_; ++c) {
             const auto l = static_cast<std::size_t>(kDegree[c]);
             for (std::size_t k = 0; k < kWavelengths; ++k)
                 values[c][k] =
@@ -77,6 +83,7 @@ class Scattered {
     const DiffuseTable& table_;
     const Step& step_;
     DiffuseTable::Place row_;
+    std::size_t harmonics_;  // that count
     std::array<std::array<Values, kHarmonics>, DiffuseTable::kSuns> nodes_;
     std::array<bool, DiffuseTable::kSuns> made_;
 };

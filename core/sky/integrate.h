@@ -9,13 +9,13 @@
 namespace relevo::sky {
 
 /// Share of the aerosol's scattering that counts as not scattered where light is followed: its
-/// narrow forward peak, which harmonics of the third degree do not have. Of 0 to g^3, these meet
+/// narrow forward peak, which harmonics of the fourth degree do not have. Of 0 to g^4, these meet
 /// the path integral best, in clean and in turbid air. Light that is scattered once has the whole
 /// phase function. Source: W. J. Wiscombe, The Delta-M Method, J. Atmos. Sci. 34, 1977; T. Nakajima
 /// and M. Tanaka, Algorithms for Radiative Intensity Calculations in Moderately Thick Atmospheres
 /// Using a Truncation Approximation, J. Quant. Spectrosc. Radiat. Transfer 40, 1988 (their TMS).
 inline float forward_share(const Air& air) {
-    return static_cast<float>(std::clamp(0.2 + 0.6 * (air.angstrom_beta - 0.04), 0.16, 0.4));
+    return static_cast<float>(std::clamp(0.16 + 0.5 * (air.angstrom_beta - 0.04), 0.14, 0.4));
 }
 
 /// Scattering and absorption of an Air in single precision.

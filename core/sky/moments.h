@@ -13,10 +13,11 @@ namespace relevo::sky {
 /// radiance: that is what scattered light depends on, because air scatters smoothly.
 /// Directions are given against the local vertical and the sun's azimuth, to which all is
 /// symmetric.
-inline constexpr int kHarmonics = 10, kDegrees = 4;
+inline constexpr int kHarmonics = 15, kDegrees = 5;
 
 /// Degree l of each harmonic; its order m goes from 0 to l.
-inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3, 3, 3};
+inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3,
+                                                        3, 3, 4, 4, 4, 4, 4};
 
 /// The real, orthonormal harmonics of a direction.
 /// @param sine    of its elevation
@@ -32,7 +33,12 @@ inline std::array<float, kHarmonics> harmonics(double sine, double across) {
             static_cast<float>(0.373176 * sine * (5 * sine2 - 3)),
             static_cast<float>(0.457046 * across * (5 * sine2 - 1)),
             static_cast<float>(1.445306 * sine * (2 * across2 - level2)),
-            static_cast<float>(0.590044 * across * (4 * across2 - 3 * level2))};
+            static_cast<float>(0.590044 * across * (4 * across2 - 3 * level2)),
+            static_cast<float>(0.105786 * (sine2 * (35 * sine2 - 30) + 3)),
+            static_cast<float>(0.669047 * sine * across * (7 * sine2 - 3)),
+            static_cast<float>(0.473087 * (2 * across2 - level2) * (7 * sine2 - 1)),
+            static_cast<float>(1.770131 * sine * across * (4 * across2 - 3 * level2)),
+            static_cast<float>(0.625836 * (8 * across2 * (across2 - level2) + level2 * level2))};
 }
 
 /// Diffuse light at a height under a sun: radiance moments and irradiance of level ground, for an

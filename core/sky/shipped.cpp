@@ -16,7 +16,7 @@
 namespace relevo::sky {
 namespace {
 
-constexpr std::string_view kMark = "relevo atmosphere 2\n";
+constexpr std::string_view kMark = "relevo atmosphere 3\n";
 constexpr std::string_view kWho = "atmosphere";
 constexpr int kKept = 4;
 

@@ -37,12 +37,9 @@ TEST(Atmosphere, IsThePathIntegralsSky) {
         SCOPED_TRACE(score.air + " air, " + std::to_string(score.height_m) + " m, sun " +
                      std::to_string(score.sun_deg));
         const double limit = score.sun_deg >= 5 ? 0.05 : score.sun_deg >= -2 ? 0.15 : 0.5;
-        // In turbid air the aerosol scatters several times, more sharply than the harmonics have
-        // it.
-        const bool turbid = score.air == "turbid";
-        EXPECT_LT(score.mean_error, turbid ? std::max(limit, 0.11) : limit);
+        EXPECT_LT(score.mean_error, limit);
         EXPECT_LT(score.mean_uv, 0.012);
-        EXPECT_LT(score.worst_uv, turbid || score.sun_deg < -4 ? 0.03 : 0.02);
+        EXPECT_LT(score.worst_uv, 0.02);
     }
 }
 
