@@ -16,8 +16,7 @@ namespace relevo::sky {
 inline constexpr int kHarmonics = 15, kDegrees = 5;
 
 /// Degree l of each harmonic; its order m goes from 0 to l.
-inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3,
-                                                        3, 3, 4, 4, 4, 4, 4};
+inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4};
 
 /// The real, orthonormal harmonics of a direction.
 /// @param sine    of its elevation

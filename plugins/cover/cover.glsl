@@ -69,6 +69,7 @@ struct cover_Shape {
     vec4 small, broad;  // of patches, faded with distance: tone, hue, shrubs, fine tone, less 0.5
     float ragged;  // what limits wander by, about -1..1
     float fine;    // how far the ground's cover follows single slopes: 1 from near, less in overviews
+    float across_m;  // side of a square as large as the pixel on the ground
 };
 
 /// Posts far apart cut off slopes: by an eighth for each doubling.
@@ -102,6 +103,7 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
     cover_Shape shape;
     shape.steep = cover_steepness(s, pixel_m);
     shape.sunny = cover_sunniness(s);
+    shape.across_m = sqrt(length(s.ground_dx_m) * length(s.ground_dy_m));
     const float small_per_m = 1.0 / 410.0;
     shape.small = cover_patch(ground_repeats(s.anchored_m, vec2(small_per_m)), small_per_m * s.ground_dx_m.xy,
                               small_per_m * s.ground_dy_m.xy);
@@ -112,6 +114,24 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
     shape.fine = 1.0 - 0.8 * smoothstep(30.0, 400.0, pixel_m);
     shape.ragged = near * cover_noise * (1.7 * shape.broad.r + 1.5 * shape.small.r + 1.1 * shape.broad.a);
     return shape;
+}
+
+/// A share of the ground as near ground has it: here all, there nothing, of the same mean (within 0.02).
+/// @param noise  of mean 0 and standard deviation 0.19
+/// @param near   0..1: how far such places are larger than pixels
+float cover_mosaic(in float share, in float noise, in float near) {
+    const float edge = 0.05;  // of a place, so that it has no stairs
+    float limit = smoothstep(-0.36, 0.36, noise);
+    float here = smoothstep(limit - edge, limit + edge, mix(-edge, 1.0 + edge, share));
+    return mix(share, here, near);
+}
+
+/// From near rock among trees, clearings in woods and the last snow have edges.
+void cover_part(inout cover_Shares shares, in cover_Shape shape) {
+    float near = 0.9 / (1.0 + shape.across_m * shape.across_m * 0.005);
+    shares.rock = cover_mosaic(shares.rock, shape.small.r + 0.6 * shape.small.a, near);
+    shares.forest = cover_mosaic(shares.forest, shape.broad.r + 0.7 * shape.small.g, near);
+    shares.snow = cover_mosaic(shares.snow, 0.8 * shape.small.g + 0.8 * shape.small.a, near);
 }
 
 /// Tangents of two slopes, in degrees, of which the second is the greater one: else smoothstep is undefined.
@@ -235,15 +255,15 @@ cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in f
 }
 
 /// Near the eye, where one stands between the trees, and from so far that they are smaller than pixels, none.
-cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float conifers) {
+cover_Canopy cover_canopy_at(in Surface s, in float across_m, in float conifers) {
     const float size_m = 7.5, stand_m = 96.0;
     cover_Canopy canopy = cover_Canopy(vec2(0.0), vec3(1.0));
-    float crowns = cover_crowns * (1.0 - smoothstep(0.12 * size_m, 0.7 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
-                   smoothstep(0.03, 0.15, -dot(s.position_m, s.geometric_normal) / s.distance_m);
-    float stands = 1.0 - smoothstep(2.0, 16.0, pixel_m);
+    float crowns = cover_crowns * (1.0 - smoothstep(0.2 * size_m, 0.85 * size_m, across_m)) * smoothstep(25.0, 90.0, s.distance_m) *
+                   smoothstep(0.01, 0.06, -dot(s.position_m, s.geometric_normal) / s.distance_m);
+    float stands = 1.0 - smoothstep(4.0, 24.0, across_m);
     if (stands == 0.0) return canopy;
     vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
-    canopy.light += stands * (0.9 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
+    canopy.light += stands * (1.4 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
     if (crowns == 0.0) return canopy;
     cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
     bool between = crown.height < -1.0;
@@ -264,8 +284,10 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     float ragged = shape.ragged;
     vec2 rocky = cover_tangents(cover_rock_deg);
     // Where plants grow all year roots hold soil on slopes half as steep again.
-    float rooted = 1.0 + 0.5 * smoothstep(2.5, 6.0, growth) * smoothstep(1.0, 2.0, rain);
+    float rooted = 1.0 + 0.5 * smoothstep(1.0, 5.0, growth) * smoothstep(1.0, 2.0, rain);
     shares.rock = smoothstep(rocky.x * rooted, rocky.y * rooted, shape.steep * (1.0 + 0.2 * ragged));
+    // Ledges have plants, but on cliffs.
+    shares.rock *= 1.0 - 0.2 * smoothstep(0.5, 1.5, growth) * smoothstep(0.8, 1.6, rain) * (1.0 - smoothstep(1.2, 1.9, shape.steep));
     // Above the growing limit soil thins out, first where it is steep.
     float soil = growth + 0.3 * ragged - 0.35 * shape.steep;
     shares.rock = max(shares.rock, 1.0 - smoothstep(-0.35, 0.55, soil));
@@ -338,9 +360,10 @@ void cover_on_albedo(inout Surface s) {
     cover_Shares shares = cover_shares(ground, white, rain, growth, shape);
     LandCover map = land_cover_at(s.post, s.pixel_posts);
     if (map.known > 0.0) cover_take_map(map, shares, rain);
+    cover_part(shares, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.
-    float near = 1.0 / (1.0 + pixel_m * pixel_m * 0.02);
+    float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.01);
     float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     // Dry land lies as low as the shore of the Dead Sea.
@@ -350,13 +373,13 @@ void cover_on_albedo(inout Surface s) {
     open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
     vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
     // Wet rock is dark, with lichen and moss on it.
-    rock *= (1.0 + tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
+    rock *= (1.0 + 1.6 * tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
     vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone);
     vec3 albedo = mix(open, rock, shares.rock);
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
     if (trees > 0.02) {
-        cover_Canopy canopy = cover_canopy_at(s, pixel_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
+        cover_Canopy canopy = cover_canopy_at(s, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
         cover_canopy_slope = trees * canopy.slope;
         forest *= max(canopy.light, 0.2);
     }

@@ -33,14 +33,20 @@ struct trees_Stand {
 };
 
 /// Smooth noise of cells of the ground, 0..1, of mean 0.5.
-float trees_patch(in vec2 anchored_m) {
+float trees_noise(in vec2 anchored_m, in float cell_m, in uint stream) {
     vec2 t;
-    ivec2 cell = ground_cell(anchored_m, mat2(1.0 / 140.0), t);
+    ivec2 cell = ground_cell(anchored_m, mat2(1.0 / cell_m), t);
     t = t * t * (3.0 - 2.0 * t);
-    const uint stream = 7u;
     float a = instances_random(cell, stream).x, b = instances_random(cell + ivec2(1, 0), stream).x;
     float c = instances_random(cell + ivec2(0, 1), stream).x, d = instances_random(cell + ivec2(1, 1), stream).x;
     return mix(mix(a, b, t.x), mix(c, d, t.x), t.y);
+}
+
+/// Light and dark of forest from afar, of mean 1: crowns and groups of them, while they are larger than pixels.
+float trees_tone(in Surface s) {
+    float across_m = sqrt(length(s.ground_dx_m) * length(s.ground_dy_m));
+    float crowns = 1.4 * (1.0 - smoothstep(2.0, 9.0, across_m)), groups = 0.6 * (1.0 - smoothstep(8.0, 40.0, across_m));
+    return 1.0 + crowns * (trees_noise(s.anchored_m, 6.0, 8u) - 0.5) + groups * (trees_noise(s.anchored_m, 41.0, 9u) - 0.5);
 }
 
 /// @param normal  of the ground, not exaggerated
@@ -56,7 +62,7 @@ trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 a
     trees_Stand stand;
     float wooded = smoothstep(1.0, 2.1, ground.dryness) * smoothstep(0.85, 1.2, growth - 0.06 * steep);
     wooded = mix(wooded, map.trees, map.known);
-    float closed = mix(1.0, smoothstep(0.2, 0.55, trees_patch(anchored_m)), trees_clearings);
+    float closed = mix(1.0, smoothstep(0.2, 0.55, trees_noise(anchored_m, 140.0, 7u)), trees_clearings);
     stand.density = trees_density * wooded * closed * (1.0 - smoothstep(slopes.x, max(slopes.y, slopes.x + 1e-3), steep)) *
                     (1.0 - smoothstep(0.0, 0.5, water));
     stand.conifers = 1.0 - smoothstep(3.0, 11.0, ground.temperature);
@@ -151,7 +157,7 @@ void trees_on_material(inout Surface s) {
     vec2 filled = trees_filled(stand, left, dot(-s.position_m, s.up) / s.distance_m);
     // Sprites are at least a pixel wide: they hide more than crowns, as if these stood more evenly.
     float cover = 1.0 - crown_gap(filled.x + filled.y, 0.15);
-    vec3 colour = mix(stand.leaves, trees_needles, filled.x / max(filled.x + filled.y, 1e-6));
+    vec3 colour = trees_tone(s) * mix(stand.leaves, trees_needles, filled.x / max(filled.x + filled.y, 1e-6));
     s.diffuse = mix(s.diffuse, colour * trees_crown_sunlight(stand, per_m2) / drawn, cover);
     s.ambient = mix(s.ambient, colour, cover);
     s.specular *= 1.0 - cover;

@@ -162,6 +162,42 @@ TEST(Cover, LimitsAreSoft) {
     expect_soft(shares("white.x = -1.0 + 2.0 * t;\n", 101), 2, 0, 1);
 }
 
+TEST(Cover, NearGroundIsAllOfOneKindAndAsMuchInTheMean) {
+    // Columns: shares of 0 to 1. Rows: quantiles of the noise of patches, which is normal.
+    test::GpuSnippet gpu("cover");
+    constexpr int kShares = 11, kQuantiles = 101;
+    const auto run = [&](const char* near) {
+        return gpu.run(
+            fmt::format(
+                "float q = (float(y) + 0.5) / {}.0, t = sqrt(-2.0 * log(min(q, 1.0 - q)));\n"
+                // Abramowitz and Stegun 26.2.22
+                "float z = t - (2.30753 + 0.27061 * t) / (1.0 + 0.99229 * t + 0.04481 * t * t);\n"
+                "float noise = 0.187 * (q < 0.5 ? -z : z);\n"
+                "result = vec4(cover_mosaic(float(x) / {}.0, noise, {}));",
+                kQuantiles, kShares - 1, near),
+            kShares, kQuantiles);
+    };
+    const auto near = run("1.0"), far = run("0.0");
+    double worst = 0;
+    int whole = 0;
+    for (int x = 0; x < kShares; ++x) {
+        const double share = x / (kShares - 1.0);
+        double sum = 0;
+        for (int y = 0; y < kQuantiles; ++y) {
+            const auto at = static_cast<std::size_t>(y * kShares + x);
+            sum += near[at].x / kQuantiles;
+            whole += near[at].x < 0.02f || near[at].x > 0.98f ? 1 : 0;
+            EXPECT_NEAR(far[at].x, share, 1e-5);
+        }
+        worst = std::max(worst, std::abs(sum - share));
+    }
+    const double part = whole / static_cast<double>(kShares * kQuantiles);
+    fmt::print("[ accuracy ] shares of near ground: {:.3f} off at most, {:.0f} % all or nothing\n",
+               worst, 100 * part);
+    EXPECT_LT(worst, 0.03);
+    EXPECT_GT(part, 0.8);
+}
+
 TEST(Cover, CliffsHoldNeitherTreesNorSnow) {
     const auto found = shares("steep = 3.0 * t; white = vec2(2.0, 1.0);\n", 31);
     EXPECT_NEAR(found.front().w, 1, 0.01);
