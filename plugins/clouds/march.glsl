@@ -97,7 +97,9 @@ vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float heig
     float once = d.kind == 0 ? 0.6 : mu / (mu + abs(sine) + 0.05);
     if (d.kind == 1 && sine < 0.0) layer *= clouds_relief(d, deck, position_m, height_m, to_sun, mu);
     float stands = d.kind == 0 ? 0.75 : sine < 0.0 ? 0.25 : 0.1;
-    float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + once * clouds_phase(cosine) * exp(-before);
+    // Thin parts of heaps before the sun are smaller than pixels: their light is that of a pixel.
+    float shines = min(once * clouds_phase(cosine) * exp(-before), d.kind == 0 ? 1.0 : 10.0);
+    float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + shines;
     float sky = open * clouds_inside(p.above, p.below, sine);
     // Below, the ground's light; less of it the more is in shade.
     float bounced = 0.15 * clouds_inside(p.below, p.above, -sine);
@@ -182,10 +184,16 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
         if (!found || seen.z < 0.02) break;
         float from_m = at_m > last_m ? clouds_entry(d, deck, direction, sine, last_m, at_m) : at_m;
         vec3 dug = clouds_dig(d, deck, direction, sine, from_m, 0.5 * clouds_soft_m(d, from_m), ends.y);
-        vec3 position_m = dug.y * direction;
-        float here_m = clouds_ray_height(sine, dug.y);
-        clouds_Point p = clouds_point(d, deck, position_m, here_m, clouds_soft_m(d, dug.y));
-        vec2 lit = clouds_lit(d, deck, position_m, here_m, p, direction, to_sun, up_at(position_m)) * shade;
+        // Lit in the middle of what is seen of it, or where the ray enters if that middle is a gap.
+        float lit_m = dug.y;
+        clouds_Point p;
+        for (int k = 0; k < 2; ++k) {
+            p = clouds_point_of_ray(d, deck, direction, sine, lit_m);
+            if (p.extinction > 0.0) break;
+            lit_m = from_m + 0.25 * clouds_soft_m(d, from_m);
+        }
+        vec3 position_m = lit_m * direction;
+        vec2 lit = clouds_lit(d, deck, position_m, clouds_ray_height(sine, lit_m), p, direction, to_sun, up_at(position_m)) * shade;
         seen.xy += seen.z * dug.x * lit;
         seen.w += seen.z * dug.x * 0.001 * dug.y;
         seen.z *= 1.0 - dug.x;
