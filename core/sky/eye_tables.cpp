@@ -98,8 +98,9 @@ class Between {
             integrate(air_.coefficients(), further, rays, ends, false, diffuse);
             before = distance;
             for (std::size_t i = 0; i < suns_.size(); ++i) {
-                to[at(0, slice, row) + i] = texel(diffuse[i], sine, suns_[i], distance) +
-                                            glm::vec4(0.5 * night_irradiance(), 0);
+                to[at(0, slice, row) + i] =
+                    texel(diffuse[i], sine, suns_[i], distance) +
+                    glm::vec4(night_scattered(sine) * night_irradiance(), 0);
                 to[at(1, slice, row) + i] = texel(sunlight[i], sine, suns_[i], distance);
             }
         }

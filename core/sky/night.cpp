@@ -29,12 +29,19 @@ glm::dvec3 night_irradiance() {
     return kNight * glm::dvec3(0.66, 0.98, 1.95);
 }
 
+double night_scattered(double sine) {
+    // Half of what lights air from all sides, for the sky lights it from above alone; near the
+    // level, where the airglow is brightest, more of what is scattered forward.
+    const double level = sine / 0.15;
+    return 0.5 + 0.35 * std::exp(-level * level);
+}
+
 glm::dvec3 night_radiance(double height_m, double sine, double through) {
     const double h = std::max(height_m, 0.0);
     const double passes = std::clamp(through, 0.0, 1.0);
     const double glow = kAirglow * slant(h, sine);
     const bool above = h > kLayer_m, ground = sine < 0 && path_of(h, sine).ground;
-    double light = 0.5 * (1.0 - passes);  // air that the whole sky lights from above
+    double light = night_scattered(sine) * (1.0 - passes);
     if (above && sine < 0) light += glow;
     if (!ground) light += ((above ? 0.0 : glow) + kStarlight) * passes;
     return night_irradiance() * light;

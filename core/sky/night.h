@@ -10,6 +10,11 @@ namespace relevo::sky {
 /// colours, and pictures of nights are blue by convention.
 glm::dvec3 night_irradiance();
 
+/// Radiance of air that lets nothing pass along a ray, over night_irradiance(): what it scatters
+/// towards the eye.
+/// @param sine  of the ray's elevation at the eye
+double night_scattered(double sine);
+
 /// Radiance in a direction, without the light of the ground. Airglow is a thin layer 100 km up:
 /// from below it is overhead, from orbit it covers the Earth and stands on its limb.
 /// @param height_m  of the eye above sea level  @param sine  of the elevation
