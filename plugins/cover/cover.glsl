@@ -255,11 +255,12 @@ cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in f
 }
 
 /// Near the eye, where one stands between the trees, and from so far that they are smaller than pixels, none.
-cover_Canopy cover_canopy_at(in Surface s, in float across_m, in float conifers) {
+cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, in float conifers) {
     const float size_m = 7.5, stand_m = 96.0;
     cover_Canopy canopy = cover_Canopy(vec2(0.0), vec3(1.0));
-    float crowns = cover_crowns * (1.0 - smoothstep(0.2 * size_m, 0.85 * size_m, across_m)) * smoothstep(25.0, 90.0, s.distance_m) *
-                   smoothstep(0.01, 0.06, -dot(s.position_m, s.geometric_normal) / s.distance_m);
+    float crowns = cover_crowns * (1.0 - smoothstep(0.2 * size_m, 0.85 * size_m, across_m)) *
+                   (1.0 - smoothstep(0.7 * size_m, 2.5 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
+                   smoothstep(0.03, 0.12, -dot(s.position_m, s.geometric_normal) / s.distance_m);
     float stands = 1.0 - smoothstep(4.0, 24.0, across_m);
     if (stands == 0.0) return canopy;
     vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
@@ -379,7 +380,7 @@ void cover_on_albedo(inout Surface s) {
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
     if (trees > 0.02) {
-        cover_Canopy canopy = cover_canopy_at(s, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
+        cover_Canopy canopy = cover_canopy_at(s, pixel_m, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
         cover_canopy_slope = trees * canopy.slope;
         forest *= max(canopy.light, 0.2);
     }
