@@ -16,11 +16,10 @@ const float clouds_albedo = 0.15;  // of the ground, for the light between it an
 
 bool clouds_is_ground = false;  // set by the hooks of the ground: the sky is then asked for by haze and mirrors
 
-/// Where the sun's ray to a point of the ground passes a height: the place below.
+/// Where the sun's ray to a point of the ground passes a height, relative to the eye.
 /// @param height_m  of the point, as drawn; below deck_m
-vec2 clouds_sunward(in vec3 position_m, in float height_m, in vec3 up, in vec3 to_sun, in float deck_m) {
-    float way_m = clouds_way_up(deck_m - height_m, dot(to_sun, up));
-    return clouds_place(position_m + way_m * to_sun, deck_m);
+vec3 clouds_crossing(in vec3 position_m, in float height_m, in vec3 up, in vec3 to_sun, in float deck_m) {
+    return position_m + clouds_way_up(deck_m - height_m, dot(to_sun, up)) * to_sun;
 }
 
 /// Optical depths over a place, of decks that are above a height.
@@ -37,27 +36,34 @@ float clouds_over(in vec2 place, in float height_m) {
     return tau;
 }
 
-/// Optical depth along the sun's ray to a point of the ground.
-float clouds_before_sun(in vec3 position_m, in float height_m, in vec3 up, in vec3 to_sun) {
-    float tau = 0.0;
+/// Half of the width of the edges of a deck's shadow, as a share: some 30 m. Rasters have their own edges.
+float clouds_blur(in int deck) {
+    return clouds_depth_most(deck) > 0.0 ? 1e-5 : 0.06;
+}
+
+/// Share of the sun's light that passes all decks on its way to a point of the ground.
+float clouds_sun_passed(in vec3 position_m, in float height_m, in vec3 up, in vec3 to_sun) {
+    float passed = 1.0;
     int count = clouds_count();
     for (int i = 0; i < 3; ++i) {
         clouds_Deck d = clouds_deck(i);
         float deck_m = max(d.base_m, height_m + 0.1);
-        vec3 there = position_m + clouds_way_up(deck_m - height_m, dot(to_sun, up)) * to_sun;
-        vec4 columns = clouds_at(clouds_place(there, deck_m));
-        float top_m = clouds_column_top_m(d, columns[i], columns.a);
+        vec3 there = clouds_crossing(position_m, height_m, up, to_sun, deck_m);
+        vec4 columns = textureLod(clouds_columns, clouds_map_at(clouds_place(there, deck_m)), 0.0);
+        float blur = clouds_blur(i), share = clamp(columns[i], blur, 1.0), vary = clamp(columns.a, 0.0, 1.0);
+        float top_m = clouds_column_top_m(d, share, vary);
         float above = clamp((top_m - height_m) / max(top_m - d.base_m, 1.0), 0.0, 1.0);
-        tau += above * clouds_tau(d, columns[i], columns.a) / max(dot(to_sun, up_at(there)), 0.02);
+        float dark = 1.0 - exp(-above * clouds_tau(d, share, vary) / max(dot(to_sun, up_at(there)), 0.02));
+        passed *= 1.0 - dark * smoothstep(-blur, blur, columns[i]);
         if (i + 1 >= count) break;
     }
-    return tau;
+    return passed;
 }
 
 void clouds_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
     clouds_is_ground = true;
 #if !HAS_outside
-    if (factor > 0.0) factor *= exp(-clouds_before_sun(s.position_m, s.height_m * frame.height_range.z, s.up, to_sun));
+    if (factor > 0.0) factor *= clouds_sun_passed(s.position_m, s.height_m * frame.height_range.z, s.up, to_sun);
 #endif
 }
 

@@ -38,13 +38,18 @@ struct clouds_Deck {
     int kind;
 };
 
+/// Largest optical depth of a deck's raster; -1 without one.
+float clouds_depth_most(in int deck) {
+    return vec3(clouds_depths_1_most(), clouds_depths_2_most(), clouds_depths_3_most())[deck];
+}
+
 /// @param deck  0 to 2
 clouds_Deck clouds_deck(in int deck) {
     clouds_Deck d = clouds_Deck(clouds_cover_1, clouds_base_1_m, clouds_top_1_m, clouds_depth_1, clouds_variation, clouds_kind_1);
     if (deck == 1) d = clouds_Deck(clouds_cover_2, clouds_base_2_m, clouds_top_2_m, clouds_depth_2, clouds_variation, clouds_kind_2);
     if (deck == 2) d = clouds_Deck(clouds_cover_3, clouds_base_3_m, clouds_top_3_m, clouds_depth_3, clouds_variation, clouds_kind_3);
     float cover_most = vec3(clouds_covers_1_most(), clouds_covers_2_most(), clouds_covers_3_most())[deck];
-    float depth_most = vec3(clouds_depths_1_most(), clouds_depths_2_most(), clouds_depths_3_most())[deck];
+    float depth_most = clouds_depth_most(deck);
     if (cover_most >= 0.0) {
         float mean = vec3(clouds_covers_1_mean(), clouds_covers_2_mean(), clouds_covers_3_mean())[deck];
         d.cover = cover_most > 0.0 ? max(mean, 1e-3) : 0.0;  // clouds may be beyond the DEM
@@ -125,7 +130,7 @@ float clouds_share_of_depth(in clouds_Deck d, in int deck, in vec2 place) {
 float clouds_thickness(in int deck, in vec2 place) {
     clouds_Deck d = clouds_deck(deck);
     if (d.cover <= 0.0) return -4.0;
-    if (vec3(clouds_depths_1_most(), clouds_depths_2_most(), clouds_depths_3_most())[deck] > 0.0) return clouds_share_of_depth(d, deck, place);
+    if (clouds_depth_most(deck) > 0.0) return clouds_share_of_depth(d, deck, place);
     vec2 cells = clouds_cells(place);
     if (d.kind == 2) {  // streaks lie along the wind
         float s = sin(clouds_wind_from_deg), c = cos(clouds_wind_from_deg);

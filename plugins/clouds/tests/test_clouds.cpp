@@ -159,7 +159,8 @@ TEST(Clouds, ShadowsLieWhereTheSunsRayMeetsTheDeck) {
                                 "float(y))) - 0.5);\n"
                                 "vec3 p = vec3(at, -dot(at, at) / 2.0 / 6371000.0 + h - 3000.0);\n"
                                 "vec3 up = up_at(p);\n"
-                                "result = vec4(clouds_sunward(p, h, up, sun, 2600.0), at);",
+                                "vec3 there = clouds_crossing(p, h, up, sun, 2600.0);\n"
+                                "result = vec4(clouds_place(there, 2600.0), at);",
                                 to_sun.x, to_sun.y, to_sun.z),
                     26, 50);
         for (int y = 0; y < 50; ++y)
