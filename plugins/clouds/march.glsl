@@ -49,8 +49,9 @@ float clouds_towards(in clouds_Deck d, in int deck, in vec3 position_m, in float
     return tau;
 }
 
-/// Shares of the light that the decks above one let through, at a point [m]: x of the sun's, y of the sky's.
-vec2 clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
+/// Shares of the light that the decks above one let through, at a point [m]: x of the sun's, y of the sky's; and z, what
+/// they send back of the light from below.
+vec3 clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
     float tau = 0.0;
     int count = clouds_count();
     for (int above = 1; above < 3; ++above) {
@@ -62,7 +63,8 @@ vec2 clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in v
         tau += clouds_tau(d, columns[above], columns.a);
     }
     float mu = max(sine, 0.1);
-    return vec2(exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu), 1.0 - clouds_reflected_sky(tau));
+    float back = clouds_reflected_sky(tau);
+    return vec3(exp(-tau / mu) + clouds_diffuse_of_sun(tau, mu), 1.0 - back, back);
 }
 
 /// Top of a sheet with its billows [m].
@@ -161,7 +163,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
     ends.y = min(ends.y, min(limit_m, clouds_far_m));
     if (d.cover <= 0.0 || ends.y <= ends.x || seen.z < 0.02) return seen;
     vec3 to_sun = light_at_eye_direction();
-    vec2 shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
+    vec3 shade = clouds_shade_above(deck, ends.x * direction, clouds_ray_height(sine, ends.x), to_sun,
                                     dot(to_sun, up_at(ends.x * direction)));
     float at_m = ends.x, last_m = ends.x;
     int samples = 0;
@@ -193,7 +195,9 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
             lit_m = from_m + 0.25 * clouds_soft_m(d, from_m);
         }
         vec3 position_m = lit_m * direction;
-        vec2 lit = clouds_lit(d, deck, position_m, clouds_ray_height(sine, lit_m), p, direction, to_sun, up_at(position_m)) * shade;
+        float here_m = clouds_ray_height(sine, lit_m);
+        vec2 lit = clouds_lit(d, deck, position_m, here_m, p, direction, to_sun, up_at(position_m)) * shade.xy;
+        lit /= 1.0 - shade.z * d.cover * clouds_reflected_sky(p.above + p.below);  // light goes to and fro between decks
         seen.xy += seen.z * dug.x * lit;
         seen.w += seen.z * dug.x * 0.001 * dug.y;
         seen.z *= 1.0 - dug.x;
