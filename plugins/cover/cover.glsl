@@ -258,8 +258,8 @@ cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in f
 cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, in float conifers) {
     const float size_m = 7.5, stand_m = 96.0;
     cover_Canopy canopy = cover_Canopy(vec2(0.0), vec3(1.0));
-    float crowns = cover_crowns * (1.0 - smoothstep(0.2 * size_m, 0.85 * size_m, across_m)) *
-                   (1.0 - smoothstep(0.7 * size_m, 2.5 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
+    float crowns = cover_crowns * (1.0 - smoothstep(0.0, 0.8 * size_m, across_m)) *
+                   (1.0 - smoothstep(0.3 * size_m, 2.0 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
                    smoothstep(0.03, 0.12, -dot(s.position_m, s.geometric_normal) / s.distance_m);
     float stands = 1.0 - smoothstep(4.0, 24.0, across_m);
     if (stands == 0.0) return canopy;
@@ -268,7 +268,7 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, 
     if (crowns == 0.0) return canopy;
     cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
     bool between = crown.height < -1.0;
-    canopy.slope = between ? vec2(0.0) : 0.6 * crowns * (crown.slope * cover_turn);
+    canopy.slope = between ? vec2(0.0) : 0.6 * crowns * crowns * (crown.slope * cover_turn);
     float depth = between ? 0.3 : mix(0.5, 1.25, smoothstep(-0.9, 0.7, crown.height));
     vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.7, 0.4, 0.2);
     // Clumps of leaves on a crown, of a metre, shade each other.
