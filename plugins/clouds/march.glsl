@@ -49,8 +49,8 @@ float clouds_towards(in clouds_Deck d, in int deck, in vec3 position_m, in float
     return tau;
 }
 
-/// Shares of the light that the decks above one let through, at a point [m]: x of the sun's, y of the sky's; and z, what
-/// they send back of the light from below.
+/// What the decks above one do to light, at a point: x share of the sun's that they let through, y of the sky's, z share
+/// of the light from below that they reflect.
 vec3 clouds_shade_above(in int deck, in vec3 position_m, in float height_m, in vec3 to_sun, in float sine) {
     float tau = 0.0;
     int count = clouds_count();
@@ -99,7 +99,7 @@ vec2 clouds_lit(in clouds_Deck d, in int deck, in vec3 position_m, in float heig
     float once = d.kind == 0 ? 0.6 : mu / (mu + abs(sine) + 0.05);
     if (d.kind == 1 && sine < 0.0) layer *= clouds_relief(d, deck, position_m, height_m, to_sun, mu);
     float stands = d.kind == 0 ? 0.75 : sine < 0.0 ? 0.25 : 0.1;
-    // Thin parts of heaps before the sun are smaller than pixels: their light is that of a pixel.
+    // A thin part of a heap before the sun is smaller than a pixel, which must not shine as a whole.
     float shines = min(once * clouds_phase(cosine) * exp(-before), d.kind == 0 ? 1.0 : 10.0);
     float sun = 0.8 * mix(layer, heap, stands) * mix(1.0, open, 0.5) + shines;
     float sky = open * clouds_inside(p.above, p.below, sine);
@@ -186,7 +186,7 @@ vec4 clouds_through(in int deck, in vec3 direction, in float limit_m, in float j
         if (!found || seen.z < 0.02) break;
         float from_m = at_m > last_m ? clouds_entry(d, deck, direction, sine, last_m, at_m) : at_m;
         vec3 dug = clouds_dig(d, deck, direction, sine, from_m, 0.5 * clouds_soft_m(d, from_m), ends.y);
-        // Lit in the middle of what is seen of it, or where the ray enters if that middle is a gap.
+        // The visible part is lit at its mean distance. If that is a gap, it is lit where the ray enters.
         float lit_m = dug.y;
         clouds_Point p;
         for (int k = 0; k < 2; ++k) {

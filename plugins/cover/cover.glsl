@@ -284,10 +284,10 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     cover_Shares shares;
     float ragged = shape.ragged;
     vec2 rocky = cover_tangents(cover_rock_deg);
-    // Where plants grow all year roots hold soil on slopes half as steep again.
+    // In warm and wet country roots hold soil on slopes up to half as steep again.
     float rooted = 1.0 + 0.5 * smoothstep(1.0, 5.0, growth) * smoothstep(1.0, 2.0, rain);
     shares.rock = smoothstep(rocky.x * rooted, rocky.y * rooted, shape.steep * (1.0 + 0.2 * ragged));
-    // Ledges have plants, but on cliffs.
+    // Steep rock has plants on its ledges; cliffs have no ledges.
     shares.rock *= 1.0 - 0.2 * smoothstep(0.5, 1.5, growth) * smoothstep(0.8, 1.6, rain) * (1.0 - smoothstep(1.2, 1.9, shape.steep));
     // Above the growing limit soil thins out, first where it is steep.
     float soil = growth + 0.3 * ragged - 0.35 * shape.steep;
