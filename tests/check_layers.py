@@ -75,6 +75,24 @@ def check_core(root):
                     yield f"{where}:{number}: a header of core shows {name}; only GLM and the plugin interface may be seen"
 
 
+# Files that a stranger's file may name are opened by a checked type alone (base/allowed_name.h), in one place a library.
+OPENS = re.compile(r"\b(GDALOpen(Ex|Shared)?|VSIFOpen(Ex)?L|ifstream|fopen|ImageInput::open)\b|\bInputStream \w+[({]")
+OPENING_ROOMS = {"dem", "effect", "image", "output", "scene", "session", "weather"}
+OPENING_FILES = {"core/dem/gdal_open.cpp", "core/image/formats_openimageio.cpp"}  # and core/base/input_file.cpp
+
+
+def check_opens(root):
+    for layer in sorted(OPENING_ROOMS):
+        for path in sorted((root / "core" / layer).rglob("*")):
+            where = path.relative_to(root)
+            if path.suffix not in {".h", ".cpp"} or str(where) in OPENING_FILES:
+                continue
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                code = line.split("//")[0]
+                if OPENS.search(code) and not code.startswith("RELEVO_GDAL("):
+                    yield f"{where}:{number}: opens a file; use dem/gdal_open.h, base/input_file.h or image/image.h"
+
+
 def check_plugins(root):
     for path in sorted((root / "plugins").glob("*/plugin.json")):
         if not (path.parent / "README.md").exists():
@@ -115,7 +133,7 @@ def check_names(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    violations = [*check_core(root), *check_plugins(root), *check_python(root), *check_names(root)]
+    violations = [*check_core(root), *check_opens(root), *check_plugins(root), *check_python(root), *check_names(root)]
     print("\n".join(violations) if violations else "layers: clean")
     return 1 if violations else 0
 

@@ -244,6 +244,7 @@ void capture(const CaptureArguments& arguments) {
         if (std::filesystem::exists(beside, ignored)) files.add_input(beside, "its sidecar");
     }
     dem::add_named(scene.dems, files);  // before any output is opened
+    if (!scene.weather_file.empty()) files.add_input(scene.weather_file, "the weather");
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
     };

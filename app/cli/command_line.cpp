@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/allowed_name.h"
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -320,6 +321,7 @@ void parse(CLI::App& app, std::vector<std::string> words) {
 void run(std::vector<std::string> words) {
     CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
     add_verbs(app);
+    std::ranges::for_each(words, allow_word);
     parse(app, std::move(words));
     if (const auto net = dem::network_use())
         log::debug(fmt::format("{} requests to the net, {} bytes read, {} written", net->requests,

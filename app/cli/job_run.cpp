@@ -43,6 +43,7 @@ void JobRun::hash(const scene::Scene& scene) {
 void JobRun::read_job(const JobArguments& arguments) {
     if (arguments.text) {
         job = scene::read_job_text(arguments.text->text, "film", arguments.text->folder);
+        job.output_may_leave = true;
         return;
     }
     job = scene::read_job(arguments.job,
@@ -52,6 +53,7 @@ void JobRun::read_job(const JobArguments& arguments) {
         job.output_given = false;
         job.folder.clear();
     }
+    job.output_may_leave = arguments.scene.trust;
     files.add_input(arguments.job, "the job");
 }
 

@@ -52,7 +52,8 @@ void SceneArguments::add_to(Verb verb, bool with_file) {
             },
             "Scene to draw, a file of --save-scene; other options override it");
     verb.add_flag("--trust", trust,
-                  "Use plugin folders and names on the net that a scene, job or picture names");
+                  "Use plugin folders, names on the net and outputs elsewhere that a scene, job or "
+                  "picture names");
     time.add_to(verb);
     refraction.add_to(verb);
     view.add_to(verb);
@@ -68,11 +69,7 @@ void SceneArguments::add_to(Verb verb, bool with_file) {
 }
 
 session::Named SceneArguments::named() const {
-    return {.all = trust,
-            .plugin_folders = effects.plugin_path,
-            .dems = dem.paths,
-            .overlays = {overlay.file},
-            .land_covers = {values.text("--land-cover")}};
+    return {.all = trust, .plugin_folders = effects.plugin_path};
 }
 
 scene::Scene SceneArguments::scene() const {

@@ -91,8 +91,8 @@ namespace {
 /// The option that a command for this scene's file needs: Relevo uses plugin folders and remote
 /// files only if the command line allows them.
 std::string trust_option(const scene::Scene& scene) {
-    const bool asks_net = std::ranges::any_of(scene.dems, dem::is_remote) ||
-                          (scene.overlay && dem::is_remote(scene.overlay->file));
+    const bool asks_net = std::ranges::any_of(scene.dems, is_remote) ||
+                          (scene.overlay && is_remote(scene.overlay->file));
     return asks_net || !scene.effects.plugin_path.empty() ? " --trust" : "";
 }
 

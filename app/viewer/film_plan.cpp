@@ -43,6 +43,7 @@ FilmPlan plan_film(const FilmWanted& wanted, session::SceneTimes& times) {
         plan.film = film_job(wish, times, plan.note);
         plan.job =
             scene::read_job_text(scene::film_job_text(plan.scene, plan.film, ""), "film", "");
+        plan.job.output_may_leave = true;
         for (const scene::Axis& axis : plan.job.sweep)
             check_frames(static_cast<double>(axis.count().value_or(0)));
         plan.frames = scene::shots_of(

@@ -1,4 +1,5 @@
 // Files that are dropped on the window or opened, by their kinds.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/allowed_name.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "dem/camera_photo.h"
@@ -63,6 +65,7 @@ void MainWindow::open_requested_files() {
 void MainWindow::open_files(const std::vector<std::string>& files) {
     RecentDem dem;
     for (const std::string& file : absolute_names(files)) {
+        allow_name(file);
         const FileKind kind = kind_of_file(file);
         if (kind == FileKind::Dem)
             dem.files.push_back(file);
@@ -77,6 +80,7 @@ void MainWindow::open_dem(const RecentDem& dem) {
     scene::Scene scene = state_.document.scene;
     const MemoryBudget memory = scene.dem.memory;
     scene.dems = dem.files;
+    std::ranges::for_each(scene.dems, allow_name);
     scene.dem = dem.options;
     scene.dem.memory = memory;
     scene.holes = dem.holes;
@@ -130,11 +134,7 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
 void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
                                   session::NamedBy by) {
     const scene::Scene& now = state_.document.scene;
-    session::Named named{.plugin_folders = now.effects.plugin_path,
-                         .dems = now.dems,
-                         .land_covers = {now.land_cover.file}};
-    if (now.overlay) named.overlays = {now.overlay->file};
-    session::Trust trusted(named, name_of(path), by);
+    session::Trust trusted({.plugin_folders = now.effects.plugin_path}, name_of(path), by);
     trusted.check_names(scene);
     trusted.keep_folders(scene.effects);
     if (scene.dems.empty()) {

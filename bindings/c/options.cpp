@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/allowed_name.h"
 #include "base/error.h"
 #include "scene/options.h"
 #include "scene/scene_reader.h"
@@ -14,7 +15,17 @@ namespace {
 
 constexpr const char* kText = "(text)";  // in the place of a file's name
 
+/// By the library's contract a scene's names are the caller's own.
+void allow_names(const json::Value& value) {
+    if (is_remote(value.text)) allow_name(value.text);
+    for (const json::Value& item : value.items)
+        allow_names(item);
+    for (const auto& [key, member] : value.members)
+        allow_names(member);
+}
+
 void take(scene::Scene& scene, const json::Value& value, const std::filesystem::path& folder) {
+    allow_names(value);
     const scene::SceneReader reader("scene", kText, folder);
     json::ObjectReader object("scene", kText, "", value);
     object.number("format", 1, 1, 1, true);

@@ -108,13 +108,20 @@ void CacheWriter::write(std::span<const std::byte> bytes) {
     file_.write(bytes);
 }
 
+bool CacheFolder::is_own_name(std::string_view name) {
+    constexpr std::size_t kDigits = 64;
+    if (name.starts_with(".relevo-") && name.ends_with(kPartial)) return true;
+    return name.size() == kDigits && name.find_first_not_of("0123456789abcdef") == name.npos;
+}
+
 std::vector<CacheFolder::Entry> CacheFolder::entries() const {
     std::vector<Entry> all;
     std::error_code ignored;
     for (std::filesystem::directory_iterator at(folder_, ignored), end; !ignored && at != end;
          at.increment(ignored)) {
         std::error_code gone;
-        if (!at->is_regular_file(gone) || gone) continue;
+        if (!is_own_name(at->path().filename().string())) continue;
+        if (at->is_symlink(gone) || !at->is_regular_file(gone) || gone) continue;
         const auto bytes = static_cast<std::int64_t>(at->file_size(gone));
         const auto used = at->last_write_time(gone);
         if (!gone) all.push_back({at->path(), bytes, used});

@@ -60,8 +60,9 @@ class CacheWriter {
     OutputFile& file_;
 };
 
-/// A folder of files, each whole or absent. Those that were used longest ago are removed if all
-/// together exceed a size.
+/// A folder of files, each whole or absent, under names that are SHA-256 digests in hexadecimal.
+/// Those that were used longest ago are removed if all together exceed a size. Files of other
+/// names, and links, are nobody's business: the folder may be a link to one of the user's.
 class CacheFolder {
   public:
     struct Entry {
@@ -94,6 +95,7 @@ class CacheFolder {
                       const std::function<bool(CacheWriter&)>& fill) const;
 
   private:
+    static bool is_own_name(std::string_view name);
     void remove_oldest(const std::string& keep) const;
 
     std::filesystem::path folder_;

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
+
+#include "base/allowed_name.h"
 
 namespace relevo {
 
@@ -11,8 +14,8 @@ namespace relevo {
 class InputFile {
   public:
     /// @param who  what errors begin with
-    /// @throws Error (BadInput) `who: path: cannot be read, reason`
-    InputFile(const std::filesystem::path& path, std::string_view who);
+    /// @throws Error (BadInput) `who: name: cannot be read, reason`
+    InputFile(const AllowedName& name, std::string_view who);
     ~InputFile();
     InputFile(const InputFile&) = delete;
     InputFile& operator=(const InputFile&) = delete;
@@ -25,5 +28,11 @@ class InputFile {
     int descriptor_ = -1;
     std::uint64_t size_ = 0;
 };
+
+/// Bytes, one after the other.
+using InputStream = std::ifstream;
+
+/// A stream; not good() where there is no such file.
+InputStream input_stream(const AllowedName& name);
 
 }  // namespace relevo

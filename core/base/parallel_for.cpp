@@ -6,9 +6,13 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <latch>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <vector>
+
+#include <sys/mman.h>
 
 #include "base/allocation.h"
 
@@ -119,6 +123,27 @@ void parallel_for(int begin, int end, int grain, const std::function<void(int, i
             .wanted = static_cast<int>(threads) - 1};
     Pool::instance().run(job);
     if (job.error) std::rethrow_exception(job.error);
+}
+
+bool can_start_threads(int count) {
+    constexpr std::size_t kBeside = std::size_t{128} << 20;  // address space alone
+    void* const beside =
+        mmap(nullptr, kBeside, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (beside == MAP_FAILED) return false;
+    std::latch all(1);
+    std::vector<std::thread> threads;
+    bool started = true;
+    try {
+        for (int i = 0; i < count; ++i)
+            threads.emplace_back([&] { all.wait(); });
+    } catch (const std::system_error&) {
+        started = false;
+    }
+    all.count_down();
+    for (std::thread& thread : threads)
+        thread.join();
+    munmap(beside, kBeside);
+    return started;
 }
 
 }  // namespace relevo

@@ -15,4 +15,8 @@ int thread_count();
 /// @param grain  the least size of a piece; ranges no longer than this run on the calling thread
 void parallel_for(int begin, int end, int grain, const std::function<void(int, int)>& body);
 
+/// Whether the system gives so many threads more, and some memory beside them, at this moment. For
+/// libraries that wait for ever where it does not.
+bool can_start_threads(int count);
+
 }  // namespace relevo

@@ -23,7 +23,7 @@ constexpr std::size_t kBlockBytes = 4096;
 }  // namespace
 
 std::string read_text(const std::filesystem::path& path, std::string_view who) {
-    const InputFile file(path, who);
+    const InputFile file(AllowedName(path.string()), who);
     // One more than there should be: the read after the last finds the end.
     std::string text(std::min<std::uint64_t>(file.size(), kMaxTextBytes) + 1, '\0');
     std::size_t length = 0;

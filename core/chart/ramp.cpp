@@ -105,9 +105,7 @@ class Line {
         const bool share = text.back() == '%';
         if (share) text.pop_back();
         const std::optional<double> number = parse_number(text);
-        if (!number)
-            fail(fmt::format("expected a value, a share such as 40%, or nv but got {}",
-                             printable(words_[0])));
+        if (!number) fail("expected a value, a share such as 40%, or nv");
         return share ? from + *number / 100 * (to - from) : *number;
     }
 
@@ -125,9 +123,7 @@ class Line {
         }
         if (!good)
             fail(
-                fmt::format("expected red, green and blue from 0 to 255, perhaps an alpha, or a "
-                            "colour's name, but got {}",
-                            printable(fmt::format("{}", fmt::join(rest, " ")))));
+                "expected red, green and blue from 0 to 255, perhaps an alpha, or a colour's name");
         std::uint32_t rgb = 0;
         for (std::size_t k = 0; k < 3; ++k)
             rgb = rgb << 8 | static_cast<std::uint32_t>(std::lround(parts[k]));

@@ -51,8 +51,8 @@ LandCoverTable LandCoverTable::read(const std::filesystem::path& file) {
         if (!texel || !(*id >= 0 && *id <= 255) || std::floor(*id) != *id)
             bad_input(fmt::format(
                 "land cover: {}:{}: expected CLASS,TREES,PLANTS,ICE: a class from 0 to 255, and "
-                "shares of at most 1 together or three ?, but got \"{}\"",
-                printable(file.string()), number, printable(text)));
+                "shares of at most 1 together or three ?",
+                printable(file.string()), number));
         const auto at = static_cast<std::size_t>(*id);
         if (table.classes_.test(at))
             bad_input(fmt::format("land cover: {}:{}: class {} is there twice",

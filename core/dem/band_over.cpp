@@ -133,7 +133,7 @@ std::map<std::string, std::string> metadata_of(const Dataset& dataset, GDALRaste
 }  // namespace
 
 std::map<std::string, std::string> band_metadata(const std::string& path, int number) {
-    std::string opened = path;
+    AllowedName opened(path);
     const Dataset dataset = open_dataset(opened);
     return metadata_of(dataset, band_of(dataset, path, number));
 }
@@ -150,7 +150,7 @@ void add_bands(const Dataset& dataset, const std::string& path, std::vector<Band
 }  // namespace
 
 std::vector<BandInFile> bands_of(const std::string& path) {
-    std::string opened = path;
+    AllowedName opened(path);
     const Dataset dataset = open_dataset(opened);
     std::vector<BandInFile> bands;
     add_bands(dataset, path, bands);
@@ -160,26 +160,26 @@ std::vector<BandInFile> bands_of(const std::string& path) {
         const std::string key = fmt::format("SUBDATASET_{}_NAME", part);
         const char* const name = CSLFetchNameValue(parts, key.c_str());
         if (!name) return bands;
-        std::string of_part = name;
+        AllowedName of_part = opened.derived(name);
         add_bands(open_dataset(of_part), name, bands);
     }
 }
 
 Grid grid_of_raster(const std::string& path) {
-    std::string opened = path;
+    AllowedName opened(path);
     const Dataset dataset = open_dataset(opened);
     Description unused;
-    const Georeference where = georeference(opened, dataset.get(), {}, unused);
+    const Georeference where = georeference(opened.text(), dataset.get(), {}, unused);
     return {GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()), where.affine,
             where.crs};
 }
 
 BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
-    std::string opened = path;
+    AllowedName opened(path);
     const Dataset dataset = open_dataset(opened);
     const GDALRasterBandH band = band_of(dataset, path, number);
     Description unused;
-    const Georeference where = georeference(opened, dataset.get(), {}, unused);
+    const Georeference where = georeference(opened.text(), dataset.get(), {}, unused);
     const Cells cells = read_cells(band, path);
     const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
                       where.affine, where.crs);

@@ -101,7 +101,7 @@ std::string time_of(const Exif& exif) {
 std::optional<CameraPhoto> camera_photo(const std::string& path) {
     prepare_gdal();
     const GdalMessages messages;
-    const Dataset dataset = gdal_open(path);
+    const Dataset dataset = gdal_open(AllowedName(path));
     if (!dataset) return std::nullopt;
     const Exif exif(dataset.get());
     CameraPhoto photo;

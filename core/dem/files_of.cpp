@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/folder.h"
@@ -48,10 +49,10 @@ class Collector {
     void add(const std::string& name, int depth) {
         if (!seen_.insert(name).second || depth > kDeepestRaster) return;
         add_file(name);
-        std::string path = name;
         Dataset dataset;
         try {
-            dataset = open_dataset(path);
+            AllowedName opened(name);
+            dataset = open_dataset(opened);
         } catch (const Error&) {
             are_local_ = false;
             return;  // what reads it says so
@@ -74,7 +75,7 @@ class Collector {
     /// A virtual raster that may name what GDAL does not list because it is out of reach.
     static bool may_name_others(const std::string& name) {
         if (!lower(name).ends_with(".vrt")) return false;
-        std::ifstream file(name);
+        InputStream file = input_stream(AllowedName(name));
         const std::string text{std::istreambuf_iterator<char>(file), {}};
         return text.empty() || text.find("/vsi") != std::string::npos ||
                text.find("http") != std::string::npos;

@@ -42,7 +42,8 @@ constexpr std::array<std::string_view, 5> kOfAnother = {".ovr", ".aux", ".rrd", 
 
 /// GDAL's driver for a file by its beginning and those beside it; empty where it has none.
 std::string driver_of(const fs::path& file) {
-    const GDALDriverH driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr);
+    const GDALDriverH driver =
+        GDALIdentifyDriverEx(AllowedName(file.string()).c_str(), GDAL_OF_RASTER, nullptr, nullptr);
     return driver ? GDALGetDriverShortName(driver) : "";
 }
 
@@ -78,8 +79,9 @@ bool is_read_me(const fs::path& file) {
 /// The files that a virtual raster names, as far as they are there.
 std::set<std::string> parts_of(const std::string& path) {
     std::set<std::string> parts;
-    refuse_unsafe_vrt(path);
-    const Dataset dataset = gdal_open(path);
+    const AllowedName name(path);
+    refuse_unsafe_vrt(name);
+    const Dataset dataset = gdal_open(name);
     if (!dataset) return parts;
     char** const files = GDALGetFileList(dataset.get());
     for (char** file = files; file && *file; ++file) {
@@ -136,7 +138,7 @@ Contents contents_of(const std::string& folder) {
         const fs::file_status status = fs::status(entry, error);
         const bool is_folder = fs::is_directory(status);
         found.folders += is_folder;
-        if (is_folder && gdal_open(entry.string())) {
+        if (is_folder && gdal_open(AllowedName(entry.string()))) {
             found.rasters.push_back({entry, "", 0});
         } else if (is_folder) {
             continue;
@@ -203,7 +205,7 @@ std::vector<std::string> found_rasters(const std::string& path, bool aloud) {
     prepare_gdal();
     refuse_unreadable(path);
     GdalMessages messages;
-    if (gdal_open(path)) return {path};
+    if (gdal_open(AllowedName(path))) return {path};
 
     Contents found = contents_of(path);
     drop_parts(found.rasters);

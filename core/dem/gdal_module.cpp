@@ -19,13 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",     "EEDAI",    "HTTP",          "NGW",
-                                       "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster", "STACIT",
-                                       "STACTA", "WCS",      "WMS",      "WMTS"};
+/// Drivers that ask the net, or that open whatever a file names.
+constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",   "EEDAI",    "GTI",      "HTTP",
+                                       "NGW",    "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster",
+                                       "STACIT", "STACTA", "WCS",      "WMS",      "WMTS"};
 using OpenFunction = GDALDataset* (*)(GDALOpenInfo*);
 
 struct Disarmed {
-    std::vector<std::pair<GDALDriver*, OpenFunction>> drivers;
+    std::vector<GDALDriver*> drivers;
+    std::array<OpenFunction, kRemoteDrivers.size()> opens{};  // their own
+    bool (*may_ask_net)() = nullptr;
     std::vector<std::pair<std::string, VSIFilesystemHandler*>> systems;
     bool remote_allowed = false;
 };
@@ -44,14 +47,20 @@ Disarmed& disarmed() {
 OpenFunction netcdf_open = nullptr;
 OpenFunction geopackage_open = nullptr;
 
-/// netCDF's library itself goes to addresses.
+/// netCDF's library itself goes to addresses. A group of HDF5 begins "://", too.
 GDALDataset* open_local_netcdf(GDALOpenInfo* info) {
     const bool address = std::strstr(info->pszFilename, "://") != nullptr;
-    if (address) {
-        const std::lock_guard lock(mutex());
-        if (!disarmed().remote_allowed) return nullptr;
-    }
-    return netcdf_open(info);
+    return address && !disarmed().may_ask_net() ? nullptr : netcdf_open(info);
+}
+
+template <std::size_t Driver>
+GDALDataset* open_if_allowed(GDALOpenInfo* info) {
+    return disarmed().may_ask_net() ? disarmed().opens[Driver](info) : nullptr;
+}
+
+template <std::size_t... Drivers>
+constexpr std::array<OpenFunction, sizeof...(Drivers)> gates(std::index_sequence<Drivers...>) {
+    return {open_if_allowed<Drivers>...};
 }
 
 /// A virtual raster may pass options on, and this one is SQL of any kind.
@@ -90,18 +99,20 @@ void close_remote_systems(bool (*is_local_file_system)(std::string_view name)) {
     VSIFreeFilesystemPluginCallbacksStruct(nothing);
 }
 
-void disarm(bool (*is_local_file_system)(std::string_view name)) {
+void disarm(bool (*is_local_file_system)(std::string_view name), bool (*may_ask_net)()) {
+    constexpr auto kGates = gates(std::make_index_sequence<kRemoteDrivers.size()>());
     const std::lock_guard lock(mutex());
     CPLSetConfigOption("GDAL_VRT_ENABLE_PYTHON", "NO");
-    const auto close = [](const char* name) {
-        if (GDALDriver* const found = driver(name)) {
-            disarmed().drivers.emplace_back(found, found->pfnOpen);
-            found->pfnOpen = nullptr;
+    disarmed().may_ask_net = may_ask_net;
+    if (GDALDriver* const memory = driver("MEM")) {
+        memory->pfnOpen = nullptr;
+        disarmed().drivers.push_back(memory);
+    }
+    for (std::size_t i = 0; i < kRemoteDrivers.size(); ++i)
+        if (GDALDriver* const found = driver(kRemoteDrivers[i]); found && found->pfnOpen) {
+            disarmed().opens[i] = std::exchange(found->pfnOpen, kGates[i]);
+            disarmed().drivers.push_back(found);
         }
-    };
-    close("MEM");
-    for (const char* name : kRemoteDrivers)
-        close(name);
     if (GDALDriver* const netcdf = driver("netCDF"))
         netcdf_open = std::exchange(netcdf->pfnOpen, open_local_netcdf);
     if (GDALDriver* const geopackage = driver("GPKG"))
@@ -114,8 +125,6 @@ void allow_remote() {
     const std::lock_guard lock(mutex());
     Disarmed& all = disarmed();
     if (all.drivers.empty() || std::exchange(all.remote_allowed, true)) return;
-    for (const auto& [found, open] : all.drivers)
-        if (found != driver("MEM")) found->pfnOpen = open;
     for (const auto& [name, handler] : all.systems)
         VSIFileManager::InstallHandler(name, handler);
     CPLHTTPSetFetchCallback(nullptr, nullptr);
@@ -124,8 +133,8 @@ void allow_remote() {
 std::vector<std::string> disarmed_drivers() {
     const std::lock_guard lock(mutex());
     std::vector<std::string> names;
-    for (const auto& [found, open] : disarmed().drivers)
-        if (!found->pfnOpen) names.emplace_back(found->GetDescription());
+    for (GDALDriver* const found : disarmed().drivers)
+        names.emplace_back(found->GetDescription());
     return names;
 }
 

@@ -10,10 +10,11 @@ namespace relevo::dem {
 /// what is linked with GDAL can use.
 struct GdalModule {
     /// disarm_gdal() of guard.h.
-    void (*disarm)(bool (*is_local_file_system)(std::string_view name));
+    /// @param may_ask_net  whether the name that this thread opens was allowed to ask the net
+    void (*disarm)(bool (*is_local_file_system)(std::string_view name), bool (*may_ask_net)());
     /// allow_remote() of guard.h.
     void (*allow_remote)();
-    /// Names of the drivers that are disarmed now.
+    /// Names of the drivers that open nothing but allowed names.
     std::vector<std::string> (*disarmed_drivers)();
     /// open_regular_files_only() of regular_files.h.
     /// @param skipped  is called with the name of each file that is not opened, on any thread

@@ -27,6 +27,9 @@ void prepare_gdal() {
     static std::once_flag once;
     std::call_once(once, [] {
         GDALAllRegister();
+        // A file of hints beside a compressed one that is only read.
+        if (!CPLGetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", nullptr))
+            CPLSetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
         if (is_hosted()) return;
         CPLSetErrorHandler(to_debug_log);
         disarm_gdal();

@@ -325,7 +325,7 @@ class Sorter {
 };
 
 std::string text_of(const FileErrors& errors) {
-    const InputFile file(errors.path, errors.who);
+    const InputFile file(AllowedName(errors.path), errors.who);
     std::string text(file.size(), '\0');
     std::size_t length = 0;
     while (length < text.size()) {

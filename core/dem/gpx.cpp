@@ -75,7 +75,7 @@ class Reader {
     }
 
     std::vector<std::string> read() {
-        const InputFile file(errors_.path, errors_.who);
+        const InputFile file(AllowedName(errors_.path), errors_.who);
         for (bool ended = false; !ended;) {
             void* const buffer = XML_GetBuffer(parser_.get(), kBlockBytes);
             if (!buffer) errors_.refuse("no memory to read it in");

@@ -19,6 +19,7 @@
 #include "base/host_program.h"
 #include "dem/gdal.h"
 #include "dem/gdal_module.h"
+#include "dem/gdal_open.h"
 #include "dem/interpret.h"
 #include "dem/no_raster.h"
 #include "dem/remote.h"
@@ -26,7 +27,7 @@
 namespace relevo::dem {
 
 void disarm_gdal() {
-    gdal_module().disarm(is_local_file_system);
+    gdal_module().disarm(is_local_file_system, opens_of_the_net);
 }
 
 namespace {
@@ -65,13 +66,13 @@ bool is_remote_allowed() {
     return remote_allowed();
 }
 
-std::string disarmed_driver_of(const std::string& path) {
+std::string disarmed_driver_of(const AllowedName& name) {
     GdalStrings names;
-    for (const std::string& name : gdal_module().disarmed_drivers())
-        names.add(name);
+    for (const std::string& driver : gdal_module().disarmed_drivers())
+        names.add(driver);
     if (!names.list()) return "";  // for which GDAL would take all drivers
     const GDALDriverH found =
-        GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, names.list(), nullptr);
+        GDALIdentifyDriverEx(name.c_str(), GDAL_OF_RASTER, names.list(), nullptr);
     return found ? GDALGetDriverShortName(found) : "";
 }
 
@@ -159,29 +160,28 @@ using Tree = std::unique_ptr<CPLXMLNode, DestroyTree>;
 /// Walks through a virtual raster and those that it names.
 class VrtWalk {
   public:
-    explicit VrtWalk(std::string given)
-        : given_(std::move(given)), may_ask_net_(is_remote(given_)) {}
+    explicit VrtWalk(AllowedName given) : name_(std::move(given)), given_(name_.text()) {}
 
     std::uint64_t bytes() const { return bytes_; }
 
     void file(const std::string& path) {
         // A name may be the text of a virtual raster itself.
         if (path.starts_with('<')) return source(path, "");
-        VSIStatBufL status{};
-        if (VSIStatL(path.c_str(), &status) == 0)
-            bytes_ += static_cast<std::uint64_t>(status.st_size);
+        const AllowedName name = name_.derived(path);
+        const std::uint64_t size = size_by_vsi(name).value_or(0);
+        bytes_ += size;
         if (contains(inside_, path))
             refuse(given_,
                    fmt::format("a virtual raster that is made of itself, by way of '{}'", path));
-        if (!is_vrt(path) || contains(seen_, path)) return;
+        if (contains(seen_, path) || !is_vrt(name)) return;
         if (inside_.size() >= kDeepest)
             refuse(given_, fmt::format("virtual rasters in each other, expected at most {} deep",
                                        kDeepest));
-        if (static_cast<std::uint64_t>(status.st_size) > kMaxBytes)
+        if (size > kMaxBytes)
             refuse(given_, fmt::format("a virtual raster of {} MiB ('{}'), expected at most {}",
-                                       status.st_size >> 20, path, kMaxBytes >> 20));
+                                       size >> 20, path, kMaxBytes >> 20));
         inside_.push_back(path);
-        if (const Tree tree{CPLParseXMLFile(path.c_str())})
+        if (const Tree tree{CPLParseXMLString(read_vsi(name, kMaxBytes).c_str())})
             elements(tree.get(), CPLGetPath(path.c_str()));
         inside_.pop_back();
         seen_.push_back(path);
@@ -195,13 +195,9 @@ class VrtWalk {
     static constexpr int kMaxSources = 200'000;
     static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20;
 
-    static bool is_vrt(const std::string& path) {
-        VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-        if (!file) return false;
-        std::string head(1024, '\0');  // as far as GDAL looks
-        head.resize(VSIFReadL(head.data(), 1, head.size(), file));
-        VSIFCloseL(file);
-        return head.find("<VRTDataset") != std::string::npos;
+    static bool is_vrt(const AllowedName& name) {
+        constexpr std::uint64_t kHead = 1024;  // as far as GDAL looks
+        return read_vsi(name, kHead).find("<VRTDataset") != std::string::npos;
     }
 
     /// All that a tree of elements names.
@@ -235,12 +231,11 @@ class VrtWalk {
             refuse(given_, fmt::format("a virtual raster of the program's own memory ('{}'), "
                                        "expected files",
                                        text));
-        if (is_remote(name) && !may_ask_net_)
+        if (!name_.allows(name))
             refuse(given_, fmt::format("a virtual raster of '{}', expected files of this "
                                        "machine; the net is asked only by a name on the "
                                        "command line",
                                        text));
-        if (!folder.empty()) name = CPLProjectRelativeFilename(folder.c_str(), name.c_str());
         std::error_code unknown;
         const std::string found = file_in(name);
         const std::string_view kind = endless(fs::status(found, unknown));
@@ -257,9 +252,8 @@ class VrtWalk {
         }
     }
 
+    AllowedName name_;
     std::string given_;
-    /// Whatever the process may by now: another name on the command line is not this file's.
-    bool may_ask_net_;
     std::vector<std::string> inside_;
     std::vector<std::string> seen_;
     int sources_ = 0;
@@ -268,9 +262,9 @@ class VrtWalk {
 
 }  // namespace
 
-std::uint64_t refuse_unsafe_vrt(const std::string& path) {
-    VrtWalk walk(path);
-    walk.file(path);
+std::uint64_t refuse_unsafe_vrt(const AllowedName& name) {
+    VrtWalk walk(name);
+    walk.file(name.text());
     return walk.bytes();
 }
 

@@ -17,7 +17,7 @@ void allow_remote();
 bool is_remote_allowed();
 
 /// The driver that would take a file, had it not been disarmed: "WMS"; empty where there is none.
-std::string disarmed_driver_of(const std::string& path);
+std::string disarmed_driver_of(const AllowedName& name);
 
 /// Refuses what would block or never end, and says why a file cannot be read where the system
 /// knows. Names of GDAL's own ("/vsizip/a.zip/b.tif") are taken to pieces.
@@ -28,6 +28,6 @@ void refuse_unreadable(const std::string& path);
 /// may name, or itself. Other files pass.
 /// @returns bytes of it and of all that it names, each as often as it is named
 /// @throws Error (BadInput)
-std::uint64_t refuse_unsafe_vrt(const std::string& path);
+std::uint64_t refuse_unsafe_vrt(const AllowedName& name);
 
 }  // namespace relevo::dem

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "base/allowed_name.h"
 #include "dem/gdal_support.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
@@ -22,12 +23,12 @@ void guess(Description& about, const std::string& sentence);
 std::string remedy_for(const std::string& path, const std::string& reason);
 
 /// What GDAL opens as a raster, without a word where it opens nothing.
-Dataset gdal_open(const std::string& path);
+Dataset gdal_open(const AllowedName& name);
 
 /// Opens a file, or the one raster of an archive.
-/// @param path  becomes the name by which GDAL opens it again
+/// @param name  becomes that by which GDAL opens it again
 /// @throws Error (BadInput) where there is no such file or GDAL does not take it for a raster
-Dataset open_dataset(std::string& path);
+Dataset open_dataset(AllowedName& name);
 
 /// The band that holds the heights: the one asked for (from 1), else (0) the first; the first of
 /// three where colours encode heights. Fills in the number of bands.

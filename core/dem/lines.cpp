@@ -17,6 +17,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -74,8 +75,8 @@ class LineReader {
             bad_input(fmt::format("{}: {}", who_, error.what()));
         }
         const GdalMessages messages;
-        dataset_ = Dataset(GDALOpenEx(path_.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY,
-                                      kDrivers.data(), nullptr, nullptr));
+        dataset_ =
+            open_by_gdal(AllowedName(path_), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers.data());
         if (dataset_) return;
         const std::string reason = messages.failure(path_);
         fail(

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/allowed_name.h"
 #include "base/error.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
@@ -39,6 +40,7 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
         bad_input(
             "heights: transform: the identity, which GDAL has where it knows no place; expected "
             "coordinates of the CRS");
+    allow_name(name_);  // under it the raster is opened like a file
     prepare_gdal();
     const GdalMessages messages;
     GDALDriverH const driver = GDALGetDriverByName("GTiff");
@@ -62,6 +64,7 @@ MemoryRaster::MemoryRaster(MemoryRaster&& other) noexcept
 MemoryRaster::~MemoryRaster() {
     if (name_.empty()) return;
     VSIUnlink(name_.c_str());
+    forget_name(name_);
 }
 
 }  // namespace relevo::dem

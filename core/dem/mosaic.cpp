@@ -134,11 +134,12 @@ bool is_whole(const std::vector<std::optional<Window>>& places) {
 /// Has a piece read as it is resampled to another one's grid.
 void resample(Piece& piece, const Frame& frame) {
     if (piece.encoding != Encoding::None)
-        refuse(piece.path, fmt::format("cannot be joined with {}: pictures of encoded heights "
-                                       "must be on one grid, tiles of one zoom",
-                                       frame.name));
+        refuse(piece.path.text(),
+               fmt::format("cannot be joined with {}: pictures of encoded heights "
+                           "must be on one grid, tiles of one zoom",
+                           frame.name));
     const Grid& grid = frame.grid;
-    piece.place = place_resampled(piece.grid, grid, piece.path, frame.name);
+    piece.place = place_resampled(piece.grid, grid, piece.path.text(), frame.name);
     const glm::dvec2 first = grid.affine()(piece.place.column, piece.place.row);
     Affine affine = grid.affine();
     affine.x0 = first.x;
@@ -182,7 +183,7 @@ Grid grid_around(std::vector<Piece>& pieces, std::vector<OpenIndex>& indexes, Fr
     }
     const glm::dvec2 size = high - low;
     if (size.x > kMaxPosts || size.y > kMaxPosts)
-        refuse(pieces.front().path,
+        refuse(pieces.front().path.text(),
                fmt::format("too far from the other files for one DEM, which would have {:.0f} x "
                            "{:.0f} posts",
                            size.x, size.y));
@@ -256,7 +257,7 @@ const Piece& reference_of(const std::vector<Piece>& pieces,
     if (is_whole(places)) return *reference;
     reference = finest(pieces, true);
     if (!reference)
-        refuse(pieces.front().path,
+        refuse(pieces.front().path.text(),
                "cannot be joined with the others: their grids differ and none of them runs "
                "east and south; bring them to one grid with gdalwarp");
     places = places_on(pieces, reference->grid);
@@ -279,11 +280,11 @@ Frame join(std::vector<Piece>& pieces, std::vector<OpenIndex>& indexes, Descript
     if (pieces.size() == 1 && indexes.empty()) {
         about = pieces.front().about;
         whole = pieces.front().grid;
-        return {pieces.front().grid, pieces.front().path};
+        return {pieces.front().grid, pieces.front().path.text()};
     }
     std::vector<std::optional<Window>> places;
     const Piece& reference = reference_of(pieces, places);
-    Frame frame{reference.grid, reference.path};
+    Frame frame{reference.grid, reference.path.text()};
     int resampled = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (places[i]) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/input_file.h"
 #include "base/text.h"
 #include "dem/tile_index.h"
 
@@ -59,7 +60,7 @@ std::string no_file_text(const std::string& path) {
 std::string no_raster_text(const std::string& path) {
     if (const std::string why = why_no_index(path); !why.empty()) return why;
     std::string head(4096, '\0');
-    std::ifstream file(path, std::ios::binary);
+    InputStream file = input_stream(AllowedName(path));
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(file.gcount()));
     const auto has = [&](std::string_view word) { return head.find(word) != head.npos; };

@@ -14,6 +14,7 @@
 #include "base/object_store.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/remote.h"
@@ -51,8 +52,9 @@ class GdalObjectStore : public ObjectStore {
     bool exists(const std::string& name) const override {
         prepare_gdal();
         allow_remote();
+        const AllowedName object(name);
         VSICurlPartialClearCache(name.c_str());  // another process may have made it
-        const Presence presence = remote_presence(name);
+        const Presence presence = remote_presence(object);
         if (presence == Presence::Hidden)
             bad_input(
                 fmt::format("{}: the store does not say whether it exists (HTTP response "
@@ -66,7 +68,7 @@ class GdalObjectStore : public ObjectStore {
         prepare_gdal();
         allow_remote();
         const GdalMessages messages;
-        VSILFILE* const object = VSIFOpenExL(name.c_str(), "wb", /*bSetError=*/1);
+        VSILFILE* const object = create_by_vsi(AllowedName(name));
         bool is_read = true;
         std::string fault = object ? copy(descriptor, object, is_read) : "";
         // What was not copied whole is not made an object: GDAL gives the parts up.
@@ -82,9 +84,8 @@ class GdalObjectStore : public ObjectStore {
     bool get(const std::string& name, int descriptor) const override {
         if (!exists(name)) return false;
         const GdalMessages messages;
-        VSILFILE* const object = VSIFOpenL(name.c_str(), "rb");
-        const auto close_it = [](VSILFILE* open) { VSIFCloseL(open); };
-        const std::unique_ptr<VSILFILE, decltype(close_it)> open(object, close_it);
+        const VsiFile open = open_vsi(AllowedName(name));
+        auto* const object = static_cast<VSILFILE*>(open.get());
         std::vector<char> buffer(kAtOnce);
         off_t at = 0;
         for (std::size_t got = buffer.size(); object && got == buffer.size();) {
@@ -101,12 +102,14 @@ class GdalObjectStore : public ObjectStore {
                         printable(name), messages.failure(name)));
     }
 
-    void remove(const std::string& name) const noexcept override { VSIUnlink(name.c_str()); }
+    void remove(const std::string& name) const noexcept override {
+        if (is_allowed(name)) VSIUnlink(name.c_str());
+    }
 
   private:
     static off_t size_of(const std::string& name) {
-        VSIStatBufL status{};
-        return VSIStatL(name.c_str(), &status) == 0 ? off_t(status.st_size) : -1;
+        const std::optional<std::uint64_t> size = size_by_vsi(AllowedName(name));
+        return size ? static_cast<off_t>(*size) : -1;
     }
 
     /// @param is_read  becomes false where the file cannot be read to its end

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "dem/folder.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -64,13 +65,9 @@ std::string inside_of(const std::string& path) {
 }
 
 /// Whether a file begins as an archive or a compressed file does.
-bool begins_like_archive(const std::string& path) {
+bool begins_like_archive(const AllowedName& name) {
     using namespace std::string_view_literals;
-    std::string head(512, '\0');
-    VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-    if (!file) return false;
-    head.resize(VSIFReadL(head.data(), 1, head.size(), file));
-    VSIFCloseL(file);
+    const std::string head = read_vsi(name, 512);
     constexpr std::array kBeginnings = {"PK\3\4"sv,
                                         "\x1f\x8b\x08"sv,
                                         "BZh"sv,
@@ -87,24 +84,25 @@ bool begins_like_archive(const std::string& path) {
 
 /// Whether a dataset is what a header beside a file makes of it: the driver takes a file of any
 /// content, which may be an archive of the very raster.
-bool is_archive_taken_for_cells(const std::string& path, GDALDatasetH dataset) {
+bool is_archive_taken_for_cells(const AllowedName& name, GDALDatasetH dataset) {
     constexpr std::array<std::string_view, 7> kAnyContent = {"EHdr", "ENVI",    "GenBin", "ISCE",
                                                              "PAux", "ROI_PAC", "RRASTER"};
     const std::string_view driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset));
     // ENVI's headers may say that the cells are compressed.
     return contains(kAnyContent, driver) &&
            !GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE") &&
-           begins_like_archive(path);
+           begins_like_archive(name);
 }
 
 /// Opens the one raster of an archive; nothing where it is no archive.
-Dataset open_archive(std::string& path) {
-    const std::string inside = inside_of(path);
+Dataset open_archive(AllowedName& given) {
+    const std::string path = given.text(), inside = inside_of(path);
     if (inside.empty()) return nullptr;
+    const AllowedName archive = given.derived(inside);
     if (inside.starts_with("/vsigzip/")) {
-        refuse_unsafe_vrt(inside);
-        Dataset dataset = gdal_open(inside);
-        if (dataset) path = inside;
+        refuse_unsafe_vrt(archive);
+        Dataset dataset = gdal_open(archive);
+        if (dataset) given = archive;
         return dataset;
     }
     char** entries = VSIReadDirRecursive(inside.c_str());
@@ -112,11 +110,11 @@ Dataset open_archive(std::string& path) {
     for (char** entry = entries; entry && *entry; ++entry) {
         const std::string name = fmt::format("{}/{}", inside, *entry);
         if (name.ends_with('/')) continue;
-        VSIStatBufL status{};
-        if (const Dataset dataset = gdal_open(name);
-            dataset && VSIStatL(name.c_str(), &status) == 0)
-            rasters.push_back({name, GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())),
-                               static_cast<std::uint64_t>(status.st_size)});
+        const AllowedName inner = archive.derived(name);
+        const std::optional<std::uint64_t> size = size_by_vsi(inner);
+        if (const Dataset dataset = size ? gdal_open(inner) : nullptr)
+            rasters.push_back(
+                {name, GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())), *size});
     }
     CSLDestroy(entries);
     drop_parts(rasters);
@@ -124,49 +122,47 @@ Dataset open_archive(std::string& path) {
         refuse(path, fmt::format("an archive of {} rasters, expected one; name one, as in '{}'",
                                  rasters.size(), rasters.front().path.string()));
     if (rasters.empty()) return nullptr;
-    path = rasters.front().path.string();
-    refuse_unsafe_vrt(path);
-    return gdal_open(path);
+    given = archive.derived(rasters.front().path.string());
+    refuse_unsafe_vrt(given);
+    return gdal_open(given);
 }
 
 }  // namespace
 
-Dataset gdal_open(const std::string& path) {
-    const RemoteSiblings siblings(path);
-    return Dataset(GDALOpenEx(path.c_str(),
-                              GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                              nullptr, siblings.list()));
+Dataset gdal_open(const AllowedName& name) {
+    const RemoteSiblings siblings(name);
+    return open_by_gdal(name, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                        siblings.list());
 }
 
-Dataset open_dataset(std::string& path) {
+Dataset open_dataset(AllowedName& name) {
     prepare_gdal();
+    const std::string path = name.text();
     // Names that are no file may still mean something to GDAL: "/vsizip/...", "NETCDF:a.nc:topo".
-    if (is_remote(path)) allow_remote();
-    refuse_silent(path);
+    if (name.asks_net()) allow_remote();
+    refuse_silent(name);
     refuse_unreadable(path);
     GdalMessages messages;
-    refuse_unsafe_vrt(path);
-    Dataset dataset = gdal_open(path);
-    if (dataset && is_archive_taken_for_cells(path, dataset.get())) dataset.reset();
+    refuse_unsafe_vrt(name);
+    Dataset dataset = gdal_open(name);
+    if (dataset && is_archive_taken_for_cells(name, dataset.get())) dataset.reset();
     if (dataset) return dataset;
     const std::string reason = messages.failure(path);
-    dataset = open_archive(path);
+    dataset = open_archive(name);
     if (dataset) return dataset;
-    if (begins_like_archive(path))
+    if (begins_like_archive(name))
         refuse(path,
                "an archive or a compressed file, expected a raster, or a .zip, .tar or .gz "
                "of one; unpack it first");
-    if (const std::string driver = disarmed_driver_of(path); driver == "MEM")
+    if (const std::string driver = disarmed_driver_of(name); driver == "MEM")
         refuse(path, "names the program's own memory, expected a file");
-    else if (!driver.empty())
+    else if (!driver.empty() && !name.asks_net())
         refuse(path, fmt::format("a description ({}) of what is on the net, which is asked only by "
                                  "a name on the command line; make a file of it with "
                                  "gdal_translate",
                                  driver));
-    VSIStatBufL status{};
-    const bool is_there = VSIStatL(path.c_str(), &status) == 0;
-    if (!is_there && (reason.find("does not exist") != std::string::npos ||
-                      reason.find("No such file") != std::string::npos))
+    if (!size_by_vsi(name) && (reason.find("does not exist") != std::string::npos ||
+                               reason.find("No such file") != std::string::npos))
         refuse(path, no_file_text(path));
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
         refuse(path, no_raster_text(path));

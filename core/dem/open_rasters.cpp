@@ -51,7 +51,7 @@ void open_name(const Name& name, const LoadOptions& options, std::size_t names, 
         return;
     }
     try {
-        opened.piece.emplace(open_piece(name.path, options, names, opened.handle));
+        opened.piece.emplace(open_piece(AllowedName(name.path), options, names, opened.handle));
     } catch (const Error& error) {
         if (name.folder.empty()) throw;
         throw Error(error.code(), fmt::format("{}; it is one of {} in {}, name the right ones",

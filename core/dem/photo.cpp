@@ -229,7 +229,7 @@ void Photo::Impl::read(const PlacesOver& places, const Window& part, Array2d<std
 
 std::bitset<256> classes_of(const std::string& path) {
     constexpr int kMostSide = 512;
-    std::string opened = path;
+    AllowedName opened(path);
     const Dataset dataset = open_dataset(opened);
     const GDALRasterBandH band = band_of_classes(path, dataset.get());
     const int columns = GDALGetRasterBandXSize(band), rows = GDALGetRasterBandYSize(band);
@@ -264,27 +264,27 @@ std::unique_ptr<Photo::Impl> Photo::Impl::open(const std::string& path, const st
 }
 
 PhotoKind photo_kind(const std::string& path) {
-    std::string opened = path;
+    AllowedName opened(path);
     return kind_of(open_dataset(opened).get());
 }
 
 std::shared_ptr<const Photo> Photo::open(const std::string& path, const Grid& dem) {
-    std::string opened = path;
+    AllowedName opened(path);
     Dataset dataset = open_dataset(opened);
     const PhotoKind kind = kind_of(dataset.get());
     if (kind != PhotoKind::Colours && kind != PhotoKind::Palette)
         refuse(path, "the raster is no image of 8 bits");
     return std::shared_ptr<const Photo>(
-        new Photo(Impl::open(path, opened, std::move(dataset), dem, {})));
+        new Photo(Impl::open(path, opened.text(), std::move(dataset), dem, {})));
 }
 
 std::shared_ptr<const Photo> Photo::open_classes(const std::string& path, const Grid& dem,
                                                  std::vector<std::uint32_t> palette) {
-    std::string opened = path;
+    AllowedName opened(path);
     Dataset dataset = open_dataset(opened);
     band_of_classes(path, dataset.get());
     return std::shared_ptr<const Photo>(
-        new Photo(Impl::open(path, opened, std::move(dataset), dem, std::move(palette))));
+        new Photo(Impl::open(path, opened.text(), std::move(dataset), dem, std::move(palette))));
 }
 
 Photo::Photo(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

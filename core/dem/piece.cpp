@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/nodata.h"
@@ -167,13 +168,11 @@ void refuse_huge_blocks(const std::string& path, GDALRasterBandH band, double me
 }
 
 /// Bytes of all files that a dataset is made of.
-std::uint64_t bytes_behind(const std::string& path, GDALDatasetH dataset) {
-    std::uint64_t bytes = refuse_unsafe_vrt(path);
+std::uint64_t bytes_behind(const AllowedName& name, GDALDatasetH dataset) {
+    std::uint64_t bytes = refuse_unsafe_vrt(name);
     char** const files = GDALGetFileList(dataset);
-    for (char** file = files; file && *file; ++file) {
-        VSIStatBufL status{};
-        if (VSIStatL(*file, &status) == 0) bytes += static_cast<std::uint64_t>(status.st_size);
-    }
+    for (char** file = files; file && *file; ++file)
+        if (name.allows(*file)) bytes += size_by_vsi(name.derived(*file)).value_or(0);
     CSLDestroy(files);
     return bytes;
 }
@@ -185,7 +184,7 @@ void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
     constexpr double kBelievable = 1 << 30;  // read in some ten
     constexpr double kMaxInAByte = 1 << 20;  // a thousand times what deflate can do
     const double posts = double(piece.grid.columns()) * piece.grid.rows();
-    if (posts < kManyPosts || is_remote(piece.path)) return;
+    if (posts < kManyPosts || piece.path.asks_net()) return;
     const std::uint64_t bytes = bytes_behind(piece.path, dataset);
     const GDALRasterBandH mask = piece.has_mask ? GDALGetMaskBand(band) : nullptr;
     const GDALRasterBandH alpha =
@@ -243,7 +242,8 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
     GDALTranslateOptions* const translation = GDALTranslateOptionsNew(one_band.list(), nullptr);
     const GDALDatasetH plain = GDALTranslate("", dataset.get(), translation, nullptr);
     GDALTranslateOptionsFree(translation);
-    if (!plain) refuse(piece.path, fmt::format("cannot be resampled, {}", messages.failure("")));
+    if (!plain)
+        refuse(piece.path.text(), fmt::format("cannot be resampled, {}", messages.failure("")));
     dataset = view_of(std::move(dataset), plain);
 
     const Affine& a = piece.resampling->affine;
@@ -277,8 +277,8 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
     const GDALDatasetH warped = GDALWarp("", nullptr, 1, &source, warping, nullptr);
     GDALWarpAppOptionsFree(warping);
     if (!warped)
-        refuse(piece.path, fmt::format("cannot be resampled to the grid of the others, {}",
-                                       messages.failure("")));
+        refuse(piece.path.text(), fmt::format("cannot be resampled to the grid of the others, {}",
+                                              messages.failure("")));
     return view_of(std::move(dataset), warped);
 }
 
@@ -353,11 +353,12 @@ void settle_blocks(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
 
 }  // namespace
 
-Piece open_piece(const std::string& given, const LoadOptions& options, std::size_t files,
+Piece open_piece(const AllowedName& name, const LoadOptions& options, std::size_t files,
                  Dataset& opened) {
     constexpr std::size_t kManyFiles = 16;  // a look at each takes 5 to 30 ms
 
-    std::string path = given;
+    const std::string& given = name.text();
+    AllowedName path = name;
     const WithoutListing without_listing(files);
     Dataset dataset = open_dataset(path);
     GdalMessages messages;  // what follows asks the file for things that it may not have
@@ -365,7 +366,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     describe_file(given, dataset.get(), options, about);
     const GDALRasterBandH band = GDALGetRasterBand(dataset.get(), about.band);
     const GDALDataType type = GDALGetRasterDataType(band);
-    refuse_if_short(path, dataset.get(), about);
+    refuse_if_short(path.text(), dataset.get(), about);
     const int columns = GDALGetRasterXSize(dataset.get());
     const int rows = GDALGetRasterYSize(dataset.get());
     if (columns < 2 || rows < 2)
@@ -407,13 +408,13 @@ Dataset Piece::open() const {
     GdalMessages messages;
     const WithoutListing without_listing(files);
     const RemoteSiblings siblings(path);
-    Dataset dataset(GDALOpenEx(path.c_str(),
-                               GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                               driver.data(), nullptr, siblings.list()));
+    Dataset dataset = open_by_gdal(path, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                   driver.data(), siblings.list());
     if (!dataset) {
-        refuse_unreadable(path);
-        const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(path, reason)));
+        refuse_unreadable(path.text());
+        const std::string reason = messages.failure(path.text());
+        refuse(path.text(), fmt::format("cannot be opened again, {}{}", reason,
+                                        remedy_for(path.text(), reason)));
     }
     return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
 }
@@ -428,7 +429,8 @@ double Piece::stored(void* dataset, int column, int row) const {
     double number = 0;
     if (GDALRasterIO(GDALGetRasterBand(dataset, about.band), GF_Read, column, row, 1, 1, &number, 1,
                      1, GDT_Float64, 0, 0) != CE_None)
-        refuse(path, fmt::format("its heights cannot be read, {}", messages.failure(path)));
+        refuse(path.text(),
+               fmt::format("its heights cannot be read, {}", messages.failure(path.text())));
     return number;
 }
 
@@ -444,9 +446,9 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
                                            w.columns, w.rows, type, 0, 0);
         // Some drivers say that a block is broken, fill it and carry on.
         if (result != CE_None || messages.any_failure()) {
-            const std::string reason = messages.failure(path);
-            refuse(path, fmt::format("its heights cannot be read, {}{}", reason,
-                                     remedy_for(path, reason)));
+            const std::string reason = messages.failure(path.text());
+            refuse(path.text(), fmt::format("its heights cannot be read, {}{}", reason,
+                                            remedy_for(path.text(), reason)));
         }
     };
     const GDALRasterBandH band = band_of(resampling ? 1 : about.band);

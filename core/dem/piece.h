@@ -40,7 +40,7 @@ struct Resampling {
 
 /// One raster: where it is, what its numbers mean, and how they are read.
 struct Piece {
-    std::string path;       ///< by which GDAL opens it
+    AllowedName path;       ///< by which GDAL opens it
     std::size_t files = 1;  ///< of the DEM
     Grid grid;              ///< its own
     Window place;           ///< its posts among those of the DEM, after resampling
@@ -76,7 +76,7 @@ struct Piece {
 /// @param options  of all files
 /// @param files    how many there are: of many, each is looked at less closely
 /// @param opened   becomes the handle that was used for it, as by Piece::open()
-Piece open_piece(const std::string& path, const LoadOptions& options, std::size_t files,
+Piece open_piece(const AllowedName& name, const LoadOptions& options, std::size_t files,
                  Dataset& opened);
 
 }  // namespace relevo::dem

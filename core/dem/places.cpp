@@ -29,7 +29,8 @@ constexpr std::uint64_t kMostJsonBytes = std::uint64_t{64} << 20;
 /// A text file line by line, of any length, in bounded memory.
 class Lines {
   public:
-    explicit Lines(const FileErrors& errors) : errors_(errors), file_(errors.path, errors.who) {}
+    explicit Lines(const FileErrors& errors)
+        : errors_(errors), file_(AllowedName(errors.path), errors.who) {}
 
     /// The next line, without its end; nothing after the last. Valid until the next call.
     std::optional<std::string_view> next() {
@@ -77,7 +78,7 @@ class Lines {
 
 /// Whether a file begins as XML or JSON do, and with which of them: '<', '{', or another byte.
 char beginning_of(const FileErrors& errors) {
-    const InputFile file(errors.path, errors.who);
+    const InputFile file(AllowedName(errors.path), errors.who);
     std::array<char, 512> head{};
     const ssize_t count = read(file.descriptor(), head.data(), head.size());
     std::string_view text(head.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
@@ -169,10 +170,7 @@ class Columns {
         lon_ = header_.find({"x", "easting"});
         lat_ = header_.find({"y", "northing"});
         if (!lat_ || !lon_)
-            errors_.refuse(
-                fmt::format("no columns lat and lon, expected a first line that names "
-                            "them but got \"{}\"",
-                            header.substr(0, 80)));
+            errors_.refuse("no columns lat and lon, expected a first line that names them");
         if (crs.empty())
             errors_.refuse(
                 "columns x and y without a coordinate reference system; pass --points-crs EPSG:n, "
@@ -328,11 +326,7 @@ std::vector<NamedTime> read_times(const std::string& path, std::string_view who,
             header.emplace(*line, errors);
             time = header->find({"time"});
             name = header->find({"name", "id", "title"});
-            if (!time)
-                errors.refuse(
-                    fmt::format("no column time, expected a first line that names it but got "
-                                "\"{}\"",
-                                line->substr(0, 80)));
+            if (!time) errors.refuse("no column time, expected a first line that names it");
             continue;
         }
         const std::vector<std::string> fields = header->fields(*line, lines.number());

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/gdal.h"
@@ -50,7 +51,7 @@ std::optional<QuickLook> read_srtm(const std::string& path, int longest) {
     std::error_code unknown;
     const int side = srtm_side(std::filesystem::file_size(path, unknown));
     if (unknown || side == 0) return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
+    InputStream file = input_stream(AllowedName(path));
     const int step = step_for(side, side, longest), kept = (side - 1) / step + 1;
     QuickLook look{Array2d<float>(kept, kept), step * kDegree_m / (side - 1),
                    step * kDegree_m / (side - 1)};
@@ -127,10 +128,11 @@ QuickLook read(GDALDatasetH file, const std::string& path, int longest,
 
 }  // namespace
 
-QuickLook quick_look(std::string path, int longest) {
+QuickLook quick_look(const std::string& path, int longest) {
     if (std::optional<QuickLook> tile = read_srtm(path, longest)) return *std::move(tile);
     const GdalMessages messages;
-    const Dataset dataset = open_dataset(path);
+    AllowedName opened(path);
+    const Dataset dataset = open_dataset(opened);
     return read(dataset.get(), path, longest, messages);
 }
 

@@ -17,6 +17,6 @@ struct QuickLook {
 /// any. Needs neither a CRS nor, of SRTM's .hgt files, a name that says their place. Numbers are
 /// heights in metres, sides of cells metres, or degrees if they cannot be anything else.
 /// @throws Error (BadInput) `PATH: what, expected E but got G; remedy`
-QuickLook quick_look(std::string path, int longest);
+QuickLook quick_look(const std::string& path, int longest);
 
 }  // namespace relevo::dem

@@ -105,7 +105,7 @@ const Piece* Rasters::open(int number) const {
 void Rasters::open_tile(int number, Slot& slot) const {
     const RasterEntry& entry = entries_[static_cast<std::size_t>(number)];
     const TileIndex& index = indexes_[static_cast<std::size_t>(entry.index)].index;
-    if (!is_there(tile(number).location)) return note_missing(number, slot);
+    if (!is_there(name_of(index, tile(number)))) return note_missing(number, slot);
     try {
         Dataset dataset;
         auto piece = std::make_unique<Piece>(

@@ -1,8 +1,6 @@
 #include "dem/remote.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,39 +11,6 @@
 #include "dem/interpret.h"
 
 namespace relevo::dem {
-namespace {
-
-constexpr std::array<std::string_view, 13> kRemotePrefixes = {
-    "DAAS:",     "EEDA:",   "EEDAI:",  "NGW:", "OGCAPI:", "PG:",  "PLMOSAIC:",
-    "PLSCENES:", "STACIT:", "STACTA:", "WCS:", "WMS:",    "WMTS:"};
-constexpr std::array<std::string_view, 10> kLocalFileSystems = {
-    "/vsi7z/",  "/vsicached",  "/vsicrypt/",   "/vsigzip/", "/vsimem/",
-    "/vsirar/", "/vsisparse/", "/vsisubfile/", "/vsitar/",  "/vsizip/"};
-
-}  // namespace
-
-bool is_local_file_system(std::string_view name) {
-    return std::ranges::any_of(kLocalFileSystems,
-                               [&](std::string_view system) { return name.starts_with(system); });
-}
-
-bool is_remote(std::string_view name) {
-    if (name.starts_with("vrt://")) name.remove_prefix(6);
-    if (name.find("://") != std::string_view::npos) return true;
-    for (const std::string_view prefix : kRemotePrefixes)
-        if (name.size() >= prefix.size() && EQUALN(name.data(), prefix.data(), prefix.size()))
-            return true;
-    // In the middle too: "/vsizip//vsicurl/...".
-    const auto is_of_a_name = [](unsigned char c) {
-        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
-    };
-    for (std::size_t at = name.find("/vsi"); at != std::string_view::npos;
-         at = name.find("/vsi", at + 1))
-        if (at == 0 || !is_of_a_name(static_cast<unsigned char>(name[at - 1])))
-            if (!is_local_file_system(name.substr(at))) return true;
-    return false;
-}
-
 namespace {
 
 /// The file in the net that has another in it: "/vsicurl/https://a.org/b.zip" of
@@ -65,10 +30,11 @@ std::string archive_of(const std::string& name) {
 
 }  // namespace
 
-Presence remote_presence(const std::string& name) {
+Presence remote_presence(const AllowedName& name) {
     // GDAL does not say why it cannot look into an archive.
-    if (const std::string archive = archive_of(name); !archive.empty())
-        if (const Presence found = remote_presence(archive); found != Presence::There) return found;
+    if (const std::string archive = archive_of(name.text()); !archive.empty())
+        if (const Presence found = remote_presence(name.derived(archive)); found != Presence::There)
+            return found;
     VSIErrorReset();
     VSIStatBufL status{};
     if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_SET_ERROR_FLAG) == 0)
@@ -80,11 +46,11 @@ Presence remote_presence(const std::string& name) {
         return Presence::Missing;
     if (reason.ends_with(" 403") || kind == VSIE_AWSAccessDenied) return Presence::Hidden;
     VSICurlPartialClearCache(name.c_str());
-    refuse(name, fmt::format("cannot be asked for, {}; try again", reason));
+    refuse(name.text(), fmt::format("cannot be asked for, {}; try again", reason));
 }
 
-void refuse_silent(const std::string& name) {
-    if (name.starts_with("/vsi") && !name.starts_with("/vsistdin") && is_remote(name))
+void refuse_silent(const AllowedName& name) {
+    if (name.asks_net() && name.text().starts_with("/vsi") && !name.text().starts_with("/vsistdin"))
         remote_presence(name);
 }
 
@@ -104,19 +70,22 @@ std::optional<NetworkUse> network_use() {
     return use;
 }
 
-RemoteSiblings::RemoteSiblings(const std::string& path) {
+RemoteSiblings::RemoteSiblings(const AllowedName& name) {
+    const std::string& path = name.text();
     const std::size_t slash = path.rfind('/'), dot = path.rfind('.');
     const bool is_tiff = dot != std::string::npos && slash != std::string::npos && dot > slash &&
                          (EQUAL(path.c_str() + dot, ".tif") || EQUAL(path.c_str() + dot, ".tiff"));
-    if (!is_tiff || !path.starts_with("/vsi") || !is_remote(path) || is_local_file_system(path) ||
+    if (!is_tiff || !path.starts_with("/vsi") || !name.asks_net() || is_local_file_system(path) ||
         path.starts_with("/vsistdin"))
         return;
     names_.push_back(path.substr(slash + 1));
     const std::string stem = path.substr(0, dot);
-    for (const std::string& name : {path + ".ovr", path + ".msk", path + ".aux.xml", stem + ".tfw"})
-        if (remote_presence(name) == Presence::There) names_.push_back(name.substr(slash + 1));
-    for (const std::string& name : names_)
-        list_.push_back(name.c_str());
+    for (const std::string& sibling :
+         {path + ".ovr", path + ".msk", path + ".aux.xml", stem + ".tfw"})
+        if (remote_presence(name.derived(sibling)) == Presence::There)
+            names_.push_back(sibling.substr(slash + 1));
+    for (const std::string& sibling : names_)
+        list_.push_back(sibling.c_str());
     list_.push_back(nullptr);
 }
 

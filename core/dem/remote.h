@@ -3,27 +3,21 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "base/allowed_name.h"
+
 namespace relevo::dem {
-
-/// Whether a name is one of the net or of standard input: "https://...", "/vsis3/...", "WMTS:...".
-/// To open it gives the net to the whole process, so it has to be a person's, not a file's.
-bool is_remote(std::string_view name);
-
-/// Whether a name begins as that of a GDAL file system over files of this machine: "/vsizip/...".
-bool is_local_file_system(std::string_view name);
 
 /// What a store says of a name. Hidden is 403: one may not see it, or not know that it is missing.
 enum class Presence { There, Missing, Hidden };
 /// @throws Error (BadInput) `NAME: cannot be asked for, why` where there is no answer
-Presence remote_presence(const std::string& name);
+Presence remote_presence(const AllowedName& name);
 
 /// Refuses a name of a store that gives no answer: GDAL would wait for it several times. Other
 /// names, and those that are missing, pass.
 /// @throws Error (BadInput) as remote_presence()
-void refuse_silent(const std::string& name);
+void refuse_silent(const AllowedName& name);
 
 /// What GDAL has asked of stores and servers since the process began, and what came of it.
 struct NetworkUse {
@@ -37,7 +31,7 @@ std::optional<NetworkUse> network_use();
 class RemoteSiblings {
   public:
     /// @throws Error (BadInput) as remote_presence(): without its mask a DEM would be another
-    explicit RemoteSiblings(const std::string& path);
+    explicit RemoteSiblings(const AllowedName& name);
     /// As GDALOpenEx takes them; null: GDAL is to look.
     const char* const* list() const;
 

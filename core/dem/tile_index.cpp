@@ -14,6 +14,7 @@
 #include "base/contains.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -53,23 +54,8 @@ bool is_json(const std::string& path) {
 /// Bytes of a file that is plain or packed.
 /// @param most  more are not read
 std::string bytes_of(const std::string& path, std::uint64_t most) {
-    // GDAL would write a file of hints beside the packed one.
-    CPLSetThreadLocalConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
-    const std::string name = is_packed(path) ? "/vsigzip/" + path : path;
-    std::string bytes;
-    if (VSILFILE* const file = VSIFOpenL(name.c_str(), "rb")) {
-        constexpr std::size_t kAtOnce = std::size_t{1} << 20;
-        for (;;) {
-            const std::size_t before = bytes.size();
-            const std::size_t wanted = std::min<std::uint64_t>(kAtOnce, most - before);
-            bytes.resize(before + wanted);
-            bytes.resize(before + VSIFReadL(bytes.data() + before, 1, wanted, file));
-            if (bytes.size() < before + wanted || bytes.size() == most) break;
-        }
-        VSIFCloseL(file);
-    }
-    CPLSetThreadLocalConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", nullptr);
-    return bytes;
+    const AllowedName name(path);
+    return read_vsi(is_packed(path) ? name.derived("/vsigzip/" + path) : name, most);
 }
 
 /// What a packed file has unpacked. @throws Error (BadInput) where it is cut short
@@ -82,13 +68,12 @@ std::string unpacked(const std::string& path, std::uint64_t most) {
                                             most >> 20));
     // RFC 1952, section 2.3.1: the last four bytes are the length modulo 2^32.
     std::array<unsigned char, 4> last{};
-    VSIStatBufL status{};
-    VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-    const bool read =
-        file && VSIStatL(path.c_str(), &status) == 0 && status.st_size > 4 &&
-        VSIFSeekL(file, static_cast<vsi_l_offset>(status.st_size - 4), SEEK_SET) == 0 &&
-        VSIFReadL(last.data(), 1, last.size(), file) == last.size();
-    if (file) VSIFCloseL(file);
+    const AllowedName name(path);
+    const std::uint64_t size = size_by_vsi(name).value_or(0);
+    const VsiFile file = open_vsi(name);
+    auto* const handle = static_cast<VSILFILE*>(file.get());
+    const bool read = file && size > 4 && VSIFSeekL(handle, size - 4, SEEK_SET) == 0 &&
+                      VSIFReadL(last.data(), 1, last.size(), handle) == last.size();
     const std::uint32_t length = std::uint32_t{last[0]} | std::uint32_t{last[1]} << 8 |
                                  std::uint32_t{last[2]} << 16 | std::uint32_t{last[3]} << 24;
     if (!read || messages.any_failure() || length != static_cast<std::uint32_t>(bytes.size()))
@@ -123,14 +108,13 @@ struct Vectors {
 
 Vectors open_vectors(const std::string& path) {
     Vectors vectors;
-    std::string name = path;
+    AllowedName name(path);
     if (is_packed(path)) {
         vectors.memory =
             std::make_unique<MemoryFile>(unpacked(path, kMostUnpacked), ending_of(path));
-        name = vectors.memory->name();
+        name = AllowedName::of_program(vectors.memory->name());
     }
-    vectors.dataset = Dataset(GDALOpenEx(name.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY,
-                                         kIndexDrivers.data(), nullptr, nullptr));
+    vectors.dataset = open_by_gdal(name, GDAL_OF_VECTOR | GDAL_OF_READONLY, kIndexDrivers.data());
     return vectors;
 }
 
@@ -223,9 +207,7 @@ TileIndex read(const std::string& path, const std::string& crs, TileCollector& t
     prepare_gdal();
     refuse_unreadable(path);
     if (is_json(path)) {
-        VSIStatBufL status{};
-        VSIStatL(path.c_str(), &status);
-        refuse_long_json(path, static_cast<std::uint64_t>(status.st_size));
+        refuse_long_json(path, size_by_vsi(AllowedName(path)).value_or(0));
     }
     if (!is_json(path) || json_kind(path) != JsonKind::Stac) return read_layer(path, crs, tiles);
     const std::string text =
@@ -244,8 +226,7 @@ bool is_tile_index(const std::string& path) {
     if (!is_index_name(path)) return false;
     prepare_gdal();
     const GdalMessages messages;
-    VSIStatBufL status{};
-    if (VSIStatL(path.c_str(), &status) != 0 || VSI_ISDIR(status.st_mode)) return false;
+    if (!size_by_vsi(AllowedName(path))) return false;
     refuse_unreadable(path);
     // Which takes a look; opening would read all of it.
     if (is_json(path)) return json_kind(path) != JsonKind::Other;
@@ -256,10 +237,7 @@ bool is_tile_index(const std::string& path) {
 std::string why_no_index(const std::string& path) {
     constexpr int kMostNamed = 8;
     if (!is_index_name(path)) return "";
-    VSIStatBufL status{};
-    if (VSIStatL(path.c_str(), &status) != 0 ||
-        static_cast<std::uint64_t>(status.st_size) > kMostJson)
-        return "";
+    if (size_by_vsi(AllowedName(path)).value_or(kMostJson + 1) > kMostJson) return "";
     const GdalMessages messages;
     const Vectors vectors = open_vectors(path);
     if (!vectors.dataset || layer_of_tiles(vectors.dataset.get())) return "";
@@ -293,9 +271,9 @@ std::vector<std::string> tile_locations(const std::string& path) {
 }
 
 void refuse_remote_tiles(const TileIndex& index) {
-    if (is_remote(index.path)) return;
+    const AllowedName name(index.path);
     for (const IndexedTile& tile : index.tiles)
-        if (is_remote(tile.location))
+        if (!name.allows(tile.location))
             refuse(printable(index.path),
                    fmt::format("its tiles are on the net ('{}'), which is asked only by a name on "
                                "the command line; name the index itself there "

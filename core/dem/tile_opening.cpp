@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/remote.h"
@@ -80,7 +80,7 @@ std::size_t first_open(const TileIndex& index, const LoadOptions& options,
             began = Clock::now();
         else if (Clock::now() - began > kPatience)
             break;
-        if (!is_there(tile.location)) {
+        if (!is_there(name_of(index, tile))) {
             ++missing;
             continue;
         }
@@ -126,10 +126,15 @@ void refuse_elsewhere(const TileIndex& index, const IndexedTile& tile, const Pie
 
 }  // namespace
 
-bool is_there(const std::string& location) {
-    if (is_remote(location)) {
+AllowedName name_of(const TileIndex& index, const IndexedTile& tile) {
+    return AllowedName(index.path).derived(tile.location);
+}
+
+bool is_there(const AllowedName& name) {
+    const std::string& location = name.text();
+    if (name.asks_net()) {
         if (!location.starts_with("/vsi")) return true;
-        const Presence presence = remote_presence(location);
+        const Presence presence = remote_presence(name);
         if (presence == Presence::Hidden)
             refuse(printable(location),
                    "may not be read (HTTP response code: 403), and may be missing; try again with "
@@ -147,8 +152,7 @@ bool is_there(const std::string& location) {
                    fmt::format("cannot be asked for, {}; try again", error.message()));
         return std::filesystem::exists(found);
     }
-    VSIStatBufL status{};
-    return VSIStatL(location.c_str(), &status) == 0;
+    return size_by_vsi(name).has_value();
 }
 
 bool is_no_fault_of_a_file(const Error& error) {
@@ -160,10 +164,11 @@ bool is_no_fault_of_a_file(const Error& error) {
 }
 
 bool is_named_index(const std::string& name) {
-    if (is_remote(name) && is_index_name(name)) {
+    if (!is_index_name(name)) return false;
+    if (const AllowedName allowed(name); allowed.asks_net()) {
         prepare_gdal();
         allow_remote();
-        refuse_silent(name);
+        refuse_silent(allowed);
     }
     return is_tile_index(name);
 }
@@ -173,7 +178,7 @@ Piece open_tile_piece(const TileIndex& index, const IndexedTile& tile, const Loa
     if (same_file(index.path, tile.location))
         refuse(printable(tile.location), "the index itself, expected a raster");
     try {
-        return open_piece(tile.location, options, files, opened);
+        return open_piece(name_of(index, tile), options, files, opened);
     } catch (const Error&) {
         if (!is_remote(tile.location) && is_tile_index(tile.location))
             refuse(printable(tile.location), "an index of tiles, expected a raster");

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <vector>
 
+#include "base/input_file.h"
+
 namespace relevo::dem {
 namespace {
 
@@ -16,7 +18,8 @@ constexpr std::uint64_t kMaxItems = 1'000'000;  // of a list or a name: more is 
 /// A classic header, read from its beginning; after a failure every read gives 0.
 class TiffHeader {
   public:
-    explicit TiffHeader(const std::filesystem::path& path) : file_(path, std::ios::binary) {
+    explicit TiffHeader(const std::filesystem::path& path)
+        : file_(input_stream(AllowedName(path.string()))) {
         std::array<char, 4> magic{};
         file_.read(magic.data(), 4);
         version_ = magic[3];
@@ -69,7 +72,7 @@ class TiffHeader {
     }
 
   private:
-    std::ifstream file_;
+    InputStream file_;
     int version_ = 0;
 };
 

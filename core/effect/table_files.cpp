@@ -54,8 +54,7 @@ class Lines {
 
     float number(std::string_view word) const {
         const std::optional<double> value = parse_number(word);
-        if (!value || !std::isfinite(static_cast<float>(*value)))
-            fail(fmt::format("expected a number but got \"{}\"", printable(std::string(word))));
+        if (!value || !std::isfinite(static_cast<float>(*value))) fail("expected numbers");
         return static_cast<float>(*value);
     }
 

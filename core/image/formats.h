@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/allowed_name.h"
 #include "image/image.h"
 
 /// What the module `image_formats` offers: every format but PNG, through OpenImageIO. It is a
@@ -33,10 +33,10 @@ struct FormatsModule {
     /// a disk that is full some would say nothing.
     std::string (*encode)(std::vector<std::byte>& bytes, const std::string& format, const Picture&,
                           const Metadata&, int quality);
-    std::string (*read8)(const std::filesystem::path&, Image8&);
-    std::string (*read_float)(const std::filesystem::path&, ImageF&);
-    std::string (*read_layers)(const std::filesystem::path&, std::vector<Channel>&);
-    std::string (*read_exr_texts)(const std::filesystem::path&, Metadata&);
+    std::string (*read8)(const AllowedName&, Image8&);
+    std::string (*read_float)(const AllowedName&, ImageF&);
+    std::string (*read_layers)(const AllowedName&, std::vector<Channel>&);
+    std::string (*read_exr_texts)(const AllowedName&, Metadata&);
     /// Why a format cannot be written on this machine; empty where it can.
     std::string (*missing)(const std::string& format);
 };

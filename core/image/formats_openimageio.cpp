@@ -251,10 +251,17 @@ int colour_channels(const OIIO::ImageSpec& spec) {
     return count > 0 ? count : spec.nchannels;
 }
 
+/// By WebP's own library: OpenImageIO multiplies the colours by alpha.
+std::string read_webp(const AllowedName& name, Image8& image) {
+    std::string bytes;
+    OIIO::Filesystem::read_text_file(name.text(), bytes);
+    return decode_webp(bytes, image);
+}
+
 template <typename T>
-std::string read(const std::filesystem::path& path, Pixels<T>& image) {
+std::string read(const AllowedName& name, Pixels<T>& image) {
     const OIIO::ImageSpec straight = straight_alpha();
-    const auto input = OIIO::ImageInput::open(path.string(), &straight);
+    const auto input = OIIO::ImageInput::open(name.text(), &straight);
     if (!input) return OIIO::geterror();
     const OIIO::ImageSpec& spec = input->spec();
     const int channels = colour_channels(spec);
@@ -267,14 +274,14 @@ std::string read(const std::filesystem::path& path, Pixels<T>& image) {
     image = Pixels<T>(spec.width, spec.height, channels);
     if constexpr (std::is_same_v<T, std::uint8_t>)
         if (channels == 4 && std::string_view(input->format_name()) == "webp")
-            return decode_webp(path, image);
+            return read_webp(name, image);
     if (!input->read_image(0, 0, 0, channels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
         return input->geterror();
     return {};
 }
 
-std::string read_layers(const std::filesystem::path& path, std::vector<Channel>& layers) {
-    const auto input = OIIO::ImageInput::open(path.string());
+std::string read_layers(const AllowedName& name, std::vector<Channel>& layers) {
+    const auto input = OIIO::ImageInput::open(name.text());
     if (!input) return OIIO::geterror();
     const OIIO::ImageSpec& spec = input->spec();
     if (const std::string reason =
@@ -301,8 +308,8 @@ std::string read_layers(const std::filesystem::path& path, std::vector<Channel>&
     return {};
 }
 
-std::string read_exr_texts(const std::filesystem::path& path, Metadata& metadata) {
-    const auto input = OIIO::ImageInput::open(path.string());
+std::string read_exr_texts(const AllowedName& name, Metadata& metadata) {
+    const auto input = OIIO::ImageInput::open(name.text());
     if (!input) return OIIO::geterror();
     for (const OIIO::ParamValue& attribute : input->spec().extra_attribs)
         if (attribute.type() == OIIO::TypeDesc::STRING)
@@ -317,8 +324,8 @@ std::string read_exr_texts(const std::filesystem::path& path, Metadata& metadata
 extern "C" const FormatsModule* relevo_image_formats() {
     static const FormatsModule module{
         encode,
-        [](const std::filesystem::path& path, Image8& image) { return read(path, image); },
-        [](const std::filesystem::path& path, ImageF& image) { return read(path, image); },
+        [](const AllowedName& name, Image8& image) { return read(name, image); },
+        [](const AllowedName& name, ImageF& image) { return read(name, image); },
         read_layers,
         read_exr_texts,
         [](const std::string& format) {

@@ -152,7 +152,7 @@ void check_holds(const std::filesystem::path& path, const Format& format, const 
 
 /// A file's bytes, as many of them as a picture may have.
 std::string bytes_of(const std::filesystem::path& path) {
-    const InputFile file(path, "image");
+    const InputFile file(AllowedName(path.string()), "image");
     std::string bytes;
     std::array<char, 1 << 16> buffer{};
     while (bytes.size() <= kMaxPictureBytes) {
@@ -306,25 +306,25 @@ void BandWriter::end() {
 Image8 read(const std::filesystem::path& path) {
     const Format* format = format_of(path);
     if (format && is_png(*format)) return read_png(path);
-    const InputFile only_regular(path, "image");
+    const InputFile only_regular(AllowedName(path.string()), "image");
     Image8 image;
-    const std::string reason = formats_module(path).read8(path, image);
+    const std::string reason = formats_module(path).read8(AllowedName(path.string()), image);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return image;
 }
 
 ImageF read_float(const std::filesystem::path& path) {
-    const InputFile only_regular(path, "image");
+    const InputFile only_regular(AllowedName(path.string()), "image");
     ImageF image;
-    const std::string reason = formats_module(path).read_float(path, image);
+    const std::string reason = formats_module(path).read_float(AllowedName(path.string()), image);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return image;
 }
 
 std::vector<Channel> read_layers(const std::filesystem::path& path) {
-    const InputFile only_regular(path, "image");
+    const InputFile only_regular(AllowedName(path.string()), "image");
     std::vector<Channel> layers;
-    const std::string reason = formats_module(path).read_layers(path, layers);
+    const std::string reason = formats_module(path).read_layers(AllowedName(path.string()), layers);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return layers;
 }
@@ -335,8 +335,9 @@ Metadata read_metadata(const std::filesystem::path& path) {
     if (!format || is_png(*format)) {
         read_png(path, &metadata);
     } else if (format->linear) {
-        const InputFile only_regular(path, "image");
-        const std::string reason = formats_module(path).read_exr_texts(path, metadata);
+        const InputFile only_regular(AllowedName(path.string()), "image");
+        const std::string reason =
+            formats_module(path).read_exr_texts(AllowedName(path.string()), metadata);
         if (!reason.empty())
             bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     } else {

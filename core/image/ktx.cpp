@@ -332,7 +332,7 @@ void TextureData::Unmap::operator()(const std::byte* bytes) const {
 }
 
 TextureData read_ktx(const std::filesystem::path& path) {
-    const InputFile file(path, "texture");
+    const InputFile file(AllowedName(path.string()), "texture");
     const auto size = static_cast<std::size_t>(file.size());
 
     TextureData texture;

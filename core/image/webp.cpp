@@ -1,8 +1,5 @@
 #include "image/webp.h"
 
-#include <fstream>
-#include <iterator>
-
 #include <webp/decode.h>
 #include <webp/encode.h>
 
@@ -19,9 +16,7 @@ std::string encode_webp(std::vector<std::byte>& bytes, const Image8& image, int 
     return {};
 }
 
-std::string decode_webp(const std::filesystem::path& path, Image8& image) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+std::string decode_webp(std::string_view bytes, Image8& image) {
     const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
     int width = 0, height = 0;
     if (WebPGetInfo(data, bytes.size(), &width, &height) == 0 || width != image.width ||

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/image.h"
@@ -16,6 +16,6 @@ namespace relevo::image {
 std::string encode_webp(std::vector<std::byte>& bytes, const Image8& image, int quality);
 
 /// @param image  RGBA of the size of the file's
-std::string decode_webp(const std::filesystem::path& path, Image8& image);
+std::string decode_webp(std::string_view bytes, Image8& image);
 
 }  // namespace relevo::image

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "output/scratch_files.h"
 
@@ -99,14 +100,14 @@ void write_geotiff(OutputFile& file, std::span<const std::byte> tiff, const Geor
             "{}: {}: cannot be written, {}", file.who(), printable(file.path().string()),
             scratch.error() != 0 ? std::strerror(scratch.error()) : messages.failure(path)));
     };
-    VSILFILE* const plain = VSIFOpenL(path.c_str(), "wb");
+    VSILFILE* const plain = dem::create_by_vsi(AllowedName::of_program(path));
     if (!plain) refuse();
     const bool written = VSIFWriteL(tiff.data(), 1, tiff.size(), plain) == tiff.size();
     if (VSIFCloseL(plain) != 0 || !written) refuse();
     {
         const char* const drivers[] = {"GTiff", nullptr};
-        const dem::Dataset dataset(
-            GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers, nullptr, nullptr));
+        const dem::Dataset dataset = dem::open_by_gdal(AllowedName::of_program(path),
+                                                       GDAL_OF_RASTER | GDAL_OF_UPDATE, drivers);
         std::array<double, 6> transform = where.geotransform;
         if (!dataset || GDALSetGeoTransform(dataset.get(), transform.data()) != CE_None ||
             GDALSetSpatialRef(dataset.get(), crs.handle()) != CE_None)

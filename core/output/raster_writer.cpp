@@ -197,7 +197,11 @@ void RasterWriter::finish(const RasterMetadata& metadata) {
     GDALFlushCache(impl_->plain.get());
     if (impl_->scratch.error() != 0) impl_->refuse(messages);
     {
-        const dem::GdalStrings wanted = creation_options(impl_->options, type_of(impl_->type));
+        dem::GdalStrings wanted = creation_options(impl_->options, type_of(impl_->type));
+        // GDAL would wait for threads that it does not get.
+        const std::optional<double> threads = parse_number(wanted.find("NUM_THREADS"));
+        if (!can_start_threads(threads ? static_cast<int>(*threads) : thread_count()))
+            wanted.set("NUM_THREADS", "1");
         const Dataset whole(GDALCreateCopy(driver("COG"), impl_->scratch.path("whole.tif").c_str(),
                                            impl_->plain.get(), FALSE, wanted.list(), nullptr,
                                            nullptr));

@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "output/tile_mosaic.h"
 #include "sun/zone.h"
@@ -186,7 +187,7 @@ Json item_of(const std::string& href, const fs::path& folder, const TilePlan& pl
              const PlannedTile& tile) {
     const fs::path file = folder / tile.name;
     const dem::GdalMessages messages;
-    const Dataset dataset(GDALOpenEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr, nullptr));
+    const Dataset dataset = dem::open_by_gdal(AllowedName(file.string()), GDAL_OF_RASTER);
     if (!dataset)
         failed(fmt::format("merge: {}: cannot be read, {}", printable(file.string()),
                            messages.failure(file.string())));

@@ -7,10 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "base/object_store.h"
 #include "base/output_file.h"
 #include "base/parallel_for.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 
 namespace relevo::output {
@@ -74,8 +77,10 @@ TileOnDisk tile_on_disk(const fs::path& folder, const TilePlan& plan, const Plan
     const char* const drivers[] = {"GTiff", nullptr};
     // GDAL need not look for overviews and metadata in files of their own.
     const char* const all_files[] = {tile.name.c_str(), nullptr};
-    const dem::Dataset dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, drivers, nullptr, all_files));
+    if (!object_store_of(path) && !file_inside(folder, tile.name))
+        return {State::Other, "is a link to a file of another folder"};
+    const dem::Dataset dataset =
+        dem::open_by_gdal(AllowedName(path), GDAL_OF_RASTER, drivers, all_files);
     if (!dataset)
         return {State::Damaged, fmt::format("cannot be read, {}", messages.failure(path))};
     for (int band = 1; band <= GDALGetRasterCount(dataset.get()); ++band)

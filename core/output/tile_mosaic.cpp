@@ -11,6 +11,7 @@
 #include "base/object_store.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 
 namespace relevo::output {
@@ -97,8 +98,8 @@ std::string mosaic_text(const fs::path& path, const fs::path& folder, const Tile
         failed(fmt::format("merge: {}: cannot be made, {}", printable(path.string()),
                            messages.failure(path.string())));
     };
-    const Dataset first(GDALOpenEx((folder / tiles.front().name).c_str(), GDAL_OF_RASTER, nullptr,
-                                   nullptr, nullptr));
+    const Dataset first =
+        dem::open_by_gdal(AllowedName((folder / tiles.front().name).string()), GDAL_OF_RASTER);
     GDALDriverH const driver = GDALGetDriverByName("VRT");
     if (!first || !driver) refuse();
     const dem::Window all = window_of(plan);

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/local_copy.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -19,6 +20,7 @@
 #include "base/text.h"
 #include "dem/clip.h"
 #include "dem/gdal.h"
+#include "dem/gdal_open.h"
 #include "dem/gdal_support.h"
 #include "dem/tile_index.h"
 #include "output/raster_writer.h"
@@ -76,6 +78,11 @@ Json json_of(const TilePlan& plan) {
             {"tiles", tiles}};
 }
 
+/// Whether it is the name of a file of the plan's folder, and of no other.
+bool is_plain_name(const std::string& name) {
+    return name.ends_with(".tif") && name.find_first_of(std::string_view("/\0", 2)) == name.npos;
+}
+
 TilePlan plan_of(const Json& json, const std::string& name) {
     const Json& dem = json.at("dem");
     const std::array<double, 6> transform = dem.at("geotransform");
@@ -96,8 +103,14 @@ TilePlan plan_of(const Json& json, const std::string& name) {
                                 .broken = named_of(dem.at("broken"))},
                   .stamp = dem.at("stamp"),
                   .tiles = {}};
-    for (const Json& tile : json.at("tiles"))
+    for (const Json& tile : json.at("tiles")) {
         plan.tiles.push_back({tile.at(0), window_of(tile.at(1))});
+        if (!is_plain_name(plan.tiles.back().name))
+            bad_input(
+                fmt::format("{}: a tile has the name \"{}\", expected that of a file of its "
+                            "folder; use another folder",
+                            name, printable(plan.tiles.back().name)));
+    }
     return plan;
 }
 
@@ -126,7 +139,7 @@ bool is_plan(const fs::path& path) {
     constexpr std::size_t kHead = 64;
     std::string head(kHead, '\0');
     const LocalCopy copy(path, "plan");
-    std::ifstream file(copy.path(), std::ios::binary);
+    InputStream file = input_stream(AllowedName(copy.path().string()));
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     return head.find(kVersionKey) != std::string::npos;
 }
@@ -135,8 +148,8 @@ bool is_plan(const fs::path& path) {
 bool has_heights_of_plan(const fs::path& path) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    const dem::Dataset dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, kGeoTiff.data(), nullptr, nullptr));
+    const dem::Dataset dataset =
+        dem::open_by_gdal(AllowedName(path.string()), GDAL_OF_RASTER, kGeoTiff.data());
     return dataset && GDALGetMetadataItem(dataset.get(), kHeightsKey, nullptr);
 }
 
@@ -234,7 +247,7 @@ std::vector<fs::path> foreign_plan_files(const fs::path& folder) {
 std::optional<TilePlan> read_plan(const fs::path& folder) {
     const fs::path path = folder / kPlanFile;
     const LocalCopy copy(path, "plan");
-    std::ifstream file(copy.path(), std::ios::binary);
+    InputStream file = input_stream(AllowedName(copy.path().string()));
     if (!file) return std::nullopt;
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::string name = "plan: " + printable(path.string());
@@ -263,8 +276,8 @@ std::optional<Array2d<float>> read_heights(const fs::path& file) {
     if (!is_taken(file) || !has_heights_of_plan(file)) return std::nullopt;
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    const dem::Dataset dataset(
-        GDALOpenEx(path.c_str(), GDAL_OF_RASTER, kGeoTiff.data(), nullptr, nullptr));
+    const dem::Dataset dataset =
+        dem::open_by_gdal(AllowedName(path), GDAL_OF_RASTER, kGeoTiff.data());
     const auto refuse = [&] {
         bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
                               printable(path), messages.failure(path)));

@@ -8,6 +8,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "image/image.h"
@@ -280,6 +281,12 @@ class Expansion {
             shot.number = static_cast<std::size_t>(&shot - result_.shots.data()) + 1;
             const fs::path name = names.name({shot.number, fs::path(shot.scene.dems.front()).stem(),
                                               shot.utc, shot.zone, shot.names});
+            if (job_.output_given && !job_.output_may_leave &&
+                !file_inside(job_.folder.empty() ? "." : job_.folder, name))
+                bad_output(fmt::format(
+                    "\"{}\" names {}, which is not below the job's own folder; name it with -o, or "
+                    "add --trust",
+                    job_.output, printable(name.string())));
             shot.output = (job_.folder / name).lexically_normal();
             const auto [other, fresh] = taken.emplace(shot.output, shot.number);
             if (fresh || job_.is_film()) continue;

@@ -75,6 +75,7 @@ struct Job {
     Scene scene;                                                 ///< that all begin with
     std::string output = "{dem}_{time:%Y%m%dT%H%M}_{n:04}.png";  ///< template of names
     bool output_given = false;
+    bool output_may_leave = false;  ///< `folder`: the user has named the output, or trusts the job
     int output_line = 0;
     std::filesystem::path folder;  ///< from which the output counts
     bool zip = false;              ///< the sweep's axes go hand in hand, else each with each

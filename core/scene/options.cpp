@@ -110,6 +110,7 @@ constexpr Option kOptions[] = {
      [](Scene& s, const Value& v) {
          s.forecast = weather::is_forecast_file(v.text) ? v.text : "";
          s.weather = v.text.empty() || !s.forecast.empty() ? "" : weather::report_of(v.text);
+         s.weather_file = s.weather.empty() || s.weather == v.text ? "" : v.text;
      }},
     {"", "station_height", "--station-height", "Options",
      "Height of the weather's station above sea level, metres, from which bases of clouds count; "

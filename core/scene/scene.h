@@ -79,8 +79,9 @@ struct Scene {
     dem::Holes holes = dem::Holes::Fill;  ///< how they are drawn
     TimeSpec time;
     std::string refraction = "standard";
-    std::string weather;   ///< a METAR; empty: none. Readers replace names of files by their report
-    std::string forecast;  ///< a file of cloud cover instead; empty: none
+    std::string weather;  ///< a METAR; empty: none. Readers replace names of files by their report
+    std::string weather_file;  ///< which that was read from; empty: none. No scene file has it
+    std::string forecast;      ///< a file of cloud cover instead; empty: none
     std::optional<double> station_height_m;  ///< of the weather's station; none: of the ground
     View view;
     std::optional<Overlay> overlay;

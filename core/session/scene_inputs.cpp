@@ -139,7 +139,7 @@ const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::st
     // Remote files and pipes are not read again.
     std::vector<std::string> local = names;
     std::erase_if(local, [](const std::string& name) {
-        return dem::is_remote(name) || name.starts_with("/vsistdin");
+        return is_remote(name) || name.starts_with("/vsistdin");
     });
     if (fresh && !local.empty()) known->second = dem::files_of(local);
     return known->second;
@@ -162,6 +162,7 @@ void SceneInputs::add_to(FilesInUse& files, const scene::Scene& scene) {
     if (!added_.insert(key_of(scene)).second) return;
     for (const fs::path& file : raster_files(scene.dems))
         files.add_input(file, "the DEM");
+    if (!scene.weather_file.empty()) files.add_input(scene.weather_file, "the weather");
     if (!scene.forecast.empty())
         for (const fs::path& file : raster_files({scene.forecast}))
             files.add_input(file, "the weather");
@@ -214,7 +215,7 @@ std::string SceneInputs::digest_of_rasters(const std::vector<std::string>& names
 }
 
 bool SceneInputs::is_index(const std::string& name) {
-    if (!dem::is_index_name(name) || dem::is_remote(name)) return false;
+    if (!dem::is_index_name(name) || is_remote(name)) return false;
     const auto [known, fresh] = indexes_.try_emplace(name);
     if (fresh) known->second = dem::is_tile_index(name);
     return known->second;

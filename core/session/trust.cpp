@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "base/allowed_name.h"
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "dem/remote.h"
 #include "effect/registry.h"
 #include "effect/search_path.h"
 
@@ -28,6 +28,7 @@ std::string absolute(const std::string& folder) {
 
 Trust::Trust(Named given, std::string file, NamedBy by)
     : given_(std::move(given)), file_(std::move(file)), by_(by) {
+    if (given_.all) allow_all_names();
     for (const std::string& folder : given_.plugin_folders)
         named_.push_back(absolute(folder));
     // Their plugins are loaded whether or not a scene names the folder.
@@ -36,19 +37,24 @@ Trust::Trust(Named given, std::string file, NamedBy by)
 }
 
 void Trust::check_names(const scene::Scene& scene) const {
-    if (given_.all) return;
-    const auto check = [&](const char* key, const std::string& name,
-                           const std::vector<std::string>& named) {
-        if (dem::is_remote(name) && !contains(named, name))
+    const auto check = [&](const char* key, const std::string& name) {
+        if (!is_allowed(name))
             bad_usage(
                 fmt::format("{}: {}: '{}' is not a file of this machine; name it on the "
                             "command line, or add --trust",
                             file_, key, printable(name)));
     };
     for (const std::string& name : scene.dems)
-        check("dem.files", name, given_.dems);
-    if (scene.overlay) check("overlay.file", scene.overlay->file, given_.overlays);
-    check("land_cover", scene.land_cover.file, given_.land_covers);
+        check("dem.files", name);
+    if (scene.overlay) {
+        check("overlay.file", scene.overlay->file);
+        check("overlay.colours", scene.overlay->colours);
+    }
+    check("land_cover", scene.land_cover.file);
+    check("land_cover_classes", scene.land_cover.classes);
+    check("weather", scene.forecast);
+    for (const std::string& preset : scene.effects.presets)
+        check("effects.presets", preset);
 }
 
 /// The plugins below a folder that have no native module.

@@ -11,7 +11,7 @@ namespace relevo::session {
 /// What the user has named, on the command line or by opening it.
 struct Named {
     bool all = false;  ///< --trust: whatever files name is used
-    std::vector<std::string> plugin_folders, dems, overlays, land_covers;
+    std::vector<std::string> plugin_folders;
 };
 
 /// Whose names a scene has besides those of the user.
@@ -21,15 +21,17 @@ enum class NamedBy {
 };
 
 /// What a scene, a job or a picture names is used like what the user names, but for two kinds:
-/// plugin folders, whose code would run, and names on the net, which would be asked. Those are used
-/// where the user has named the same or trusts all. Native modules of a folder that only a picture
-/// names are never loaded.
+/// plugin folders, whose code would run, and names that are not of this machine (AllowedName).
+/// Those are used where the user has named the same or trusts all. Native modules of a folder that
+/// only a picture names are never loaded.
 class Trust {
   public:
     /// @param file   as messages name it: "scene: view.json"
     Trust(Named given, std::string file, NamedBy by);
 
-    /// @throws Error (Usage) for a DEM or an overlay that is on the net
+    /// Names in settings of effects are refused where they are opened: only an effect knows which
+    /// are of files.
+    /// @throws Error (Usage) for a name that may not be opened
     void check_names(const scene::Scene& scene) const;
     /// Keeps of a scene's plugin folders those that are used, each once.
     void keep_folders(scene::Effects& effects);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "weather/metar.h"
@@ -39,10 +40,21 @@ std::vector<std::string> reports_of(const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+/// What is wrong with a report, without words of it: a scene may name any file.
+std::string without_text(std::string_view fault) {
+    const std::size_t end = fault.rfind("\": ");
+    return "weather: METAR: " +
+           std::string(end == fault.npos ? "cannot be read" : fault.substr(end + 3));
+}
+
+}  // namespace
+
 bool is_forecast_file(const std::string& text_or_file) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(text_or_file, unknown)) return false;
-    std::ifstream file(text_or_file, std::ios::binary);
+    InputStream file = input_stream(AllowedName(text_or_file));
     std::string head(1024, ' ');
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     return head.find('\0') != std::string::npos || head.starts_with("<VRTDataset");
@@ -67,7 +79,7 @@ std::string report_of(const std::string& text_or_file) {
                                          report.minute));
             return report.text;
         } catch (const Error& error) {
-            if (fault.empty()) fault = error.what();
+            if (fault.empty()) fault = without_text(error.what());
         }
     }
     bad_input(fmt::format("{}; in {}{}", fault, text_or_file,

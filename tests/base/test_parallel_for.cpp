@@ -70,6 +70,18 @@ TEST(ParallelFor, DoesWithoutThreadsThatTheSystemDoesNotGive) {
         testing::ExitedWithCode(7), "");
 }
 
+TEST(ParallelFor, SaysWhetherTheSystemGivesThreads) {
+    EXPECT_TRUE(can_start_threads(4));
+    EXPECT_EXIT(
+        {
+            rlimit little{};
+            little.rlim_cur = little.rlim_max = rlim_t{256} << 20;
+            setrlimit(RLIMIT_AS, &little);
+            _exit(can_start_threads(200) ? 6 : 7);
+        },
+        testing::ExitedWithCode(7), "");
+}
+
 TEST(ParallelFor, ReachesTheGreatestNumber) {
     constexpr int kMax = std::numeric_limits<int>::max();
     std::atomic<std::int64_t> seen = 0;
