@@ -180,8 +180,7 @@ TEST(SunShadow, TablesThatAreNoneAreRefused) {
         EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
     };
     expect_refused(table("none.csv", "lat,lon\n1,2\n"),
-                   "none.csv: no column time, expected a first line that names it but got "
-                   "\"lat,lon\"");
+                   "none.csv: no column time, expected a first line that names it");
     expect_refused(table("empty.csv", "time\n"),
                    "empty.csv: no times, expected a first line \"time\" and a line for each below "
                    "it");
