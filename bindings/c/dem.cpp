@@ -1,11 +1,15 @@
 #include "dem.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "options.h"
 
 namespace relevo::c {
@@ -48,6 +52,25 @@ geo::Geodetic place_of(const relevo_place* given) {
 
 namespace {
 
+/// Takes the members of the options that say how numbers in memory become heights.
+dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
+    json::Value own;
+    own.kind = json::Value::Kind::Object;
+    const auto is_own = [](const auto& member) {
+        return member.first == "scale" || member.first == "offset" || member.first == "voids_known";
+    };
+    std::ranges::copy_if(options.members, std::back_inserter(own.members), is_own);
+    std::erase_if(options.members, is_own);
+    json::ObjectReader reader("heights", "options", "", own);
+    constexpr double kMost = 1e7;
+    dem::Stored stored{.scale = reader.number("scale", 1, -kMost, kMost, false),
+                       .offset = reader.number("offset", 0, -kMost, kMost, false),
+                       .unit = crs.vertical() ? "" : "m",
+                       .voids_declared = reader.boolean("voids_known", false)};
+    if (stored.scale == 0) reader.fail(reader.line_of("scale"), "scale", "expected another than 0");
+    return stored;
+}
+
 std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
     const relevo_raster heights = read_struct(given, "heights");
     need(heights.heights_m, "heights.heights_m");
@@ -57,11 +80,17 @@ std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
     check_count("heights.count", heights.count,
                 static_cast<std::size_t>(heights.columns) * static_cast<std::size_t>(heights.rows));
     const geo::Crs crs = geo::Crs::parse(&need(heights.crs, "heights.crs"), "crs");
+    json::Value options = parse_dem(heights.options);
+    const dem::Stored stored = take_stored(options, crs);
     dem::MemoryRaster held(heights.heights_m, heights.columns, heights.rows,
-                           dem::Affine::of_geotransform(heights.transform));
-    scene::Scene named = read_dem({held.name()}, heights.options);
+                           dem::Affine::of_geotransform(heights.transform), stored);
+    scene::Scene named = read_dem({held.name()}, std::move(options));
     if (!named.dem.crs.empty()) throw BadCall{"heights.options: crs: expected none"};
     named.dem.crs = crs.text();
+    if (named.dem.unit.empty() && crs.vertical() && crs.vertical()->unit_m != 1)
+        log::info(fmt::format(
+            "heights: are in {} by the vertical part of the CRS; --unit m takes them as metres",
+            crs.vertical()->unit_name));
     return std::make_shared<Dem>(std::move(named), std::move(held));
 }
 

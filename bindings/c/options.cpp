@@ -51,7 +51,15 @@ std::string refraction_name(const std::string& name, const std::string& who) {
     return name;
 }
 
+json::Value parse_dem(const char* text) {
+    return json::parse("dem", kText, text ? text : "{}");
+}
+
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
+    return read_dem(files, parse_dem(text));
+}
+
+scene::Scene read_dem(const std::vector<std::string>& files, json::Value dem) {
     json::Value list;
     list.kind = json::Value::Kind::Array;
     for (const std::string& file : files) {
@@ -59,7 +67,6 @@ scene::Scene read_dem(const std::vector<std::string>& files, const char* text) {
         item.kind = json::Value::Kind::String;
         item.text = file;
     }
-    json::Value dem = json::parse("dem", kText, text ? text : "{}");
     if (dem.kind == json::Value::Kind::Object) dem.members.emplace_back("files", std::move(list));
     json::Value whole;
     whole.kind = json::Value::Kind::Object;

@@ -41,6 +41,10 @@ std::string refraction_name(const std::string& name, const std::string& who);
 /// @param text  members of `dem` without `files`; null: none
 /// @throws Error (BadInput)
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
+scene::Scene read_dem(const std::vector<std::string>& files, json::Value dem);
+
+/// JSON of a DEM, as read_dem() takes it. @throws Error (BadInput)
+json::Value parse_dem(const char* text);
 
 /// Whether two scenes with absolute names show one DEM, read in the same way. How its voids are
 /// drawn may differ.

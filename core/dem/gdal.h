@@ -127,6 +127,8 @@ RELEVO_GDAL(GDALSetDescription);
 RELEVO_GDAL(GDALSetGeoTransform);
 RELEVO_GDAL(GDALSetMetadataItem);
 RELEVO_GDAL(GDALSetRasterNoDataValue);
+RELEVO_GDAL(GDALSetRasterOffset);
+RELEVO_GDAL(GDALSetRasterScale);
 RELEVO_GDAL(GDALSetRasterUnitType);
 RELEVO_GDAL(GDALSetSpatialRef);
 RELEVO_GDAL(GDALTranslate);

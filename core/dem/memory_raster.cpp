@@ -30,7 +30,8 @@ std::string next_name() {
 
 }  // namespace
 
-MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const Affine& a)
+MemoryRaster::MemoryRaster(const float* numbers, int columns, int rows, const Affine& a,
+                           const Stored& stored)
     : name_(next_name()) {
     const double area = a.x_column * a.y_row - a.x_row * a.y_column;
     if (!std::isfinite(area) || area == 0 || !std::isfinite(a.x0 + a.y0))
@@ -50,10 +51,13 @@ MemoryRaster::MemoryRaster(const float* heights_m, int columns, int rows, const 
     if (!file || GDALSetGeoTransform(file.get(), transform.data()) != CE_None)
         refuse_raster(messages, name_);
     GDALRasterBandH const band = GDALGetRasterBand(file.get(), 1);
-    GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN());
-    GDALSetRasterUnitType(band, "m");
+    if (stored.voids_declared)
+        GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN());
+    GDALSetRasterScale(band, stored.scale);
+    GDALSetRasterOffset(band, stored.offset);
+    GDALSetRasterUnitType(band, stored.unit.c_str());
     // GDAL's interface has no const here; it reads.
-    if (GDALRasterIO(band, GF_Write, 0, 0, columns, rows, const_cast<float*>(heights_m), columns,
+    if (GDALRasterIO(band, GF_Write, 0, 0, columns, rows, const_cast<float*>(numbers), columns,
                      rows, GDT_Float32, 0, 0) != CE_None)
         refuse_raster(messages, name_);
 }

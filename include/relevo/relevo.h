@@ -95,14 +95,19 @@ RELEVO_API relevo_result relevo_dem_open(const char* const* files, size_t count,
 /* Heights in memory as a DEM. They are copied. */
 typedef struct relevo_raster {
     size_t size;
-    const float* heights_m; /* row by row; NaN for voids; metres, unless `options` say the unit */
+    /* Row by row; NaN for voids. Metres, unless `options` or the vertical part of the CRS say
+     * another unit. */
+    const float* heights_m;
     size_t count;           /* columns * rows */
     int32_t columns, rows;  /* at least 2 each */
     /* From corners of cells to coordinates of the CRS, as GDAL's geotransform:
      * x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5] row. */
     double transform[6];
     const char* crs; /* "EPSG:32632", WKT or a PROJ string */
-    /* As those of relevo_dem_open(), without crs; null: none */
+    /* As those of relevo_dem_open(), without crs; null: none. Besides:
+     * "scale", "offset": height = offset + scale * number, in the unit (1, 0)
+     * "voids_known": true: NaN alone marks voids. Else a number far from all heights, such as
+     *     -9999, does so too, as in files that declare none; "nodata": "none" keeps it. */
     const char* options;
 } relevo_raster;
 RELEVO_API relevo_result relevo_dem_from_heights(const relevo_raster* heights, relevo_dem** dem);

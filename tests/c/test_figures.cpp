@@ -160,6 +160,38 @@ TEST(Heights, AreReadAsTheOptionsSay) {
     relevo_dem_close(made);
 }
 
+TEST(Heights, ObeyTheRulesOfFiles) {
+    std::vector<float> heights(100, 1000.0F);
+    heights[5] = -9999;
+    auto raster = sized<relevo_raster>();
+    raster.heights_m = heights.data();
+    raster.count = 100;
+    raster.columns = raster.rows = 10;
+    const double transform[6] = {600000, 30, 0, 5200000, 0, -30};
+    std::copy_n(transform, 6, raster.transform);
+    const auto read = [&](const char* crs, const char* options) {
+        raster.crs = crs;
+        raster.options = options;
+        relevo_dem* made = nullptr;
+        expect_ok(relevo_dem_from_heights(&raster, &made));
+        const DemHandle dem(made);
+        std::vector<float> result(100);
+        expect_ok(relevo_dem_read(dem.get(), result.data(), result.size()));
+        return result;
+    };
+    EXPECT_TRUE(std::isnan(read("EPSG:32632", nullptr)[5]));
+    EXPECT_EQ(read("EPSG:32632", R"({"nodata": "none"})")[5], -9999);
+    EXPECT_EQ(read("EPSG:32632", R"({"voids_known": true})")[5], -9999);
+    EXPECT_FLOAT_EQ(read("EPSG:32632", R"({"scale": 0.5, "offset": 7})")[0], 507);
+    // NAVD88 height in US survey feet.
+    EXPECT_FLOAT_EQ(read("EPSG:32632+6360", nullptr)[0], 1000 * 1200.0F / 3937);
+    EXPECT_EQ(read("EPSG:32632+6360", R"({"unit": "m"})")[0], 1000);
+    relevo_dem* made = nullptr;
+    raster.options = R"({"scale": 0})";
+    expect_error(relevo_dem_from_heights(&raster, &made), RELEVO_RESULT_BAD_INPUT,
+                 "heights: options:1: scale: expected another than 0");
+}
+
 TEST_F(Figures, ThePositionIsThatOfTheProgram) {
     auto place = sized<relevo_place>();
     place.lat_deg = 46.95;

@@ -192,7 +192,7 @@ def test_xarray_of_cf(array, expected):
         ({"crop": (1, 2, 3)}, "crop: expected"),
         ({"encoding": "terrarium"}, "encoding: of files alone"),
         ({"band": 1}, "band: of files and datasets alone"),
-        ({"nodata": "none"}, "nodata: expected a number"),
+        ({"nodata": "void"}, "nodata: expected a number"),
         ({"memory_mib": -3}, "memory_mib"),
         ({"source": numpy.zeros((2, 3, 4))}, r"3 dimensions, \(2, 3, 4\)"),
         ({"source": numpy.zeros(4)}, "1 dimensions"),

@@ -3,7 +3,7 @@
     import relevo
 
     dem = relevo.open("alps.tif")
-    picture = dem.capture(time="2026-06-21T18:30", size=(1280, 1024))
+    picture = dem.capture(time="2026-06-21T22:30Z", size=(1280, 1024))
     hours = dem.sun.hours("2026-06-21")
 
 Units are metres, degrees and hours; azimuths are clockwise from true north; places are WGS 84, east positive.
@@ -13,7 +13,15 @@ from __future__ import annotations
 
 import sys
 
-from . import _relevo, sun
+try:
+    from . import _relevo
+except ImportError as error:
+    raise ImportError(
+        f"relevo: its module for Python {sys.version_info.major}.{sys.version_info.minor} is not built or does not load "
+        f"({error}); build it by cmake --build build/release, then set PYTHONPATH=build/release/python"
+    ) from error
+
+from . import sun
 from ._dem import Dem, open
 from ._errors import BadCall, BadInput, Cancelled, Error, NoDevice, OutOfMemory, Warning
 from ._raster import Raster

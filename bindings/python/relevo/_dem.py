@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from . import _inputs, _relevo
 from ._errors import BadInput, messages
 from ._options import options_text
-from ._raster import Raster, bounds_of, empty
+from ._raster import Raster, bounds_of, empty, horizontal
 from ._sun_over_dem import SunOverDem
-from ._times import Date, Time
+from ._times import Date, Time, Zone
 from ._transform import Transform
 from ._view import Camera, Change, View, change_of
 
@@ -112,7 +112,7 @@ class Dem:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[str] = None,
+        zone: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -120,11 +120,12 @@ class Dem:
     ) -> View:
         """Opens a scene of the DEM that stays on its device: for many pictures, and for depth, positions and normals.
 
-        time: a datetime with a time zone, a datetime64 (UTC), seconds since 1970, or a text as the program takes it:
-            "2026-06-21T18:30" (local time of the place), "2026-06-21T16:30Z", "sunset-30min" with `date`. None: a time
-            that shows relief.
+        time: a datetime, a datetime64 (UTC), seconds since 1970, or a text as the program takes it:
+            "2026-06-21T16:30Z", "2026-06-21T18:30" with `zone`, "sunset-30min" with `date`. A datetime or text without
+            a time zone needs `zone`. None: a time that shows relief.
         size: (columns, rows) of pictures [pixels]. None: 1280 x 1024.
-        date, zone: of `time`, where that leaves them open.
+        date: of an event
+        zone: of a time that has none: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (that of the place)
         camera: as in scenes, such as {"orbit": {"azimuth": 210, "elevation": 30}}. None: one that shows relief.
         exaggeration: vertical exaggeration. None: 1.
         scene: what else a scene has (docs/scene.md), a dict or JSON: effects, overlay, stamps. Arguments go before it.
@@ -145,7 +146,7 @@ class Dem:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[str] = None,
+        zone: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -194,7 +195,7 @@ class Dem:
         units: tuple[str, ...],
         about: dict[str, Any],
     ) -> Raster:
-        return Raster(values, self._transform, self._crs, self._wkt, bands, names, units, about)
+        return Raster(values, self._transform, *horizontal(self._crs, self._wkt), bands, names, units, about)
 
 
 Path = Union[str, "os.PathLike[str]"]
@@ -207,7 +208,7 @@ def open(
     crs: Any = None,
     band: Optional[int] = None,
     unit: Optional[str] = None,
-    nodata: Union[float, str, None] = None,
+    nodata: _inputs.Nodata = None,
     encoding: Optional[str] = None,
     bounds: Optional[Sequence[float]] = None,
     crop: Union[str, Sequence[float], None] = None,
@@ -226,8 +227,10 @@ def open(
         order go through relevo.Transform.from_gdal().
     crs: instead of the source's: "EPSG:32632", WKT, a PROJ string, a number of EPSG, a CRS of rasterio or pyproj
     band: of files and datasets, from 1
-    unit: of heights, instead of the source's: "m", "ft", "us-ft", "cm", "mm", "dm", "km"
-    nodata: a value that marks voids, instead of the source's; of files also "none"
+    unit: of heights, instead of the source's: "m", "ft", "us-ft", "cm", "mm", "dm", "km". The source's is its own, else
+        that of the vertical part of the CRS, else metres.
+    nodata: a value that marks voids, instead of the source's; "none" for no value. Where the source declares none, a
+        value far from all heights, such as -9999, marks voids, with a warning.
     encoding: of files, heights as colours: "terrain-rgb", "terrarium"
     bounds: (west, south, east, north) [degrees] of files without a georeference
     crop: (west, south, east, north) [degrees]: only this part
@@ -245,15 +248,18 @@ def open(
         if transform is not None:
             raise BadInput("transform: of arrays alone; bounds= places a file")
         text = options_text(
-            "open", crs=None if crs is None else _inputs.crs_text(crs), band=band, unit=unit, nodata=nodata, **for_files,
-            **common,
+            "open", crs=None if crs is None else _inputs.crs_text(crs), band=band, unit=unit, nodata=nodata,
+            **for_files, **common,
         )
-        with messages():
+        with messages(assumptions=True):
             return Dem(_relevo.open_dem(paths, text), paths[0] if len(paths) == 1 else f"{paths[0]} ...")
     _refuse(for_files, "of files alone")
     heights, name = _heights(source, transform, crs, band, unit, nodata)
-    text = options_text("open", unit=heights.unit, **common)
-    with messages():
+    text = options_text(
+        "open", unit=heights.unit, nodata="none" if nodata == "none" else None, voids_known=heights.voids_known,
+        scale=heights.scale, offset=heights.offset, **common,
+    )
+    with messages(assumptions=True):
         return Dem(_relevo.dem_from_heights(heights.values, heights.transform.to_gdal(), heights.crs, text), name)
 
 
@@ -283,10 +289,8 @@ def _refuse(options: Mapping[str, Any], why: str) -> None:
 
 
 def _heights(
-    source: Any, transform: Any, crs: Any, band: Optional[int], unit: Optional[str], nodata: Union[float, str, None]
+    source: Any, transform: Any, crs: Any, band: Optional[int], unit: Optional[str], nodata: _inputs.Nodata
 ) -> tuple[_inputs.Heights, str]:
-    if isinstance(nodata, str):
-        raise BadInput("nodata: expected a number")
     if _inputs.is_rasterio(source):
         _refuse({"transform": transform}, "of arrays alone; the dataset has one")
         return _inputs.of_rasterio(source, 1 if band is None else band, crs, nodata, unit), str(source.name)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import re
 import sys
 import warnings
 from collections.abc import Iterator
 
 from . import _relevo
+from ._words import python_words
 
 log = logging.getLogger("relevo")
 
@@ -47,12 +47,9 @@ class Warning(UserWarning):
 _CLASSES: dict[int, type[Error]] = {2: BadCall, 3: BadInput, 4: NoDevice, 5: Cancelled, 6: OutOfMemory}
 
 
-_MEMORY = re.compile(r"/vsimem/relevo/\d+/heights\.tif")  # the name that heights of memory have for GDAL
-
-
 def error_of(code: int, text: str) -> Error:
     """The exception for a code of the C interface. The module calls it."""
-    return _CLASSES.get(code, Error)(_MEMORY.sub("heights", text))
+    return _CLASSES.get(code, Error)(python_words(text))
 
 
 def _level_of_caller() -> int:
@@ -71,14 +68,17 @@ def warn(text: str) -> None:
 
 
 @contextlib.contextmanager
-def messages() -> Iterator[None]:
-    """Around calls of the library: what it says becomes warnings and log records, on this thread."""
+def messages(assumptions: bool = False) -> Iterator[None]:
+    """Around calls of the library: what it says becomes warnings and log records, on this thread.
+
+    assumptions: what is assumed becomes a warning, too
+    """
     try:
         yield
     finally:
         for level, text in _relevo.take_messages():
-            text = _MEMORY.sub("heights", text)
-            if level > _INFO:
+            text = python_words(text)
+            if level > _INFO or (assumptions and level == _INFO):
                 warn(text)
             else:
                 log.log(logging.INFO if level == _INFO else logging.DEBUG, "%s", text)

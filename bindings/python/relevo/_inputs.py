@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
@@ -12,17 +12,39 @@ from ._errors import BadInput, warn
 from ._transform import Transform, read_transform
 
 
+Nodata = Union[float, str, None]
+"""A number, "none", or None: what the source says."""
+
+
 class Heights(NamedTuple):
-    """Heights on a grid."""
+    """Heights on a grid, as a file has them."""
 
     values: NDArray[numpy.float32]  # (rows, columns), C-contiguous, NaN in voids
     transform: Transform
     crs: str
-    unit: Optional[str]  # None: metres
+    unit: Optional[str]  # None: that of the CRS's vertical part, else metres
+    voids_known: bool  # the source says which elements are voids; else the library looks for undeclared ones
+    scale: float = 1.0
+    offset: float = 0.0  # height: offset + scale * value
 
 
-def plain_heights(given: Any, nodata: Optional[float]) -> NDArray[numpy.float32]:
-    """float32 of any numbers; masked elements and those of `nodata` become NaN. No copy where none is needed."""
+def _void_of(nodata: Nodata, declared: Optional[float] = None) -> Optional[float]:
+    """The number that marks voids: the one given, else the one declared."""
+    if nodata is None:
+        return declared
+    if nodata == "none":
+        return None
+    if isinstance(nodata, str):
+        raise BadInput(f'nodata: expected a number or "none" but got {nodata!r}')
+    return float(nodata)
+
+
+def plain_heights(given: Any, void: Optional[float]) -> tuple[NDArray[numpy.float32], bool]:
+    """float32 of any numbers; masked elements and those of `void` become NaN. No copy where none is needed.
+
+    Returns also whether that says which elements are voids.
+    """
+    known = void is not None or bool(numpy.ma.is_masked(given))  # type: ignore[no-untyped-call]
     if isinstance(given, numpy.ma.MaskedArray) and given.dtype.kind in "iuf":
         given = numpy.where(numpy.ma.getmaskarray(given), numpy.float32("nan"), given.data)  # type: ignore[no-untyped-call]
     array = numpy.asarray(given)
@@ -33,20 +55,21 @@ def plain_heights(given: Any, nodata: Optional[float]) -> NDArray[numpy.float32]
     if min(array.shape) < 2:
         raise BadInput(f"heights: expected 2 rows and columns or more but got {array.shape}")
     heights = numpy.ascontiguousarray(array, dtype=numpy.float32)
-    if nodata is not None and not numpy.isnan(nodata):
-        voids = array == nodata
+    if void is not None and not numpy.isnan(void):
+        voids = array == void
         if voids.any():
             heights = heights.copy() if numpy.may_share_memory(heights, array) else heights
             heights[voids] = numpy.nan
-    return heights
+    return heights, known
 
 
-def of_array(array: Any, transform: Any, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+def of_array(array: Any, transform: Any, crs: Any, nodata: Nodata, unit: Optional[str]) -> Heights:
     if transform is None:
         raise BadInput("transform: missing; an array needs transform= and crs=")
     if crs is None:
         raise BadInput('crs: missing; an array needs transform= and crs=, such as "EPSG:32632"')
-    return Heights(plain_heights(array, nodata), read_transform(transform), crs_text(crs), unit)
+    values, known = plain_heights(array, _void_of(nodata))
+    return Heights(values, read_transform(transform), crs_text(crs), unit, known)
 
 
 def crs_text(crs: Any) -> str:
@@ -66,25 +89,24 @@ def is_rasterio(source: Any) -> bool:
     return all(hasattr(source, name) for name in ("read", "transform", "crs", "nodatavals", "count"))
 
 
-def of_rasterio(dataset: Any, band: int, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+def of_rasterio(dataset: Any, band: int, crs: Any, nodata: Nodata, unit: Optional[str]) -> Heights:
     """Heights of a band with scale, offset, mask and unit as the dataset has them."""
     if not 1 <= band <= dataset.count:
         raise BadInput(f"band: {dataset.name} has {dataset.count} bands, not {band}")
     if dataset.crs is None and crs is None:
         raise BadInput(f"crs: {dataset.name} has none; give crs=")
-    values = dataset.read(band, masked=True)
-    if nodata is not None:
-        values[values.data == nodata] = numpy.ma.masked
-    scale, offset = dataset.scales[band - 1], dataset.offsets[band - 1]
-    if (scale, offset) != (1, 0):
-        values = values.astype(numpy.float64) * scale + offset
-    if unit is None:
-        unit = dataset.units[band - 1] or None
+    flags = {flag.name for flag in dataset.mask_flag_enums[band - 1]}
+    has_mask = bool(flags & {"per_dataset", "alpha"}) and "nodata" not in flags
+    void = _void_of(nodata, dataset.nodatavals[band - 1])
+    values, known = plain_heights(dataset.read(band, masked=has_mask), void)
     return Heights(
-        plain_heights(values, None),
+        values,
         read_transform(dataset.transform),
         crs_text(dataset.crs if crs is None else crs),
-        unit,
+        unit or dataset.units[band - 1] or None,
+        known or has_mask,
+        float(dataset.scales[band - 1]),
+        float(dataset.offsets[band - 1]),
     )
 
 
@@ -94,7 +116,7 @@ def is_dataarray(source: Any) -> bool:
     return xarray is not None and isinstance(source, xarray.DataArray)
 
 
-def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Optional[float], unit: Optional[str]) -> Heights:
+def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Nodata, unit: Optional[str]) -> Heights:
     """Heights with coordinates and CRS as rioxarray writes them, or CF has them."""
     array = array.squeeze(drop=False)
     if array.ndim != 2:
@@ -103,15 +125,15 @@ def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Optional[float], 
         raise BadInput(f"heights: expected rows before columns but got {array.dims}; array.T has them so")
     if unit is None and isinstance(array.attrs.get("units"), str):
         unit = _unit_of(array.attrs["units"])
-    if nodata is None:
-        nodata = _number(array.attrs.get("_FillValue", array.attrs.get("nodata")))
+    void = _void_of(nodata, _declared_void(array))
     if transform is None:
         transform = _transform_of(array)
     if crs is None:
         crs = _crs_of(array)
     if crs is None:
         raise BadInput("crs: the DataArray has none; give crs=")
-    return Heights(plain_heights(array.values, nodata), read_transform(transform), crs_text(crs), unit)
+    values, known = plain_heights(array.values, void)
+    return Heights(values, read_transform(transform), crs_text(crs), unit, known)
 
 
 def _is_east(array: Any, dim: Any) -> bool:
@@ -124,14 +146,18 @@ def _is_east(array: Any, dim: Any) -> bool:
 
 
 def _unit_of(text: str) -> Optional[str]:
-    return None if text in ("", "1", "m", "metre", "meter", "metres", "meters") else text
+    return None if text in ("", "1") else text
 
 
-def _number(value: Any) -> Optional[float]:
-    try:
-        return None if value is None else float(value)
-    except (TypeError, ValueError):
-        return None
+def _declared_void(array: Any) -> Optional[float]:
+    """What the attributes say, or what xarray and rioxarray have made NaN of."""
+    for value in (array.attrs.get("_FillValue"), array.attrs.get("nodata")):
+        try:
+            if value is not None:
+                return float(value)
+        except (TypeError, ValueError):
+            return None
+    return float("nan") if array.encoding.get("_FillValue") is not None else None
 
 
 def _transform_of(array: Any) -> Transform:
@@ -172,7 +198,13 @@ def _step_of(array: Any, dim: Any) -> Optional[tuple[float, float]]:
 def _reference_of(array: Any) -> dict[Any, Any]:
     """Attributes of the variable that describes the CRS."""
     name = array.encoding.get("grid_mapping", array.attrs.get("grid_mapping", "spatial_ref"))
-    return dict(array.coords[name].attrs) if name in array.coords else {}
+    if name in array.coords:
+        return dict(array.coords[name].attrs)
+    # Arithmetic drops the attribute that names the variable.
+    for coordinate in array.coords.values():
+        if coordinate.ndim == 0 and any(key in coordinate.attrs for key in ("crs_wkt", "spatial_ref")):
+            return dict(coordinate.attrs)
+    return {}
 
 
 def _crs_of(array: Any) -> Any:

@@ -128,6 +128,21 @@ class Raster:
             file.update_tags(**{f"RELEVO_{key.upper()}": str(value) for key, value in self.about.items()})
 
 
+def horizontal(crs: str, wkt: str) -> tuple[str, str]:
+    """The code and WKT 2 of the horizontal part of a CRS. Values of rasters are not in the unit of its vertical part."""
+    if not wkt.startswith("COMPOUNDCRS["):
+        return crs, wkt
+    begin = wkt.index('",') + 2  # after the name
+    depth, quoted = 0, False
+    for end in range(begin, len(wkt)):
+        quoted ^= wkt[end] == '"'
+        depth += 0 if quoted else {"[": 1, "]": -1}.get(wkt[end], 0)
+        if depth == 0 and wkt[end] == "]":
+            break
+    part = wkt[begin : end + 1]
+    return (crs.split("+")[0] if "+" in crs and len(crs) < 40 else part), part
+
+
 def bounds_of(transform: Transform, rows: int, columns: int) -> tuple[float, float, float, float]:
     """(left, bottom, right, top) of a raster."""
     corners = [transform.apply(column, row) for column in (0, columns) for row in (0, rows)]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ._errors import BadInput, messages
 from ._options import options_text
 from ._raster import Raster, band_list, empty
-from ._times import Date, Time, date_text, time_text
+from ._times import Date, Time, Zone, date_text, time_text, zone_text
 
 if TYPE_CHECKING:
     from ._dem import Dem
@@ -59,7 +59,7 @@ class SunOverDem:
         start: Optional[Date] = None,
         end: Optional[Date] = None,
         year: Optional[int] = None,
-        zone: Optional[str] = None,
+        zone: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...]] = "hours",
         step: Union[float, datetime.timedelta, None] = None,
         linke: Optional[float] = None,
@@ -73,7 +73,7 @@ class SunOverDem:
 
         One of these: date, a day; start and end, both included; year, all of its days.
 
-        zone: of the days, "Europe/Zurich", "+05:30". None: that of the place.
+        zone: of the days, "Europe/Zurich", "+05:30", a ZoneInfo. None: that of the place.
         bands: "hours" [h]; of at most four days "first", "last" (minutes from the beginning to the first and the last
             sun) and "spells" (sunshine periods); "global", "beam", "diffuse", "reflected" (clear sky, kWh/m2). A list
             gives values of (bands, rows, columns).
@@ -89,7 +89,7 @@ class SunOverDem:
             "hours",
             **{key: date_text(day) for key, day in days.items() if day is not None},
             year=year,
-            zone=zone,
+            zone=None if zone is None else zone_text(zone),
             bands=names,
             step=step,
             linke=linke,
@@ -105,7 +105,7 @@ class SunOverDem:
         time: Time,
         *,
         date: Optional[Date] = None,
-        zone: Optional[str] = None,
+        zone: Optional[Zone] = None,
         soft: bool = False,
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
@@ -119,9 +119,9 @@ class SunOverDem:
         """
         options = options_text(
             "shadow",
-            time=time_text(time),
+            time=time_text(time, zone),
             date=None if date is None else date_text(date),
-            zone=zone,
+            zone=None if zone is None else zone_text(zone),
             soft=soft,
             terrestrial_refraction=terrestrial_refraction,
             refraction=refraction,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import datetime
-from typing import Any, Union
+import re
+import zoneinfo
+from typing import Any, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
@@ -12,39 +14,85 @@ from ._errors import BadInput
 
 Time = Union[str, datetime.datetime, numpy.datetime64, float]
 Date = Union[str, datetime.date, numpy.datetime64]
+Zone = Union[str, datetime.tzinfo]
 
 _EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)
 _MICROSECOND = datetime.timedelta(microseconds=1)
+_WALL_TIME = re.compile(r"\s*\d+-\d+-\d+[Tt ]\d+(:[\d.]+)*\s*")  # a time of day without a zone
 
 
-def _seconds_of_datetime(time: datetime.datetime) -> float:
-    if time.utcoffset() is None:
-        raise BadInput(
-            f"time: {time.isoformat()} has no time zone; give it one, as in "
-            'datetime(2026, 6, 21, 12, tzinfo=ZoneInfo("Europe/Zurich"))'
-        )
+def zone_text(zone: Zone) -> str:
+    """A zone as the library takes it: "Europe/Zurich", "+02:00", "auto"."""
+    if isinstance(zone, str):
+        return zone
+    name = getattr(zone, "key", None) or getattr(zone, "zone", None)  # of zoneinfo, of pytz
+    if isinstance(name, str):
+        return name
+    offset = zone.utcoffset(None) if isinstance(zone, datetime.tzinfo) else None
+    if offset is None:
+        raise BadInput(f'zone: expected a name such as "Europe/Zurich", a ZoneInfo or a timezone but got {zone!r}')
+    minutes = offset // datetime.timedelta(minutes=1)
+    return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02}:{abs(minutes) % 60:02}"
+
+
+def _tzinfo_of(zone: Zone) -> datetime.tzinfo:
+    if isinstance(zone, datetime.tzinfo):
+        return zone
+    text = zone_text(zone)
+    try:
+        if text[:1] in ("+", "-"):
+            offset = datetime.datetime.fromisoformat(f"2000-01-01T00:00{text}").tzinfo
+            assert offset is not None
+            return offset
+        return zoneinfo.ZoneInfo("UTC" if text == "Z" else text)
+    except (ValueError, OSError, zoneinfo.ZoneInfoNotFoundError):
+        raise BadInput(f'zone: expected one as "Europe/Zurich" or "+02:00" but got {zone!r}') from None
+
+
+def _no_zone(time: str, remedy: str) -> BadInput:
+    return BadInput(f"time: {time} has no time zone; give zone=, or {remedy}")
+
+
+def _check_zone(time: Any, zone: Optional[Zone]) -> None:
+    """Raises BadInput for a datetime, or a text of a time of day, that has no zone where none is given."""
+    if zone is not None:
+        return
+    if isinstance(time, datetime.datetime) and time.utcoffset() is None:
+        remedy = 'set tzinfo, as in datetime(2026, 6, 21, 12, tzinfo=ZoneInfo("Europe/Zurich"))'
+        raise _no_zone(time.isoformat(), remedy)
+    if isinstance(time, str) and _WALL_TIME.fullmatch(time):
+        raise _no_zone(time.strip(), "end it by Z for UTC or by an offset such as +02:00")
+
+
+def _seconds_of_datetime(time: datetime.datetime, zone: Optional[Zone]) -> float:
+    if time != time:
+        raise BadInput("time: NaT is no time")
+    _check_zone(time, zone)
+    if time.utcoffset() is None and zone is not None:
+        time = time.replace(tzinfo=_tzinfo_of(zone))
     return ((time - _EPOCH) // _MICROSECOND) * 1e-6
 
 
-def _seconds_of_text(text: str) -> float:
+def _seconds_of_text(text: str, zone: Optional[Zone]) -> float:
+    _check_zone(text, zone)
     try:
         time = datetime.datetime.fromisoformat(text[:-1] + "+00:00" if text.endswith(("Z", "z")) else text)
     except ValueError:
         raise BadInput(f"time: expected one as 2026-06-21T18:30+02:00 but got {text!r}") from None
-    if time.utcoffset() is None:
-        raise BadInput(f"time: {text} has no time zone; end it by Z for UTC, or by an offset such as +02:00")
-    return _seconds_of_datetime(time)
+    return _seconds_of_datetime(time, zone)
 
 
-def _seconds_of(time: Any) -> float:
+def _seconds_of(time: Any, zone: Optional[Zone]) -> float:
     if isinstance(time, str):
-        return _seconds_of_text(time)
+        return _seconds_of_text(time, zone)
     if isinstance(time, datetime.datetime):
-        return _seconds_of_datetime(time)
+        return _seconds_of_datetime(time, zone)
     if isinstance(time, numpy.datetime64):
         return float(_seconds_of_datetime64(numpy.asarray(time)))
     if isinstance(time, (bool, numpy.bool_)) or not isinstance(time, (int, float, numpy.number)):
         raise BadInput(f"time: expected a datetime, a text or seconds since 1970 but got {time!r}")
+    if not numpy.isfinite(time):
+        raise BadInput(f"time: expected seconds since 1970 but got {time!r}")
     return float(time)
 
 
@@ -56,22 +104,28 @@ def _seconds_of_datetime64(times: NDArray[Any]) -> NDArray[numpy.float64]:
     return seconds_since_1970
 
 
-def seconds(times: Any) -> NDArray[numpy.float64]:
+def seconds(times: Any, zone: Optional[Zone] = None) -> NDArray[numpy.float64]:
     """Seconds since 1970-01-01T00:00Z, in the shape of `times`: one or many of
 
-    - datetime.datetime and pandas.Timestamp with a time zone
+    - datetime.datetime and pandas.Timestamp
     - numpy.datetime64, which is UTC
     - texts as 2026-06-21T18:30+02:00, 2026-06-21T16:30Z
     - seconds since 1970
 
-    Raises BadInput for times without a zone and for what is no time.
+    zone: of datetimes and texts that have none. Raises BadInput where neither has one, and for what is no time.
     """
     array = numpy.asarray(times)
     if array.dtype.kind == "M":
         return _seconds_of_datetime64(array)
     if array.dtype.kind in "iuf":
+        if not numpy.isfinite(array).all():
+            raise BadInput("time: expected seconds since 1970 but got NaN or infinity")
         return array.astype(numpy.float64)
-    flat = [_seconds_of(time) for time in array.ravel().tolist()] if array.dtype.kind in "OU" else [_seconds_of(times)]
+    flat = (
+        [_seconds_of(time, zone) for time in array.ravel().tolist()]
+        if array.dtype.kind in "OU"
+        else [_seconds_of(times, zone)]
+    )
     return numpy.array(flat, dtype=numpy.float64).reshape(array.shape)
 
 
@@ -80,10 +134,18 @@ def utc(seconds_since_1970: float) -> datetime.datetime:
     return _EPOCH + datetime.timedelta(microseconds=round(seconds_since_1970 * 1e6))
 
 
-def time_text(time: Time) -> str:
-    """A time as scenes have it. Texts are those of the program: also local times, and events such as
-    "sunset-30min"."""
-    return time if isinstance(time, str) else utc(_seconds_of(time)).isoformat().replace("+00:00", "Z")
+def time_text(time: Time, zone: Optional[Zone] = None) -> str:
+    """A time as scenes have it. Texts are those of the program, also events such as "sunset-30min".
+
+    zone: of a datetime or text that has none. Raises BadInput where neither has one.
+    """
+    if isinstance(time, str):
+        _check_zone(time, zone)
+        return time
+    if isinstance(time, datetime.datetime) and time == time and time.utcoffset() is None:
+        _check_zone(time, zone)
+        return time.isoformat()
+    return utc(_seconds_of(time, zone)).isoformat().replace("+00:00", "Z")
 
 
 def date_text(date: Date) -> str:
@@ -94,6 +156,8 @@ def date_text(date: Date) -> str:
         if numpy.isnat(date):
             raise BadInput("date: NaT is no date")
         return str(date.astype("datetime64[D]"))
+    if isinstance(date, datetime.date) and date != date:
+        raise BadInput("date: NaT is no date")
     if isinstance(date, datetime.datetime):
         return date.date().isoformat()
     if isinstance(date, datetime.date):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _relevo
 from ._errors import BadInput, messages
 from ._options import json_text
-from ._times import Date, Time, date_text, time_text
+from ._times import Date, Time, Zone, date_text, time_text, zone_text
 
 Camera = Mapping[str, Any]
 Change = Union[str, Mapping[str, Any]]
@@ -36,18 +36,22 @@ def change_of(
     time: Optional[Time],
     size: Optional[tuple[int, int]],
     date: Optional[Date],
-    zone: Optional[str],
+    zone: Optional[Zone],
     camera: Optional[Camera],
     exaggeration: Optional[float],
     scene: Optional[Change],
+    zone_before: Optional[str] = None,
 ) -> dict[str, Any]:
-    """A part of a scene from arguments."""
+    """A part of a scene from arguments.
+
+    zone_before: that of the scene, which stays if none is given
+    """
     change = _members(scene)
     if time is not None or date is not None or zone is not None:
         when = {
-            "at": None if time is None else time_text(time),
+            "at": None if time is None else time_text(time, zone or _zone_of(change) or zone_before),
             "date": None if date is None else date_text(date),
-            "zone": zone,
+            "zone": None if zone is None else zone_text(zone),
         }
         change["time"] = {**change.get("time", {}), **{key: text for key, text in when.items() if text is not None}}
     if size is not None:
@@ -68,6 +72,7 @@ class View:
 
     def __init__(self, dem: _relevo.Dem, scene: dict[str, Any], device: str, name: str) -> None:
         self._name = name
+        self._zone = _zone_of(scene)
         with messages():
             self._session = _relevo.open_session(json_text("scene", scene), dem, device)
 
@@ -77,7 +82,7 @@ class View:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[str] = None,
+        zone: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -87,9 +92,10 @@ class View:
         A camera replaces the one before, effects of `scene` are added, other members take the place of the scene's.
         Raises BadInput; the scene is then as it was.
         """
-        change = change_of(time, size, date, zone, camera, exaggeration, scene)
+        change = change_of(time, size, date, zone, camera, exaggeration, scene, self._zone)
         with messages():
             self._session.set(json_text("scene", change))
+        self._zone = _zone_of(change) or self._zone
 
     @property
     def scene(self) -> dict[str, Any]:
@@ -176,6 +182,11 @@ def _members(scene: Optional[Change]) -> dict[str, Any]:
         if not isinstance(members.get(name, {}), Mapping):
             raise BadInput(f"scene: {name}: expected an object")
     return members
+
+
+def _zone_of(scene: Mapping[str, Any]) -> Optional[str]:
+    zone = scene.get("time", {}).get("zone")
+    return zone if isinstance(zone, str) else None
 
 
 def _size(size: tuple[int, int]) -> list[int]:

@@ -44,7 +44,7 @@ class Library(Backend):
         _refuse_bounds(bounds)
         with self._opened(dem, watch) as opened:
             raster = opened.sun.shadow(
-                when.at, date=when.date, zone=when.zone, soft=soft, progress=_progress(watch)
+                when.at, date=when.date, zone=when.zone or "auto", soft=soft, progress=_progress(watch)
             )
         _write_raster(raster, dem, not soft, self._relevo.__version__, output)
 
