@@ -229,10 +229,16 @@ void warn_of_the_edge(const light::Doubt& doubt) {
             "above {:.0f} m {} as far as {:.0f} km away, where the DEM reaches {:.1f} km",
             s.least_m, sector_text(s), s.needed_m / 1000, s.reach_m / 1000));
     if (parts.empty()) return;
+    const std::string earths =
+        doubt.earths_needed_m
+            ? fmt::format("; those of up to {:.0f} m (the Earth's highest) as far as {:.0f} km",
+                          light::kHighestTerrain_m, *doubt.earths_needed_m / 1000)
+            : "";
     log::warning(
-        fmt::format("mountains of up to {:.0f} m outside the DEM could {}: {}; use a larger DEM, "
-                    "or bound them with --highest",
-                    doubt.highest_m, matters_text(doubt), fmt::join(parts, ", and ")));
+        fmt::format("mountains of up to {:.0f} m{} outside the DEM could {}: {}{}; use a larger "
+                    "DEM, or bound them with --highest",
+                    doubt.highest_m, doubt.earths_needed_m ? " (the DEM's highest post)" : "",
+                    matters_text(doubt), fmt::join(parts, ", and "), earths));
 }
 
 void warn_of_holes(const light::Doubt& doubt) {

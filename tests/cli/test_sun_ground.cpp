@@ -193,15 +193,20 @@ TEST(Edge, MattersWhereTheSunStandsAndHasAHeight) {
     const std::vector<std::string> winter{"--date", "2026-12-21", "--tz", kZurich};
     const Result day = relevo(verb("day", whole(), winter));
     EXPECT_TRUE(day.err.starts_with(
-        "relevo: warning: mountains of up to 520 m outside the DEM could hide the sun: above 1"))
+        "relevo: warning: mountains of up to 520 m (the DEM's highest post) outside the DEM could "
+        "hide the sun: above 1"))
+        << day.err;
+    // 8.7 km over the plain are seen over a level horizon from 359 km, by the refraction taken.
+    EXPECT_NE(day.err.find("; those of up to 8850 m (the Earth's highest) as far as 35"),
+              std::string::npos)
         << day.err;
     EXPECT_EQ(count(day.err, " m from azimuth 12"), 1) << day.err;
     EXPECT_EQ(count(day.err, " m from azimuth "), 1) << day.err;
     EXPECT_EQ(count(day.err, " (N) "), 0) << day.err;
     const Result horizon = relevo(verb("horizon", whole(), {}));
     EXPECT_TRUE(
-        horizon.err.starts_with("relevo: warning: mountains of up to 520 m outside the DEM could "
-                                "raise the horizon: above 10"))
+        horizon.err.starts_with("relevo: warning: mountains of up to 520 m (the DEM's highest "
+                                "post) outside the DEM could raise the horizon: above 10"))
         << horizon.err;
     EXPECT_NE(horizon.err.find(" m from azimuth 321 (NW) to 219 (SW) "), std::string::npos)
         << horizon.err;
@@ -217,9 +222,14 @@ TEST(Edge, MattersWhereTheSunStandsAndHasAHeight) {
                                         kZurich};
     const Result when = relevo(verb("when", whole(), over));
     EXPECT_TRUE(
-        when.err.starts_with("relevo: warning: mountains of up to 520 m outside the DEM could hide "
-                             "the summit or the sun: above 1"))
+        when.err.starts_with("relevo: warning: mountains of up to 520 m (the DEM's highest post) "
+                             "outside the DEM could hide the summit or the sun: above 1"))
         << when.err;
+    const Result bounded = relevo(verb("horizon", whole(), {"--highest", "900"}));
+    EXPECT_TRUE(bounded.err.starts_with(
+        "relevo: warning: mountains of up to 900 m outside the DEM could raise the horizon: "))
+        << bounded.err;
+    EXPECT_EQ(bounded.err.find("8850"), std::string::npos) << bounded.err;
     EXPECT_EQ(relevo(with(verb("when", whole(), over), {"--highest", "50"})).err, "");
     // In a polar night no terrain matters.
     Raster north;

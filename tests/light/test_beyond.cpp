@@ -35,6 +35,21 @@ TEST(TerrainBeyond, MattersAsFarAsItsShadowReaches) {
     EXPECT_GT(found->least_m, 100);
     EXPECT_LT(found->least_m, 100 + 2010.0 / 24 + 20) << "the post nearest to the edge";
     EXPECT_NEAR(found->needed_m, 300, 2010.0 / 24 + 20);
+    // As high as the Earth's, it matters everywhere: 8750 m over the plain reach as far.
+    ASSERT_TRUE(found->earths);
+    EXPECT_EQ(found->earths->highest_m, 8850);
+    EXPECT_EQ(found->earths->share, 1);
+    EXPECT_NEAR(found->earths->needed_m, 8750, 50);
+    EXPECT_TRUE(found->text(kHides).ends_with(
+        "if none is higher than 400 m (the DEM's highest post); at 100 %, up to 9 km, if none is "
+        "higher than 8850 m (the Earth's)"))
+        << found->text(kHides);
+    EXPECT_EQ(found->advice(),
+              "mountains outside this DEM could change 17 % of the values if as high as its "
+              "highest post (400 m), all values if 8850 m; use a DEM 1 or 9 km larger on each "
+              "side, or set --highest");
+    // Only the bound that is given counts.
+    EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(45)}, {}, 400)->earths);
     // What is known to be lower does not.
     EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(45)}, {}, 100));
     // At 5 degrees it reaches 3.4 km: over all of the DEM.

@@ -37,6 +37,37 @@ class Tables {
     std::optional<sun::PositionTable> table_;
 };
 
+std::optional<double> farthest_m(const std::vector<OpenSector>& sectors) {
+    if (sectors.empty()) return std::nullopt;
+    return std::ranges::max_element(sectors, {}, &OpenSector::needed_m)->needed_m;
+}
+
+/// Where terrain of a height could hide a summit, or the sun over it.
+std::vector<OpenSector> open_for(const TerrainHorizon& horizon, const Alignments& found,
+                                 double highest_m) {
+    std::vector<OpenSector> sectors;
+    const auto look = [&](double azimuth_rad, double elevation_rad, double until_m) {
+        if (const auto open =
+                open_beyond(horizon, horizon.at(azimuth_rad), highest_m, elevation_rad, until_m))
+            sectors.push_back(*open);
+    };
+    if (found.sight.visible)
+        look(found.sight.azimuth_rad, found.sight.elevation_rad, found.sight.distance_m);
+    for (const Alignment& passage : found.passages)
+        if (passage.sun_visible) look(passage.azimuth_rad, passage.elevation_rad, kInfinity);
+    std::ranges::sort(sectors, {}, &Sector::from_azimuth_rad);
+    return sectors;
+}
+
+/// Fills in where terrain beyond the DEM could matter, by `open_for` of its height.
+template <typename OpenFor>
+void settle_open(Doubt& doubt, const dem::Posts& posts, const std::optional<double>& highest_m,
+                 const OpenFor& open_for) {
+    doubt.highest_m = highest_beyond_m(posts, highest_m);
+    doubt.open = open_for(doubt.highest_m);
+    if (!highest_m) doubt.earths_needed_m = farthest_m(open_for(kHighestTerrain_m));
+}
+
 }  // namespace
 
 double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& given_m) {
@@ -46,8 +77,8 @@ double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& gi
 Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& profile,
                const std::optional<double>& highest_m) {
     Doubt doubt;
-    doubt.highest_m = highest_beyond_m(horizon.posts(), highest_m);
-    doubt.open = open_sectors(horizon, profile, doubt.highest_m);
+    settle_open(doubt, horizon.posts(), highest_m,
+                [&](double bound_m) { return open_sectors(horizon, profile, bound_m); });
     std::vector<bool> holes;
     for (const HorizonPoint& point : profile)
         holes.push_back(point.hole);
@@ -60,7 +91,6 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
     Doubt doubt;
     doubt.matters = Matters::Sun;
     doubt.body = light.body();
-    doubt.highest_m = highest_beyond_m(light.horizon().posts(), highest_m);
     const auto n = profile.size();
     std::vector<double> lowest_rad(n, kInfinity);
     std::vector<bool> holes(n, false);
@@ -104,7 +134,9 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
                      [&](std::size_t k, double) { holes[k] = true; });
         }
     }
-    doubt.open = open_sectors(light.horizon(), profile, doubt.highest_m, lowest_rad);
+    settle_open(doubt, light.horizon().posts(), highest_m, [&](double bound_m) {
+        return open_sectors(light.horizon(), profile, bound_m, lowest_rad);
+    });
     doubt.holes = sectors_of(holes);
     return doubt;
 }
@@ -113,19 +145,8 @@ Doubt doubt_of(const TerrainHorizon& horizon, const Alignments& found,
                const std::optional<double>& highest_m) {
     Doubt doubt;
     doubt.matters = Matters::Alignment;
-    doubt.highest_m = highest_beyond_m(horizon.posts(), highest_m);
-    const auto look = [&](double azimuth_rad, double elevation_rad, double until_m) {
-        if (const auto open = open_beyond(horizon, horizon.at(azimuth_rad), doubt.highest_m,
-                                          elevation_rad, until_m))
-            doubt.open.push_back(*open);
-    };
-    if (found.sight.visible)
-        look(found.sight.azimuth_rad, found.sight.elevation_rad, found.sight.distance_m);
-    for (const Alignment& passage : found.passages)
-        if (passage.sun_visible) look(passage.azimuth_rad, passage.elevation_rad, kInfinity);
-    std::sort(doubt.open.begin(), doubt.open.end(), [](const Sector& a, const Sector& b) {
-        return a.from_azimuth_rad < b.from_azimuth_rad;
-    });
+    settle_open(doubt, horizon.posts(), highest_m,
+                [&](double bound_m) { return open_for(horizon, found, bound_m); });
     return doubt;
 }
 

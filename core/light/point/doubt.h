@@ -25,6 +25,8 @@ struct Doubt {
     std::vector<Sector> holes;
     double not_known_s = 0;  ///< of the direct light, for the voids
     double highest_m = 0;    ///< what was assumed of the terrain beyond
+    /// How far terrain as high as the Earth's highest could matter; none if the height was given.
+    std::optional<double> earths_needed_m{};
     /// The lowest sun or moon that shines, where that is below the level horizon.
     std::optional<LightEdge> lowest_sun{};
     Matters matters = Matters::Horizon;

@@ -9,6 +9,7 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "light/point/doubt.h"
 #include "light/point/edge_ground.h"
 #include "light/point/horizon.h"
 #include "light/raster/sun_field.h"
@@ -39,8 +40,8 @@ class Looking {
   public:
     Looking(const SunTerrain& terrain, const Window& part, const std::optional<double>& highest_m)
         : posts_(terrain.posts()), curvature_(terrain.curvature()) {
-        found_.highest_m =
-            highest_m.value_or(std::min<double>(posts_.highest_m(), kHighestTerrain_m));
+        bounds_.push_back({.highest_m = highest_beyond_m(posts_, highest_m)});
+        if (!highest_m) bounds_.push_back({.highest_m = kHighestTerrain_m});
         const Window w = terrain.window_of(part);
         std::vector<float> one;
         for (int i = 0; i < kSide * kSide; ++i) {
@@ -50,8 +51,10 @@ class Looking {
             if (!std::isnan(height_m))
                 eyes_.push_back({column, row, height_m, posts_.grid().place(column, row)});
         }
-        least_m_.resize(eyes_.size(), kInfinity);
-        reach_m_.resize(eyes_.size(), -kInfinity);
+        for (Bound& bound : bounds_) {
+            bound.least_m.resize(eyes_.size(), kInfinity);
+            bound.reach_m.resize(eyes_.size(), -kInfinity);
+        }
     }
 
     /// Calls `look` with each of them and its number, on several threads.
@@ -99,36 +102,53 @@ class Looking {
 
     /// Terrain beyond a view that stands over a tangent matters. Of one eye, one call at a time.
     void consider(std::size_t i, const View& view, double tangent) {
-        const double over_m = found_.highest_m - eyes_[i].height_m;
         const double needed_m = eyes_[i].height_m + view.until_m * tangent +
                                 curvature_ * view.until_m * view.until_m / 2;
-        if (!(needed_m < found_.highest_m) || !(over_m > 0)) return;
-        const double reach_m =
-            (std::sqrt(tangent * tangent + 2 * curvature_ * over_m) - tangent) / curvature_;
-        least_m_[i] = std::min(least_m_[i], needed_m);
-        reach_m_[i] = std::max(reach_m_[i], reach_m - view.until_m);
+        for (Bound& bound : bounds_) {
+            const double over_m = bound.highest_m - eyes_[i].height_m;
+            if (!(needed_m < bound.highest_m) || !(over_m > 0)) continue;
+            const double reach_m =
+                (std::sqrt(tangent * tangent + 2 * curvature_ * over_m) - tangent) / curvature_;
+            bound.least_m[i] = std::min(bound.least_m[i], needed_m);
+            bound.reach_m[i] = std::max(bound.reach_m[i], reach_m - view.until_m);
+        }
     }
 
-    std::optional<Beyond> found() {
-        const auto touched =
-            std::count_if(least_m_.begin(), least_m_.end(), [](double m) { return m < kInfinity; });
-        if (touched == 0) return std::nullopt;
-        found_.share = double(touched) / double(eyes_.size());
-        found_.least_m = *std::min_element(least_m_.begin(), least_m_.end());
-        found_.needed_m =
-            std::max(found_.needed_m, *std::max_element(reach_m_.begin(), reach_m_.end()));
-        return found_;
+    std::optional<Beyond> found() const {
+        const std::optional<BeyondBound> first = found(bounds_.front());
+        if (!first) return std::nullopt;
+        Beyond result{*first};
+        if (bounds_.size() > 1) result.earths = found(bounds_.back());
+        return result;
     }
 
   private:
+    struct Bound {
+        double highest_m = 0;
+        std::vector<double> least_m{}, reach_m{};  // of each eye: that matters, and how far beyond
+    };
+
     static int place(int i, int count) { return static_cast<int>((i + 0.5) * count / kSide); }
+
+    static std::optional<BeyondBound> found(const Bound& bound) {
+        const auto touched =
+            std::ranges::count_if(bound.least_m, [](double m) { return m < kInfinity; });
+        if (touched == 0) return std::nullopt;
+        return BeyondBound{.highest_m = bound.highest_m,
+                           .share = double(touched) / double(bound.least_m.size()),
+                           .least_m = std::ranges::min(bound.least_m),
+                           .needed_m = std::max(0.0, std::ranges::max(bound.reach_m))};
+    }
 
     const dem::Posts& posts_;
     double curvature_;
     std::vector<Eye> eyes_;
-    std::vector<double> least_m_, reach_m_;  // of each: that matters, and how far beyond the DEM
-    Beyond found_;
+    std::vector<Bound> bounds_;  // the first one is what is reported
 };
+
+long percent_of(double share) {
+    return std::lround(std::max(1.0, 100 * share));
+}
 
 /// Towards a sun from the middle of a DEM, posts a metre.
 std::optional<glm::dvec2> way_of(const SunField& sky, const dem::Grid& grid) {
@@ -140,19 +160,33 @@ std::optional<glm::dvec2> way_of(const SunField& sky, const dem::Grid& grid) {
 }  // namespace
 
 std::string Beyond::text(const std::string& would) const {
+    const std::string of_the_dem = earths ? " (the DEM's highest post)" : "";
+    const std::string sentence = fmt::format(
+        "mountains outside the DEM could {} at {} % of the posts: those above {:.0f} m, up to "
+        "{:.0f} km from the edge, if none is higher than {:.0f} m{}",
+        would, percent_of(share), least_m, needed_m / 1000, highest_m, of_the_dem);
+    if (!earths) return sentence;
     return fmt::format(
-        "mountains outside the DEM could {} at {:.0f} % of the posts: those above {:.0f} m, up to "
-        "{:.0f} km from the edge, if none is higher than {:.0f} m",
-        would, std::max(1.0, 100 * share), least_m, needed_m / 1000, highest_m);
+        "{}; at {} %, up to {:.0f} km, if none is higher than {:.0f} m (the Earth's)", sentence,
+        percent_of(earths->share), earths->needed_m / 1000, earths->highest_m);
 }
 
 std::string Beyond::advice() const {
-    const long percent = std::lround(std::max(1.0, 100 * share));
+    const auto values = [](double share) {
+        const long percent = percent_of(share);
+        return percent == 100 ? "all" : fmt::format("{} % of the", percent);
+    };
+    const auto km = [](const BeyondBound& of) { return std::max(1.0, of.needed_m / 1000); };
+    if (!earths)
+        return fmt::format(
+            "mountains outside this DEM could change {} values; use a DEM {:.0f} km larger on each "
+            "side, or bound them with --highest",
+            values(share), km(*this));
     return fmt::format(
-        "mountains outside this DEM could change {} values; use a DEM {:.0f} km larger on each "
-        "side, or bound them with --highest",
-        percent == 100 ? "all" : fmt::format("{} % of the", percent),
-        std::max(1.0, needed_m / 1000));
+        "mountains outside this DEM could change {} values if as high as its highest post "
+        "({:.0f} m), {} values if {:.0f} m; use a DEM {:.0f} or {:.0f} km larger on each side, or "
+        "set --highest",
+        values(share), highest_m, values(earths->share), earths->highest_m, km(*this), km(*earths));
 }
 
 std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part,

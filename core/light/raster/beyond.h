@@ -10,12 +10,18 @@
 
 namespace relevo::light {
 
-/// What terrain beyond a DEM could do to a raster of light, as far as some of its posts tell.
-struct Beyond {
+/// What terrain beyond a DEM could do to a raster of light if none is higher than a bound.
+struct BeyondBound {
+    double highest_m = 0;  ///< the bound
     double share = 0;      ///< of the posts at which such terrain could change a figure
     double least_m = 0;    ///< the height from which on it could, at the edge of the DEM
-    double highest_m = 0;  ///< what was assumed of its height
     double needed_m = 0;   ///< how far beyond the edge it could stand and matter
+};
+
+/// The same as far as some of the DEM's posts show it: for the bound given, else for the DEM's
+/// highest post.
+struct Beyond : BeyondBound {
+    std::optional<BeyondBound> earths{};  ///< for the Earth's highest terrain, if no bound is given
 
     /// A sentence without its full stop.
     /// @param would  what such terrain would do: kHides or kStandsOver
