@@ -65,6 +65,8 @@ class Reader {
   private:
     void header() {
         bool named = false;
+        while (at_ < words_.size() && groups::archive_date(words_[at_]))
+            ++at_;
         for (; at_ < words_.size(); ++at_) {
             if (words_[at_] == "METAR" || words_[at_] == "SPECI")
                 named = true;
@@ -143,7 +145,8 @@ Metar parse_metar(std::string_view text) {
 }
 
 bool is_report(std::string_view text) {
-    const std::vector<std::string> words = words_of(text);
+    std::vector<std::string> words = words_of(text);
+    words.erase(words.begin(), std::ranges::find_if_not(words, groups::archive_date));
     if (words.size() < 2) return false;
     if (words[0] == "METAR" || words[0] == "SPECI" || words[1] == "NIL") return true;
     return is_station(words[0]) && words[1].size() == 7 && words[1].back() == 'Z';

@@ -49,8 +49,9 @@ struct Metar {
     std::optional<double> qnh_hpa;  ///< pressure reduced to sea level by the standard atmosphere
 };
 
-/// Reads one report. Runway visual range, runway states, recent weather, wind shear, colour states
-/// and all after RMK, NOSIG, BECMG, TEMPO and TREND are skipped.
+/// Reads one report; the date that archives have before it is skipped. Runway visual range, runway
+/// states, recent weather, wind shear, colour states and all after RMK, NOSIG, BECMG, TEMPO and
+/// TREND are skipped.
 /// @throws Error (BadInput) `weather: METAR LSZB: "BKNX40": what is wrong`; also for NIL
 /// Source: WMO-No. 306, Manual on Codes, I.1, FM 15 METAR and FM 16 SPECI; for US reports FMH-1.
 Metar parse_metar(std::string_view text);

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "weather/metar.h"
+#include "weather/metar_groups.h"
 
 namespace relevo::weather {
 namespace {
@@ -17,10 +18,9 @@ constexpr std::size_t kMostTried = 1000;  // lines from the end; errors take tim
 
 /// "2026/06/01 11:50", which NOAA's files have before each report.
 bool is_date_line(std::string_view line) {
-    return line.size() >= 10 && line[4] == '/' && line[7] == '/' &&
-           std::ranges::all_of(line, [](char c) {
-               return (c >= '0' && c <= '9') || c == '/' || c == ':' || c == ' ';
-           });
+    std::vector<std::string> words = split(line, ' ');
+    std::erase(words, "");
+    return std::ranges::all_of(words, groups::archive_date);
 }
 
 /// Reports of a file: lines, with those joined that go on after blanks.

@@ -68,6 +68,16 @@ std::optional<double> celsius(std::string_view text) {
 
 }  // namespace
 
+bool archive_date(std::string_view word) {
+    if (word.ends_with('Z')) word.remove_suffix(1);
+    std::string shape(word);
+    std::ranges::replace_if(shape, is_digit, '0');
+    static constexpr std::array<std::string_view, 9> kShapes = {
+        "0000-00-00",   "0000/00/00",          "00:00",    "00:00:00",  "0000-00-00T00:00",
+        "000000000000", "0000-00-00T00:00:00", "00000000", "0000000000"};
+    return std::ranges::find(kShapes, shape) != kShapes.end();
+}
+
 bool time(std::string_view group, Metar& to) {
     if (group.size() != 7 || group.back() != 'Z' || !all_digits(group.substr(0, 6))) return false;
     to.day = whole(group.substr(0, 2));
@@ -134,6 +144,14 @@ bool visibility(std::string_view group, Metar& to) {
         if (!found) return false;
         to.visibility_m = *found * kMile_m;
         to.visibility_is_least = to.visibility_is_least || *found >= 10;
+        return true;
+    }
+    if (group.ends_with("KM")) {
+        group.remove_suffix(2);
+        const bool least = take(group, "P");
+        if (!all_digits(group) || group.size() > 3) return false;
+        to.visibility_is_least = least;
+        to.visibility_m = whole(group) * 1000.0;
         return true;
     }
     if (group.ends_with("NDV")) group.remove_suffix(3);
@@ -273,10 +291,12 @@ bool skipped(std::string_view group) {
     const auto digits = [&](std::size_t at, std::size_t count) {
         return group.size() >= at + count && all_digits(group.substr(at, count));
     };
-    // Runway: R24/1200FT, R14L/M0600V1200U, R88/290195, 88290195, and R24 after WS. Sector of the
-    // wind: 210V270. Least visibility by direction: 1500SW. Pressure at the station: QFE742. Snow
-    // on the runway, clearing, colour states.
+    // Runway: R24/1200FT, R14L/M0600V1200U, R88/290195, 88290195, 24CLRD70, 14LCLRD//, and R24
+    // after WS. Sector of the wind: 210V270. Least visibility by direction: 1500SW. Pressure at the
+    // station: QFE742. Snow on the runway, clearing, colour states.
     if (group.size() >= 4 && group[0] == 'R' && digits(1, 2) && group.find('/') <= 4) return true;
+    if (group.starts_with("R/")) return true;  // of all runways: R/SNOCLO
+    if (digits(0, 2) && group.substr(2).find("CLRD") <= 1) return true;
     if (group.size() >= 3 && group.size() <= 4 && group[0] == 'R' && digits(1, 2) &&
         group.substr(3).find_first_not_of("LCR") == std::string_view::npos)
         return true;

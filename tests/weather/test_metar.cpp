@@ -136,6 +136,42 @@ TEST(Metar, GroupsThatSayNothingOfThePictureAreSkipped) {
     EXPECT_EQ(parse_metar("KSEA 011800Z 24009KT 10SM CLR 17/10 A2992 $").clouds.size(), 0u);
 }
 
+TEST(Metar, StatesOfRunwaysAreSkipped) {
+    for (const char* group : {"R/SNOCLO", "R24/SNOCLO", "SNOCLO", "24CLRD70", "R24/CLRD70",
+                              "14LCLRD//", "R88/CLRD//", "88CLRD95"}) {
+        const Metar read = parse_metar(std::string("LSZB 051250Z 24009KT 9999 BKN040 M01/M02 ") +
+                                       group + " Q1014");
+        EXPECT_EQ(read.clouds.size(), 1u) << group;
+        EXPECT_FALSE(read.sky_is_clear) << group;
+        EXPECT_EQ(*read.qnh_hpa, 1014) << group;
+    }
+    EXPECT_THROW(parse_metar("LSZB 051250Z 4CLRD70"), Error);
+}
+
+TEST(Metar, VisibilityInKilometres) {
+    const Metar far = parse_metar("SKBO 051250Z 24009KT 20KM FEW015 17/13 Q1014");
+    EXPECT_EQ(*far.visibility_m, 20000);
+    EXPECT_FALSE(far.visibility_is_least);
+    EXPECT_EQ(*parse_metar("SKBO 051250Z 8KM").visibility_m, 8000);
+    EXPECT_TRUE(parse_metar("SKBO 051250Z P15KM").visibility_is_least);
+    EXPECT_THROW(parse_metar("SKBO 051250Z KM"), Error);
+    EXPECT_THROW(parse_metar("SKBO 051250Z 2XKM"), Error);
+}
+
+TEST(Metar, ADateOfAnArchiveIsSkipped) {
+    for (const char* date : {"2024-01-05 12:50 METAR ", "202401051250 METAR ", "2024-01-05 12:50 ",
+                             "2024/01/05 12:50 ", "2024-01-05T12:50Z METAR COR ", "METAR "}) {
+        const std::string text = date + std::string("LSZB 051250Z 24009KT 9999 17/13 Q1014");
+        EXPECT_TRUE(is_report(text)) << text;
+        const Metar read = parse_metar(text);
+        EXPECT_EQ(read.station, "LSZB") << text;
+        EXPECT_EQ(read.day, 5) << text;
+        EXPECT_EQ(*read.qnh_hpa, 1014) << text;
+    }
+    EXPECT_THROW(parse_metar("2024-01-05 12:50"), Error);
+    EXPECT_THROW(parse_metar("2024-1-5 LSZB 051250Z"), Error);
+}
+
 TEST(Metar, SnowThatTheWindRaisesDoesNotFall) {
     EXPECT_FALSE(parse_metar("LSZB 011150Z 9999 DRSN").present.snow);
     EXPECT_FALSE(parse_metar("LSZB 011150Z 2000 BLSN").present.snow);

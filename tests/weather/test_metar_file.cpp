@@ -23,6 +23,13 @@ TEST_F(MetarFile, OfNoaaHasADateAndAReport) {
               "LSZB 011150Z 24009KT 9999 FEW015 17/13 Q1014");
 }
 
+TEST_F(MetarFile, OfAnArchiveHasADateBeforeEachReport) {
+    EXPECT_EQ(parse_metar(report_of(file("202401051220 METAR LSZB 051220Z 9999 17/13 Q1013=\n"
+                                         "202401051250 METAR LSZB 051250Z 9999 17/13 Q1014=\n")))
+                  .minute,
+              50);
+}
+
 TEST_F(MetarFile, GivesTheLastReportThatCanBeRead) {
     EXPECT_EQ(report_of(file("LSZB 011120Z 24009KT 9999 17/13 Q1014\n"
                              "LSZB 011150Z 24009KT 9999\n     BKN040 17/13 Q1013=\n"
