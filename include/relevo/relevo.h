@@ -98,8 +98,8 @@ typedef struct relevo_raster {
     /* Row by row; NaN for voids. Metres, unless `options` or the vertical part of the CRS say
      * another unit. */
     const float* heights_m;
-    size_t count;           /* columns * rows */
-    int32_t columns, rows;  /* at least 2 each */
+    size_t count;          /* columns * rows */
+    int32_t columns, rows; /* at least 2 each */
     /* From corners of cells to coordinates of the CRS, as GDAL's geotransform:
      * x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5] row. */
     double transform[6];

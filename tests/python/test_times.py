@@ -99,6 +99,11 @@ def test_clocks_that_are_put_back(dem):
     assert position_at(dem)(twice, zone=zone) == position_at(dem)("2026-10-25T00:30Z")
 
 
+def test_zones_of_scenes(dem):
+    scene = {"time": {"zone": ZURICH}}
+    assert view_at(dem)("2026-06-21T12:00", scene=scene).startswith("2026-06-21T10:00")
+
+
 def test_a_view_keeps_its_zone(dem):
     with dem.view("2026-06-21T12:00", (16, 16), zone=ZURICH, device="software") as view:
         view.set("2026-06-21T14:00")

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 from typing import Any
 
 import numpy
 
 from ._errors import BadInput
+from ._times import zone_text
 
 
 def _plain(value: Any) -> Any:
-    """What json does not know of numpy."""
+    """What json does not know of numpy, and time zones."""
+    if isinstance(value, datetime.tzinfo):
+        return zone_text(value)
     if isinstance(value, numpy.generic):
         return value.item()
     if isinstance(value, numpy.ndarray):

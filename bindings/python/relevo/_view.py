@@ -186,7 +186,7 @@ def _members(scene: Optional[Change]) -> dict[str, Any]:
 
 def _zone_of(scene: Mapping[str, Any]) -> Optional[str]:
     zone = scene.get("time", {}).get("zone")
-    return zone if isinstance(zone, str) else None
+    return None if zone is None else zone_text(zone)
 
 
 def _size(size: tuple[int, int]) -> list[int]:
