@@ -143,25 +143,38 @@ TEST_F(PluginTools, ABadIdIsAClearError) {
 
 TEST_F(PluginTools, ACopyDrawsWhatTheOriginalDraws) {
     const nlohmann::json list = nlohmann::json::parse(relevo({"plugins", "--json"}).out)["plugins"];
+    std::vector<std::string> ids;
+    nlohmann::json choices = nlohmann::json::array();
     for (const auto& plugin : list) {
-        const std::string id = plugin["id"];
+        const std::string id = plugin["id"], copy = "copied" + id;
         const Result made =
-            relevo({"plugins", "new", "copied" + id, "--from", id, "--into", path("copies")});
+            relevo({"plugins", "new", copy, "--from", id, "--into", path("copies")});
         if (made.status != 0) {
             EXPECT_THAT(made.err, HasSubstr("a native plugin cannot be copied")) << id;
             continue;
         }
-        const auto picture = [&](const std::string& only) {
-            const Result run = capture({"--plugin-path", path("copies"), "--time",
-                                        "2026-06-21T18:30-04:00", "--only", only});
-            EXPECT_EQ(run.status, 0) << run.err;
-            return image::read(path("a.png"));
-        };
-        EXPECT_EQ(image::compare(picture("copied" + id), picture(id)).worst, 0) << id;
-        const std::string glsl =
-            read_text(path("copies/copied" + id + "/copied" + id + ".glsl"), "test");
+        ids.push_back(id);
+        for (const std::string& only : {id, copy})
+            choices.push_back({{"name", only}, {"only", nlohmann::json::array({only})}});
+        const std::string glsl = read_text(path("copies/" + copy + "/" + copy + ".glsl"), "test");
         EXPECT_EQ(glsl.find(" " + id + "_on_"), std::string::npos) << id;
     }
+    ASSERT_GT(ids.size(), 2u);
+    write("job.json", nlohmann::json{{"format", 1},
+                                     {"dem", {{"files", {bundled_dem()}}}},
+                                     {"time", {{"at", "2026-06-21T18:30-04:00"}}},
+                                     {"picture", {{"size", {64, 48}}}},
+                                     {"sweep", {{{"effects", choices}}}},
+                                     {"output", "{effects}.png"}}
+                          .dump());
+    const Result run = relevo({"-q", "run", path("job.json"), "--plugin-path", path("copies")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    for (const std::string& id : ids)
+        EXPECT_EQ(image::compare(image::read(path("copied" + id + ".png")),
+                                 image::read(path(id + ".png")))
+                      .worst,
+                  0)
+            << id;
     EXPECT_EQ(relevo({"plugins", "--plugin-path", path("copies")}).status, 0);
 }
 
