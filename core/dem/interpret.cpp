@@ -156,6 +156,23 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, const LoadOptions
     return wanted == 0 ? 1 : wanted;
 }
 
+namespace {
+
+/// The file's word for the unit of a band: GDAL's, else that of the metadata in which GDAL leaves
+/// it. Empty where there is none.
+std::string unit_word(GDALRasterBandH band) {
+    const auto has = [](const char* word) { return word && !means_no_unit(word); };
+    if (const char* const word = GDALGetRasterUnitType(band); has(word)) return word;
+    for (const char* key : {"GRIB_UNIT", "units", "unit"})
+        if (const char* const word = GDALGetMetadataItem(band, key, nullptr); has(word))
+            return word;
+    // FITS Standard 4.0, section 4.4.2.5: of the values.
+    const char* const word = GDALGetMetadataItem(GDALGetBandDataset(band), "BUNIT", nullptr);
+    return has(word) ? word : "";
+}
+
+}  // namespace
+
 void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& crs,
                  const LoadOptions& options, Description& about) {
     constexpr std::size_t kLongestUnit = 40;  // of a damaged file it may be anything
@@ -164,8 +181,7 @@ void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& 
         return;
     }
     const std::string& given = options.unit;
-    std::string word = GDALGetRasterUnitType(band);
-    if (means_no_unit(word)) word.clear();
+    const std::string word = unit_word(band);
     if (!given.empty()) {
         about.unit = parse_unit(given, "--unit");
         about.unit_source = UnitSource::Option;

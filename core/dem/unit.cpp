@@ -20,9 +20,14 @@ struct Known {
     std::array<std::string_view, 14> words;  // letters only, in small ones
 };
 
+/// What may follow a unit: "metres above EGM96", "m (NAVD88)", "m a.s.l.".
+constexpr std::array<std::string_view, 5> kSurfaces = {" above ", " over ", " relative to ", " (",
+                                                       " a.s.l."};
+
 // What GDAL's drivers, PROJ and people write.
 const std::array kUnits = {
-    Known{"m", 1, {"m", "metre", "metres", "meter", "meters", "mtr", "metros", "mètre", "mètres"}},
+    Known{"m", 1, {"m", "metre", "metres", "meter", "meters", "mtr", "metros", "mètre", "mètres",
+               "masl", "gpm", "geopotentialmetre", "geopotentialmeter"}},
     Known{"ft",
           kFoot_m,
           {"ft", "foot", "feet", "internationalfoot", "internationalfeet", "footinternational",
@@ -44,6 +49,16 @@ std::string letters_of(std::string_view word) {
     return letters;
 }
 
+std::optional<Unit> unit_named(std::string_view word) {
+    // Powers, quotients and multiples are other units: "m2", "m/s", "0.001 m".
+    if (word.find_first_of("0123456789/^*") != word.npos) return std::nullopt;
+    const std::string letters = letters_of(word);
+    for (const Known& known : kUnits)
+        if (!letters.empty() && contains(known.words, letters))
+            return Unit{std::string(known.name), known.metres};
+    return std::nullopt;
+}
+
 }  // namespace
 
 bool means_no_unit(std::string_view word) {
@@ -54,11 +69,11 @@ bool means_no_unit(std::string_view word) {
 }
 
 std::optional<Unit> known_unit(std::string_view word) {
-    const std::string letters = letters_of(word);
-
-    for (const Known& known : kUnits)
-        if (!letters.empty() && contains(known.words, letters))
-            return Unit{std::string(known.name), known.metres};
+    const std::string small = lower(word);
+    if (const std::optional<Unit> unit = unit_named(small)) return unit;
+    for (const std::string_view surface : kSurfaces)
+        if (const std::size_t end = small.find(surface); end != small.npos)
+            if (const std::optional<Unit> unit = unit_named(small.substr(0, end))) return unit;
     return std::nullopt;
 }
 

@@ -27,6 +27,10 @@ const std::filesystem::path& folder() {
     return made;
 }
 
+std::string small_case(const std::string& name) {
+    return (source_dir() / "tests/data/cases" / name).string();
+}
+
 std::string write_raster(const std::filesystem::path& path, const Raster& raster) {
     GDALAllRegister();
     // Formats that GDAL only copies into go through memory.

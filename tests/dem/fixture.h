@@ -13,6 +13,9 @@ namespace relevo::test {
 /// A folder for the rasters of the case that runs, empty when the case asks first.
 const std::filesystem::path& folder();
 
+/// A file of `tests/data/cases`.
+std::string small_case(const std::string& name);
+
 /// A raster to be written with GDAL, for tests that must run anywhere.
 struct Raster {
     std::string driver = "GTiff";

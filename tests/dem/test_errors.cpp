@@ -233,6 +233,24 @@ TEST(LoadError, UnknownUnit) {
               "exit 2: --unit: parsec: a unit of height, expected m, ft, us-ft, cm, mm, dm or km");
 }
 
+TEST(LoadError, UnitsInMetadataCount) {
+    EXPECT_EQ(refusal("climate.tif", {.about = {{"units", "K"}}}),
+              "band 1 is in \"K\", expected a unit of height; if these are heights, pass "
+              "--unit m, ft, us-ft, cm, mm, dm or km");
+    const std::string feet =
+        write_raster(folder() / "feet.tif", {.about = {{"Units", "feet above NAVD88"}}});
+    EXPECT_EQ(load(feet).about.unit.name, "ft");
+    EXPECT_EQ(load(feet).about.unit_source, UnitSource::Band);
+    const std::string silent =
+        write_raster(folder() / "silent.tif", {.about = {{"units", "unknown"}}});
+    EXPECT_EQ(load(silent).about.unit_source, UnitSource::Assumed);
+    const std::string radar = test::small_case("grib/gfs.t06z.pgrb2.10p0.f010.grib2");
+    EXPECT_EQ(test::error_of([&] { load(radar); }),
+              "exit 3: " + radar +
+                  ": band 1 is in \"[dB]\", expected a unit of height; if these are heights, pass "
+                  "--unit m, ft, us-ft, cm, mm, dm or km");
+}
+
 /// A photograph, as far as neighbours go: each colour is its own affair.
 double photograph(int column, int row, int band) {
     return (column * 97 + row * 61 + band * 131 + column * row * 7) % 256;

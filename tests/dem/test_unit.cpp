@@ -24,10 +24,17 @@ TEST(Unit, WordsOfFilesAndPeople) {
         {"cm", "cm", 0.01},
         {"centimeters", "cm", 0.01},
         {"km", "km", 1000},
+        {"[m]", "m", 1},
+        {"gpm", "m", 1},
+        {"metres above EGM96", "m", 1},
+        {"Meters (NAVD88)", "m", 1},
+        {"m a.s.l.", "m", 1},
+        {"foot (US survey) above NAVD88", "us-ft", 1200.0 / 3937},
     };
     for (const auto& c : cases)
         EXPECT_EQ(known_unit(c.word), (Unit{c.name, c.metres})) << c.word;
-    for (const char* word : {"", "furlong", "degree", "K", "m/s", "1"})
+    for (const char* word : {"", "furlong", "degree", "K", "m/s", "1", "m/m", "m2", "m**2 s**-2",
+                             "0.001 m", "[dB]", "[-]"})
         EXPECT_FALSE(known_unit(word)) << word;
 }
 
