@@ -249,6 +249,18 @@ void describe_files(const std::vector<Piece>& pieces, const std::vector<OpenInde
                                      index.index.repeated));
 }
 
+/// Warns of tiles whose index contradicts itself.
+void warn_of_contradictions(const std::vector<OpenIndex>& indexes, Description& about) {
+    for (const OpenIndex& index : indexes) {
+        const NamedTiles& tiles = index.index.contradicting;
+        if (tiles.count == 0) continue;
+        about.warnings.push_back(fmt::format(
+            "{}: proj:transform of {} of {} tiles contradicts bbox and geometry, which are used",
+            printable(index.index.path), printable(tiles.text()), index.index.tiles.size()));
+        about.assumptions.push_back(about.warnings.back());
+    }
+}
+
 /// The piece whose grid all are read on, and the places of those that lie on it.
 const Piece& reference_of(const std::vector<Piece>& pieces,
                           std::vector<std::optional<Window>>& places) {
@@ -303,6 +315,7 @@ Frame join(std::vector<Piece>& pieces, std::vector<OpenIndex>& indexes, Descript
     gather(pieces, &Description::assumptions, about);
     gather(pieces, &Description::guesses, about);
     describe_files(pieces, indexes, about);
+    warn_of_contradictions(indexes, about);
     if (resampled > 0)
         guess(about, fmt::format("{} of the {} files {} resampled to the grid of {}", resampled,
                                  pieces.size(), resampled == 1 ? "is" : "are", frame.name));

@@ -77,7 +77,7 @@ class StacReader {
         std::string why;
         if (const auto posts = posts_of(item, *asset, why)) {
             if (crs.empty()) fail("proj:transform without proj:code");
-            return tiles_.add(href, *posts, crs);
+            return tiles_.add(href, *posts, crs, {outline_of(item), box_of(item)});
         }
         if (!why.empty()) fail(why);
         if (const json* box = member(item, *asset, "proj:bbox"); box && !crs.empty())
@@ -151,9 +151,13 @@ class StacReader {
         const auto geometry = item.find("geometry");
         if (geometry != item.end() && geometry->is_object() && geometry->contains("coordinates"))
             add_rings((*geometry)["coordinates"], outline);
-        if (outline.empty() && item.contains("bbox"))
-            outline = {corners(numbers(item["bbox"]), /*in_degrees=*/true)};
-        return outline;
+        return outline.empty() ? box_of(item) : outline;
+    }
+
+    /// The bbox.
+    static Outline box_of(const json& item) {
+        if (!item.contains("bbox")) return {};
+        return {corners(numbers(item["bbox"]), /*in_degrees=*/true)};
     }
 
     /// Of polygons, however deep in lists. No deeper than kDeepest, by the parser.

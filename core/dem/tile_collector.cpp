@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "dem/interpret.h"
 #include "dem/remote.h"
 #include "dem/tile_index_parts.h"
+#include "dem/tile_reach.h"
 
 namespace relevo::dem {
 namespace {
@@ -79,6 +81,33 @@ std::vector<glm::dvec2> vertices_of(const Outline& outline, double turn) {
 
 double turn_of(const std::optional<geo::Crs>& crs) {
     return crs && crs->is_geographic() ? 2 * kPi / crs->unit_si() : 0;
+}
+
+/// Whether posts may be those of an extent, which may be rounded, turned in their CRS, or that of a
+/// survey within them: their cells leave out nothing of it, and are not more than twice as wide or
+/// high.
+bool fills(const TilePosts& posts, Extent stated, const geo::Crs& crs) {
+    constexpr double kShare = 0.02, kCells = 2;
+    const Extent cells = extent_of(posts);
+    const double shift =
+        whole_turns(crs, (cells.west + cells.east - stated.west - stated.east) / 2);
+    stated.west += shift;
+    stated.east += shift;
+    const glm::dvec2 size(stated.east - stated.west, stated.north - stated.south);
+    const glm::dvec2 own(cells.east - cells.west, cells.north - cells.south);
+    const glm::dvec2 slack =
+        glm::max(kShare * size, kCells * own / glm::dvec2(posts.columns, posts.rows));
+    const bool holds = cells.west <= stated.west + slack.x && cells.east >= stated.east - slack.x &&
+                       cells.south <= stated.south + slack.y &&
+                       cells.north >= stated.north - slack.y;
+    return holds && own.x <= 2 * size.x + slack.x && own.y <= 2 * size.y + slack.y;
+}
+
+/// As many posts, north up over an extent.
+TilePosts spread(const TilePosts& posts, const Extent& e) {
+    const std::array<double, 6> g = {e.west, (e.east - e.west) / posts.columns, 0, e.north,
+                                     0,      (e.south - e.north) / posts.rows};
+    return {posts.columns, posts.rows, Affine::of_geotransform(g)};
 }
 
 }  // namespace
@@ -193,6 +222,25 @@ void TileCollector::keep(const std::string& location, IndexedTile tile) {
     index_.tiles.push_back(std::move(tile));
 }
 
+/// The box in a CRS around vertices in another one.
+Extent TileCollector::extent_in(const geo::Crs& own, const std::vector<glm::dvec2>& vertices,
+                                const geo::Crs& crs, const std::string& location) const {
+    std::vector<glm::dvec2> points;
+    const double turn = turn_of(crs), own_turn = turn_of(own);
+    for (const glm::dvec2& vertex : vertices) {
+        points.push_back(own.from_geodetic(crs.to_geodetic(vertex.x, vertex.y)));
+        // On the turn that the outline is on.
+        if (turn > 0 && own_turn > 0)
+            points.back().x += own_turn * std::round(vertex.x / turn - points.back().x / own_turn);
+    }
+    const Extent extent = extent_around(points);
+    if (!is_finite(extent) && is_finite(extent_around(vertices)))
+        fail_row(location, fmt::format("its outline in {} has no place in {}; pass the right CRS "
+                                       "with --crs EPSG:n",
+                                       crs.name(), own.name()));
+    return extent;
+}
+
 void TileCollector::add(const std::string& location, const Outline& outline,
                         const std::optional<geo::Crs>& outline_crs, const std::string& crs) {
     begin_row(location);
@@ -206,20 +254,7 @@ void TileCollector::add(const std::string& location, const Outline& outline,
                                         : nullptr;
     IndexedTile tile;
     if (own && outline_crs && own->text() != outline_crs->text()) {
-        std::vector<glm::dvec2> points;
-        const double turn = turn_of(outline_crs), own_turn = turn_of(*own);
-        for (const glm::dvec2& vertex : vertices) {
-            points.push_back(own->from_geodetic(outline_crs->to_geodetic(vertex.x, vertex.y)));
-            // On the turn that the outline is on.
-            if (turn > 0 && own_turn > 0)
-                points.back().x +=
-                    own_turn * std::round(vertex.x / turn - points.back().x / own_turn);
-        }
-        tile.extent = extent_around(points);
-        if (!is_finite(tile.extent) && is_finite(extent_around(vertices)))
-            fail_row(location, fmt::format("its outline in {} has no place in {}; pass the right "
-                                           "CRS with --crs EPSG:n",
-                                           outline_crs->name(), own->name()));
+        tile.extent = extent_in(*own, vertices, *outline_crs, location);
     } else {
         tile.extent = extent_around(vertices);
     }
@@ -227,13 +262,28 @@ void TileCollector::add(const std::string& location, const Outline& outline,
     keep(location, std::move(tile));
 }
 
-void TileCollector::add(const std::string& location, const TilePosts& posts,
-                        const std::string& crs) {
+void TileCollector::add(const std::string& location, const TilePosts& posts, const std::string& crs,
+                        const std::vector<Outline>& outlines) {
     begin_row(location);
     IndexedTile tile;
     tile.extent = extent_of(posts);
     tile.posts = posts;
-    if (wanted_ == Wanted::Tiles) settle_crs(location, tile, &crs_of(crs));
+    if (wanted_ == Wanted::Locations) return keep(location, std::move(tile));
+    const geo::Crs& own = crs_of(crs);
+    settle_crs(location, tile, &own);
+    std::vector<Extent> stated;
+    for (const Outline& outline : outlines)
+        if (const auto vertices = vertices_of(outline, turn_of(wgs84_)); !vertices.empty())
+            stated.push_back(extent_in(own, vertices, wgs84_, location));
+    const auto agrees = [&](const Extent& extent) { return fills(posts, extent, own); };
+    if (!stated.empty() && std::ranges::none_of(stated, agrees)) {
+        constexpr std::size_t kNamed = 3;
+        tile.extent = stated.front();
+        tile.posts = spread(posts, tile.extent);
+        tile.posts_are_near = true;
+        settle_crs(location, tile, &own);
+        index_.contradicting.add(stem_of(location), kNamed);
+    }
     keep(location, std::move(tile));
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dem/grid.h"
+#include "dem/heightfield.h"
 
 /// Files that name the tiles of a large raster and say where each lies, so that nobody has to open
 /// them: a layer of polygons with a field `location` (gdaltindex; GeoPackage, FlatGeobuf,
@@ -38,6 +39,7 @@ struct IndexedTile {
     Extent extent;         ///< in the tile's CRS
     int crs = -1;          ///< which of TileIndex::crs is the tile's; -1: the index does not say
     std::optional<TilePosts> posts;  ///< STAC: `proj:shape` and `proj:transform`
+    bool posts_are_near = false;  ///< `posts` are `proj:shape` within the outline: half a post off
 };
 
 struct TileIndex {
@@ -46,6 +48,7 @@ struct TileIndex {
     std::vector<geo::Crs> crs;       ///< those of its tiles
     std::vector<IndexedTile> tiles;  ///< in its order: where tiles overlap, the later is on top
     std::size_t repeated = 0;        ///< rows that name a tile again; they are not in `tiles`
+    NamedTiles contradicting;        ///< their posts are not within their outlines, which are taken
 };
 
 /// Whether a name has the ending of an index: ".gpkg", ".fgb", ".shp", ".geojson", ".json".

@@ -38,7 +38,10 @@ class TileCollector {
     void add(const std::string& location, const Outline& outline,
              const std::optional<geo::Crs>& outline_crs, const std::string& crs);
     /// The same, of a tile whose posts the index states.
-    void add(const std::string& location, const TilePosts& posts, const std::string& crs);
+    /// @param outlines  in WGS 84. Where the posts fill none of them, the first counts, and the
+    ///     tile is noted in TileIndex::contradicting
+    void add(const std::string& location, const TilePosts& posts, const std::string& crs,
+             const std::vector<Outline>& outlines);
 
     /// A CRS by its text, parsed once; WGS 84 where only locations are wanted.
     /// @throws Error (BadInput)
@@ -52,6 +55,8 @@ class TileCollector {
 
   private:
     void begin_row(const std::string& location);
+    Extent extent_in(const geo::Crs& own, const std::vector<glm::dvec2>& vertices,
+                     const geo::Crs& crs, const std::string& location) const;
     void settle_crs(const std::string& location, IndexedTile& tile, const geo::Crs* crs);
     void keep(const std::string& location, IndexedTile tile);
     int number_of(const geo::Crs& crs);

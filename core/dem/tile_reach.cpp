@@ -14,9 +14,6 @@
 namespace relevo::dem {
 namespace {
 
-/// Of a post: files whose posts are this near to those of the others are on one grid.
-constexpr double kSamePlace = 0.02;
-
 /// What to add to a raster's longitudes so that they are on the turn of a grid's: tiles on both
 /// sides of the antimeridian, or one that counts past 180 degrees. 0 for projected ones.
 double turn_shift(double middle, const Grid& grid) {
@@ -97,7 +94,10 @@ Window reach_of(const IndexedTile& tile, const TileIndex& index, const Grid& gri
     const bool is_same = crs.text() == grid.crs().text();
     if (tile.posts) {
         const Grid own(tile.posts->columns, tile.posts->rows, tile.posts->affine, crs);
-        if (const std::optional<Window> place = place_on_grid(own, grid)) return *place;
+        constexpr double kNear = 0.5;
+        if (const std::optional<Window> place =
+                place_on_grid(own, grid, tile.posts_are_near ? kNear : kSamePlace))
+            return *place;
         if (!is_same) return place_resampled(own, grid, printable(index.path), reference);
     }
     const std::optional<Window> found =
@@ -117,7 +117,7 @@ double whole_turns(const geo::Crs& crs, double offset) {
     return turn * std::round(offset / turn);
 }
 
-std::optional<Window> place_on_grid(const Grid& own, const Grid& grid) {
+std::optional<Window> place_on_grid(const Grid& own, const Grid& grid, double off_posts) {
     if (own.crs().text() != grid.crs().text()) return std::nullopt;
     const int columns = own.columns(), rows = own.rows();
     const double shift = turn_shift(own.affine()((columns - 1) / 2.0, (rows - 1) / 2.0).x, grid);
@@ -128,7 +128,7 @@ std::optional<Window> place_on_grid(const Grid& own, const Grid& grid) {
     for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(columns - 1, 0),
                                     glm::ivec2(0, rows - 1), glm::ivec2(columns - 1, rows - 1)}) {
         const glm::dvec2 off = post(corner.x, corner.y) - first - glm::dvec2(corner);
-        if (!(std::abs(off.x) < kSamePlace && std::abs(off.y) < kSamePlace)) return std::nullopt;
+        if (!(std::abs(off.x) < off_posts && std::abs(off.y) < off_posts)) return std::nullopt;
     }
     if (!(std::abs(first.x) < kMaxPosts && std::abs(first.y) < kMaxPosts)) return std::nullopt;
     return Window{static_cast<int>(first.x), static_cast<int>(first.y), columns, rows};

@@ -18,9 +18,13 @@ inline constexpr double kMaxPosts = 5e7;
 /// ones.
 double whole_turns(const geo::Crs& crs, double offset);
 
-/// The place of a raster whose posts are on a grid, within a fiftieth of a post; nothing where they
-/// are not.
-std::optional<Window> place_on_grid(const Grid& own, const Grid& grid);
+/// Of a post: files whose posts are this near to those of the others are on one grid.
+inline constexpr double kSamePlace = 0.02;
+
+/// The place of a raster whose posts are on a grid; nothing where they are not.
+/// @param off_posts  how far from the grid's they may be
+std::optional<Window> place_on_grid(const Grid& own, const Grid& grid,
+                                    double off_posts = kSamePlace);
 
 /// The posts of a grid that a raster covers with its cells.
 /// @param name, reference  of both, for messages
