@@ -10,7 +10,6 @@
 #include <cpl_vsi_error.h>
 #include <gdal.h>
 #include <gdal_alg.h>
-#include <gdal_utils.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
@@ -122,7 +121,6 @@ RELEVO_GDAL(GDALGetSpatialRef);
 RELEVO_GDAL(GDALIdentifyDriverEx);
 RELEVO_GDAL(GDALOpenEx);
 RELEVO_GDAL(GDALRasterIO);
-RELEVO_GDAL(GDALReleaseDataset);
 RELEVO_GDAL(GDALSetCacheMax64);
 RELEVO_GDAL(GDALSetDescription);
 RELEVO_GDAL(GDALSetGeoTransform);
@@ -132,14 +130,8 @@ RELEVO_GDAL(GDALSetRasterOffset);
 RELEVO_GDAL(GDALSetRasterScale);
 RELEVO_GDAL(GDALSetRasterUnitType);
 RELEVO_GDAL(GDALSetSpatialRef);
-RELEVO_GDAL(GDALTranslate);
-RELEVO_GDAL(GDALTranslateOptionsFree);
-RELEVO_GDAL(GDALTranslateOptionsNew);
 RELEVO_GDAL(GDALValidateCreationOptions);
 RELEVO_GDAL(GDALVersionInfo);
-RELEVO_GDAL(GDALWarp);
-RELEVO_GDAL(GDALWarpAppOptionsFree);
-RELEVO_GDAL(GDALWarpAppOptionsNew);
 
 RELEVO_GDAL(OGR_FD_GetFieldCount);
 RELEVO_GDAL(OGR_FD_GetFieldDefn);

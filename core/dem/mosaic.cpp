@@ -131,6 +131,17 @@ bool is_whole(const std::vector<std::optional<Window>>& places) {
     return std::ranges::all_of(places, [](const auto& place) { return !!place; });
 }
 
+/// Posts of a raster from one post of a grid to the next, in the middle of the grid, across and
+/// down; at least 1.
+glm::dvec2 reach_between(const Grid& grid, const Grid& own) {
+    const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
+    const auto post = [&](double column, double row) {
+        return own.post(grid.place(middle.x + column, middle.y + row));
+    };
+    const glm::dvec2 across = post(0.5, 0) - post(-0.5, 0), down = post(0, 0.5) - post(0, -0.5);
+    return glm::max(glm::dvec2(1), {std::hypot(across.x, down.x), std::hypot(across.y, down.y)});
+}
+
 /// Has a piece read as it is resampled to another one's grid.
 void resample(Piece& piece, const Frame& frame) {
     if (piece.encoding != Encoding::None)
@@ -144,7 +155,8 @@ void resample(Piece& piece, const Frame& frame) {
     Affine affine = grid.affine();
     affine.x0 = first.x;
     affine.y0 = first.y;
-    piece.resampling = Resampling{affine, grid.crs()};
+    const Grid on(piece.place.columns, piece.place.rows, affine, grid.crs());
+    piece.resampling = Resampling{on, reach_between(on, piece.grid)};
     piece.levels = {{-1, piece.place.columns, piece.place.rows}};
     piece.sparse.reset();
 }

@@ -214,74 +214,6 @@ std::vector<Resolution> levels_of(GDALRasterBandH band) {
     return levels;
 }
 
-/// A view of a dataset, which it keeps alive. GDALClose would pull the ground from under it.
-Dataset view_of(Dataset below, GDALDatasetH made) {
-    GDALReleaseDataset(below.release());
-    return Dataset(made);
-}
-
-/// The dataset as it looks on the DEM's grid, by GDAL's warper: bilinear, holes are NaN and have no
-/// part in what is beside them.
-Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messages) {
-    const std::string band = fmt::format("{}", piece.about.band);
-    const std::string nodata =
-        piece.band_scale.nodata ? fmt::format("{}", *piece.band_scale.nodata) : std::string("none");
-    GdalStrings one_band, onto;
-    for (const std::string& word : {std::string("-of"), std::string("VRT"), std::string("-b"), band,
-                                    std::string("-a_nodata"), nodata})
-        one_band.add(word);
-    if (piece.alpha_band > 0) {
-        one_band.add("-b");
-        one_band.add(fmt::format("{}", piece.alpha_band));
-        onto.add("-srcalpha");
-    }
-    if (piece.has_mask) {
-        one_band.add("-mask");
-        one_band.add(fmt::format("mask,{}", band));
-    }
-    GDALTranslateOptions* const translation = GDALTranslateOptionsNew(one_band.list(), nullptr);
-    const GDALDatasetH plain = GDALTranslate("", dataset.get(), translation, nullptr);
-    GDALTranslateOptionsFree(translation);
-    if (!plain)
-        refuse(piece.path.text(), fmt::format("cannot be resampled, {}", messages.failure("")));
-    dataset = view_of(std::move(dataset), plain);
-
-    const Affine& a = piece.resampling->affine;
-    const double west = a.x0 - a.x_column / 2, north = a.y0 - a.y_row / 2;
-    const auto text = [](double value) { return fmt::format("{:.17g}", value); };
-    for (const std::string& word : {std::string("-of"),
-                                    std::string("VRT"),
-                                    std::string("-r"),
-                                    std::string("bilinear"),
-                                    std::string("-s_srs"),
-                                    piece.grid.crs().wkt(),
-                                    std::string("-t_srs"),
-                                    piece.resampling->crs.wkt(),
-                                    std::string("-te"),
-                                    text(west),
-                                    text(north + a.y_row * piece.place.rows),
-                                    text(west + a.x_column * piece.place.columns),
-                                    text(north),
-                                    std::string("-ts"),
-                                    fmt::format("{}", piece.place.columns),
-                                    fmt::format("{}", piece.place.rows),
-                                    std::string("-ot"),
-                                    std::string(piece.wide ? "Float64" : "Float32"),
-                                    std::string("-dstnodata"),
-                                    std::string("nan"),
-                                    std::string("-ovr"),
-                                    std::string("NONE")})
-        onto.add(word);
-    GDALWarpAppOptions* const warping = GDALWarpAppOptionsNew(onto.list(), nullptr);
-    GDALDatasetH source = dataset.get();
-    const GDALDatasetH warped = GDALWarp("", nullptr, 1, &source, warping, nullptr);
-    GDALWarpAppOptionsFree(warping);
-    if (!warped)
-        refuse(piece.path.text(), fmt::format("cannot be resampled to the grid of the others, {}",
-                                              messages.failure("")));
-    return view_of(std::move(dataset), warped);
-}
-
 /// Notes what the file calls itself, and the band that is read.
 void describe_file(const std::string& given, GDALDatasetH dataset, const LoadOptions& options,
                    Description& about) {
@@ -416,15 +348,12 @@ Dataset Piece::open() const {
         refuse(path.text(), fmt::format("cannot be opened again, {}{}", reason,
                                         remedy_for(path.text(), reason)));
     }
-    return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
+    return dataset;
 }
 
-double Piece::stored(void* dataset, int column, int row) const {
-    if (encoding != Encoding::None || resampling) {
-        float height_m = kHole;
-        read(dataset, levels.front(), {column, row, 1, 1}, &height_m);
+double Piece::stored(void* dataset, int column, int row, float height_m) const {
+    if (encoding != Encoding::None || resampling)
         return (static_cast<double>(height_m) - band_scale.offset_m) / band_scale.scale;
-    }
     const GdalMessages messages;
     double number = 0;
     if (GDALRasterIO(GDALGetRasterBand(dataset, about.band), GF_Read, column, row, 1, 1, &number, 1,
@@ -451,7 +380,7 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
                                             remedy_for(path.text(), reason)));
         }
     };
-    const GDALRasterBandH band = band_of(resampling ? 1 : about.band);
+    const GDALRasterBandH band = band_of(about.band);
     if (encoding != Encoding::None) {
         std::array<std::vector<std::uint8_t>, 3> colours;
         for (int i = 0; i < 3; ++i) {
@@ -469,13 +398,13 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
         fetch(band, height_m, GDT_Float32);
         to_metres(band_scale, height_m, n, height_m);
     }
-    if (alpha_band > 0 && !resampling) {
+    if (alpha_band > 0) {
         std::vector<float> alpha(n);
         fetch(band_of(alpha_band), alpha.data(), GDT_Float32);
         for (std::size_t i = 0; i < n; ++i)
             if (alpha[i] == 0) height_m[i] = kHole;
     }
-    if (has_mask && !resampling) {
+    if (has_mask) {
         std::vector<unsigned char> mask(n);
         fetch(GDALGetMaskBand(band), mask.data(), GDT_Byte);
         for (std::size_t i = 0; i < n; ++i)

@@ -32,10 +32,10 @@ struct Resolution {
     int rows = 0;
 };
 
-/// Onto the DEM's grid: the size is that of Piece::place.
+/// How a raster is read on the DEM's grid (resample.h).
 struct Resampling {
-    Affine affine;  ///< of the first post of the place
-    geo::Crs crs;
+    Grid grid;         ///< the DEM's posts in Piece::place
+    glm::dvec2 reach;  ///< of the tent, in posts of the raster
 };
 
 /// One raster: where it is, what its numbers mean, and how they are read.
@@ -63,13 +63,14 @@ struct Piece {
     /// A handle of one's own. @throws Error (BadInput)
     Dataset open() const;
 
-    /// Heights in metres of a window of a level, NaN for holes; row after row.
+    /// Heights in metres of a window of a level, in its own posts, NaN for holes; row after row.
     /// @throws Error (BadInput) where they cannot all be read
     void read(void* dataset, const Resolution& level, const Window& window, float* height_m) const;
 
-    /// The number that the file stores for a post, which its height is made of.
+    /// The number that the file stores for a post, or would store for its height where that is
+    /// made of several.
     /// @throws Error (BadInput) where it cannot be read
-    double stored(void* dataset, int column, int row) const;
+    double stored(void* dataset, int column, int row, float height_m) const;
 };
 
 /// Opens one file and settles what it means.

@@ -14,7 +14,6 @@
 namespace relevo::dem {
 namespace {
 
-constexpr int kNet = 16;           // points between places that are computed
 constexpr double kMostOff = 0.05;  // cells of the raster, or points where they are wider
 
 }  // namespace

@@ -20,9 +20,11 @@ struct PointsOver {
 /// Where points of a DEM lie among the cells of another raster, in any CRS.
 ///
 /// Accuracy: 0.05 cells of the raster, or 0.05 points where those are wider apart. Between every
-/// 16th point, places are interpolated only where that holds.
+/// kNet-th point, places are interpolated only where that holds.
 class PlacesOver {
   public:
+    static constexpr int kNet = 16;  ///< points between places that are computed
+
     /// @param dem, raster  must outlive this
     PlacesOver(const Grid& dem, const Grid& raster, const PointsOver& points);
 

@@ -49,8 +49,7 @@ Rasters::Rasters(OpenRasters opened, Frame frame, const LoadOptions& options)
             slot.piece = std::make_unique<Piece>(std::move(opened.pieces[number]));
             slot.state = State::Open;
             slot.reach = slot.piece->place;
-            if (opened.handles[number] && !slot.piece->resampling)
-                pool_.give(*slot.piece, std::move(opened.handles[number]));
+            if (opened.handles[number]) pool_.give(*slot.piece, std::move(opened.handles[number]));
         }
         if (entry.index < 0) continue;
         const auto index = static_cast<std::size_t>(entry.index);
@@ -114,7 +113,7 @@ void Rasters::open_tile(int number, Slot& slot) const {
         const std::string differs = difference(number, *piece);
         forget_sentences(piece->about);
         slot.piece = std::move(piece);
-        if (!slot.piece->resampling) pool_.give(*slot.piece, std::move(dataset));
+        pool_.give(*slot.piece, std::move(dataset));
         if (!differs.empty()) {
             const std::lock_guard lock(noting_);
             differing_.emplace(number, differs);

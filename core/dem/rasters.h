@@ -71,6 +71,12 @@ class Rasters {
         }
     }
 
+    /// Reads heights of a window of a level, in posts of Piece::place: as Piece::read(), resampled
+    /// where the raster's grid is not the DEM's. Opens rasters beside it.
+    /// @throws Error (BadInput) where they cannot all be read
+    void read_level(const Piece& piece, void* dataset, const Resolution& level,
+                    const Window& window, float* height_m) const;
+
     /// Notes by how much a tile of an index differs from what it lies over [m].
     void note_step(int number, float most_m) const;
 
@@ -98,6 +104,9 @@ class Rasters {
     void note_broken(int number, const Error& error, bool was_open) const;
     void check_allowed(int number, const std::string& why) const;
     std::string difference(int number, const Piece& piece) const;
+    struct Beyond;  // rasters_resampled.cpp
+    std::vector<float> heights_beyond(const Piece& piece, const Window& posts) const;
+    void add_beyond(int number, Beyond& beyond) const;
 
     std::vector<RasterEntry> entries_;
     std::vector<OpenIndex> indexes_;

@@ -142,6 +142,7 @@ double Source::stored(int column, int row) const {
     const Rasters& rasters = *impl_->rasters;
     const Window post{column, row, 1, 1};
     const std::vector<int> found = rasters.within(post);
+    double of_void = std::numeric_limits<double>::quiet_NaN();
     for (auto number = found.rbegin(); number != found.rend(); ++number) {
         const Piece* const piece = rasters.open(*number);
         if (!piece || common(post, piece->place).is_empty()) continue;
@@ -149,12 +150,13 @@ double Source::stored(int column, int row) const {
         float height_m = kHole;
         rasters.read(*number, *piece, [&](void* dataset) {
             const int x = column - piece->place.column, y = row - piece->place.row;
-            piece->read(dataset, piece->levels.front(), {x, y, 1, 1}, &height_m);
-            stored = piece->stored(dataset, x, y);
+            rasters.read_level(*piece, dataset, piece->levels.front(), {x, y, 1, 1}, &height_m);
+            stored = piece->stored(dataset, x, y, height_m);
         });
         if (!std::isnan(height_m)) return stored;
+        if (std::isnan(of_void)) of_void = stored;
     }
-    return std::numeric_limits<double>::quiet_NaN();
+    return of_void;
 }
 
 TileReport Source::tiles() const {

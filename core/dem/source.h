@@ -90,8 +90,8 @@ class Source {
     double cells_for_means(int side) const;
 
     /// The number that a file stores for a post, as --nodata takes it: before scale, offset and
-    /// unit; of encoded colours the height [m]. Of several files, that of the one on top; NaN where
-    /// there is none.
+    /// unit; of encoded colours the height [m]. Of several files, that of the one on top that has a
+    /// height there, else of the one on top; NaN where there is none.
     double stored(int column, int row) const;
 
     /// Rows at the top of a window that need not be read, because no file stores or covers them.

@@ -144,10 +144,10 @@ void Source::Impl::add_means(int number, const Means& means, const Span& columns
                 if (in_slice == 0) {
                     const std::size_t n = std::min(slice_lines, lines.count - k);
                     cells.resize(strip.width * n);
-                    piece.read(dataset, level,
-                               {within.column, within.row + static_cast<int>(k), within.columns,
-                                static_cast<int>(n)},
-                               cells.data());
+                    rasters->read_level(piece, dataset, level,
+                                        {within.column, within.row + static_cast<int>(k),
+                                         within.columns, static_cast<int>(n)},
+                                        cells.data());
                 }
                 const float* line = &cells[in_slice * strip.width];
                 const double whole = lines.weight(k);

@@ -33,12 +33,13 @@ float put_over(const float* heights, const Window& part, const Window& window,
 }
 
 /// Heights of a part of a piece. @param height_m  with room for them, row after row
-void read_piece(const Piece& piece, void* dataset, const Window& part, float* height_m) {
+void read_piece(const Rasters& rasters, const Piece& piece, void* dataset, const Window& part,
+                float* height_m) {
     const Window own = own_window(piece, part);
     if (piece.sparse && piece.sparse->is_empty(own))
         std::fill_n(height_m, std::ptrdiff_t{part.columns} * part.rows, piece.unstored_m);
     else
-        piece.read(dataset, piece.levels.front(), own, height_m);
+        rasters.read_level(piece, dataset, piece.levels.front(), own, height_m);
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ void Source::Impl::read_part(RasterPart& part) const {
     part.height_m.resize(static_cast<std::size_t>(part.window.columns) *
                          static_cast<std::size_t>(part.window.rows));
     if (!rasters->read(part.raster, *piece, [&](void* dataset) {
-            read_piece(*piece, dataset, part.window, part.height_m.data());
+            read_piece(*rasters, *piece, dataset, part.window, part.height_m.data());
         }))
         part.window = {};
 }
@@ -77,12 +78,12 @@ void Source::Impl::read_large(const RasterPart& large, const Window& window,
     const bool in_place = rasters->is_one_file();
     const auto read_slice = [&](void* dataset, const Window& slice) {
         if (in_place) {
-            read_piece(*piece, dataset, slice, &height_m.at(0, slice.row - window.row));
+            read_piece(*rasters, *piece, dataset, slice, &height_m.at(0, slice.row - window.row));
             return;
         }
         std::vector<float> heights(static_cast<std::size_t>(slice.columns) *
                                    static_cast<std::size_t>(slice.rows));
-        read_piece(*piece, dataset, slice, heights.data());
+        read_piece(*rasters, *piece, dataset, slice, heights.data());
         rasters->note_step(large.raster, put_over(heights.data(), slice, window, height_m));
     };
     const auto read_slices = [&](int first, int last) {
