@@ -37,6 +37,12 @@ struct Hole {
     bool is_small() const {
         return east - west < kSmallHole_posts && south - north < kSmallHole_posts;
     }
+    /// With the posts around it.
+    Window window(int columns, int rows) const {
+        const Window wide{west - kAround, north - kAround, east - west + 1 + 2 * kAround,
+                          south - north + 1 + 2 * kAround};
+        return common(wide, {0, 0, columns, rows});
+    }
 };
 
 /// A window with a cover over all its holes.
@@ -48,6 +54,44 @@ Array2d<float> covered_window(const Array2d<float>& height_m, const Window& w) {
     span_membrane(heights);
     return heights;
 }
+
+/// The cover over wide voids, made window by window. Voids may lie within each other, as rings do:
+/// where their windows are several times the DEM, all of it is covered at once.
+class Cover {
+  public:
+    Cover(const Array2d<float>& height_m, const std::vector<Hole>& holes) : height_m_(height_m) {
+        constexpr double kMostTimes = 4;
+        const int columns = height_m.width(), rows = height_m.height();
+        double posts = 0;
+        for (const Hole& hole : holes) {
+            if (!hole.is_enclosed(columns, rows) || hole.is_small()) continue;
+            const Window window = hole.window(columns, rows);
+            posts += double{1} * window.columns * window.rows;
+        }
+        at_once_ = posts > kMostTimes * static_cast<double>(std::ssize(height_m));
+    }
+
+    Window window(const Hole& hole) const {
+        const int columns = height_m_.width(), rows = height_m_.height();
+        return at_once_ ? Window{0, 0, columns, rows} : hole.window(columns, rows);
+    }
+    /// Valid until the next call.
+    const Array2d<float>& heights(const Window& window) {
+        if (window == made_ && !heights_.empty()) return heights_;
+        heights_ = covered_window(height_m_, window);
+        made_ = window;
+        worked_posts_ += std::ssize(heights_);
+        return heights_;
+    }
+    std::int64_t worked_posts() const { return worked_posts_; }
+
+  private:
+    const Array2d<float>& height_m_;
+    bool at_once_ = false;
+    Window made_;
+    Array2d<float> heights_;
+    std::int64_t worked_posts_ = 0;
+};
 
 /// A window with all its holes filled. @returns empty where GDAL has no memory
 Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
@@ -70,10 +114,13 @@ Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
     const GDALDatasetH to = raster(GDT_Float32, heights.data());
     const GDALDatasetH mask = raster(GDT_Byte, valid.data());
     constexpr int kSmoothed = 2;
+    // By itself it makes three files on the disk for each void.
+    GdalStrings in_memory;
+    in_memory.set("TEMP_FILE_DRIVER", "MEM");
     const bool done =
         to && mask &&
         GDALFillNodata(GDALGetRasterBand(to, 1), GDALGetRasterBand(mask, 1), kSmallHole_posts, 0,
-                       kSmoothed, nullptr, nullptr, nullptr) == CE_None &&
+                       kSmoothed, in_memory.list(), nullptr, nullptr) == CE_None &&
         GDALRasterIO(GDALGetRasterBand(to, 1), GF_Read, 0, 0, w.columns, w.rows, heights.data(),
                      w.columns, w.rows, GDT_Float32, 0, 0) == CE_None;
     if (to) GDALClose(to);
@@ -144,6 +191,7 @@ FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
     for (int i = 0; i < runs.size(); ++i)
         if (found[static_cast<std::size_t>(runs.root(i))].is_enclosed(columns, rows))
             runs_of[static_cast<std::size_t>(runs.root(i))].push_back(runs.at(i));
+    Cover cover(height_m, found);
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (runs_of[i].empty()) continue;
         const Hole& hole = found[i];
@@ -151,21 +199,22 @@ FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
             result.height_m = height_m;
             result.filled = Array2d<std::uint8_t>(columns, rows, 0);
         }
-        const int west = std::max(hole.west - kAround, 0),
-                  north = std::max(hole.north - kAround, 0);
-        const Window window{west, north, std::min(hole.east + kAround, columns - 1) - west + 1,
-                            std::min(hole.south + kAround, rows - 1) - north + 1};
         const bool small = hole.is_small();
-        const Array2d<float> filled =
-            small ? filled_window(height_m, window) : covered_window(height_m, window);
+        const Window window = small ? hole.window(columns, rows) : cover.window(hole);
+        Array2d<float> own;
+        if (small) own = filled_window(height_m, window);
+        const Array2d<float>& filled = small ? own : cover.heights(window);
         for (const Run& run : runs_of[i])
             for (int column = run.first; column <= run.last; ++column) {
-                result.height_m.at(column, run.row) = filled.at(column - west, run.row - north);
+                result.height_m.at(column, run.row) =
+                    filled.at(column - window.column, run.row - window.row);
                 result.filled.at(column, run.row) = small ? kFilled : kCovered;
             }
+        if (small) result.worked_posts += std::ssize(own);
         (small ? result.filled_posts : result.covered_posts) += hole.posts;
         result.cut_posts -= hole.posts;
     }
+    result.worked_posts += cover.worked_posts();
     return result;
 }
 

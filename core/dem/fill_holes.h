@@ -26,7 +26,8 @@ struct FilledHoles {
         filled;  ///< kFilled or kCovered where it was, else 0; empty where none was
     std::int64_t filled_posts = 0, covered_posts = 0, cut_posts = 0;
 
-    std::int64_t posts = 0;  ///< of the whole DEM
+    std::int64_t posts = 0;         ///< of the whole DEM
+    std::int64_t worked_posts = 0;  ///< of all windows in which voids were filled
 
     /// "voids: 0.53 % of the DEM, drawn filled ..."; empty where all posts have a height.
     std::string text(Holes holes) const;
@@ -35,7 +36,8 @@ struct FilledHoles {
 /// Fills the holes that do not reach the edge, with heights from around them: those that are no
 /// more than kSmallHole_posts wide and high as ground, larger ones with a smooth cover
 /// (membrane.h). For drawing alone: these heights are invented. source: GDALFillNodata, inverse
-/// distance to what is nearest in each direction, smoothed twice
+/// distance to what is nearest in each direction, smoothed twice. The time grows with the posts of
+/// the DEM and of the small voids, each with 8 posts around it.
 FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes);
 
 }  // namespace relevo::dem
