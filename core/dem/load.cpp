@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "dem/interpret.h"
+#include "dem/nodata.h"
 #include "dem/sample.h"
 #include "dem/unearthly.h"
 
@@ -55,15 +56,29 @@ void report_tiles(const Source& source, Description& about) {
     say(tiles.stepped, "differ in height from the tiles below; the later one is on top");
 }
 
+/// Of a DEM that has no post with a height.
+[[noreturn]] void refuse_without_heights(const Source& source, const Description& about) {
+    constexpr double kMarks = 1e38;  // programs mark voids by the largest floats
+    const std::int64_t posts = about.statistics.holes;
+    const Grid& grid = source.grid();
+    const double stored = source.stored(grid.columns() / 2, grid.rows() / 2);
+    const bool impossible = std::abs(stored) > no_height_beyond(about.unit.metres * about.scale) &&
+                            std::abs(stored) < kMarks && stored != about.nodata;
+    if (impossible)
+        bad_input(
+            fmt::format("{}: no height that is possible on Earth: all {} posts are voids or "
+                        "beyond 10 000 km ({:g}); name the band of the heights with --band N",
+                        about.path, posts, stored));
+    bad_input(fmt::format("{}: no valid height: all {} posts are voids{}", about.path, posts,
+                          about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+}
+
 }  // namespace
 
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar) {
     report_tiles(source, about);
     const Statistics& s = about.statistics;
-    if (s.valid == 0)
-        bad_input(
-            fmt::format("{}: no valid height: all {} posts are voids{}", about.path, s.holes,
-                        about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    if (s.valid == 0) refuse_without_heights(source, about);
     const auto guess = [&](const std::string& sentence) {
         dem::guess(about, sentence);
         log::info(fmt::format("{}: {}", about.path, sentence));

@@ -201,6 +201,19 @@ TEST(LoadError, NoValidHeight) {
     raster.nodata.reset();
     raster.value = [](int, int, int) { return std::nan(""); };
     EXPECT_EQ(refusal("all_nan.tif", raster), "no valid height: all 24 posts are voids");
+    raster.value = [](int, int, int) { return -3.4e38; };
+    EXPECT_EQ(refusal("all_marked.tif", raster), "no valid height: all 24 posts are voids");
+}
+
+TEST(LoadError, HeightsBeyondTheEarth) {
+    const std::string message =
+        "no height that is possible on Earth: all 24 posts are voids or beyond 10 000 km (1e+09); "
+        "name the band of the heights with --band N";
+    Raster raster;
+    raster.value = [](int column, int, int) { return column == 0 ? std::nan("") : 1e9; };
+    EXPECT_EQ(refusal("beyond.tif", raster), message);
+    raster.nodata = -9999;
+    EXPECT_EQ(refusal("beyond_declared.tif", raster), message);
 }
 
 TEST(LoadError, TooFewPosts) {
