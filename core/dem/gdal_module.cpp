@@ -2,7 +2,9 @@
 #include "dem/gdal_module.h"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -12,7 +14,9 @@
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi_virtual.h>
+#include <dlfcn.h>
 #include <gdal_priv.h>
+#include <link.h>
 
 namespace relevo::dem {
 namespace {
@@ -47,10 +51,60 @@ Disarmed& disarmed() {
 OpenFunction netcdf_open = nullptr;
 OpenFunction geopackage_open = nullptr;
 
+/// Others that read files with HDF5.
+constexpr std::array kHdf5Drivers = {"BAG", "HDF5", "HDF5Image", "KEA"};
+std::array<OpenFunction, kHdf5Drivers.size()> hdf5_open{};
+std::atomic<bool> hdf5_is_used = false;
+
+/// A function of HDF5, whichever library GDAL or its plugins are linked with; null without one.
+void* hdf5_function(const char* name) {
+    struct Search {
+        const char* name;
+        void* found = nullptr;
+    } search{name};
+    dl_iterate_phdr(
+        [](dl_phdr_info* library, std::size_t, void* data) {
+            auto& wanted = *static_cast<Search*>(data);
+            if (!std::strstr(library->dlpi_name, "hdf5")) return 0;
+            void* const loaded = dlopen(library->dlpi_name, RTLD_LAZY | RTLD_NOLOAD);
+            if (!loaded) return 0;
+            wanted.found = dlsym(loaded, wanted.name);
+            dlclose(loaded);
+            return wanted.found ? 1 : 0;
+        },
+        &search);
+    return search.found;
+}
+
+/// HDF5 prints every error on standard error, also those that its callers expect. It is switched
+/// off thread by thread.
+void silence_hdf5() {
+    thread_local bool is_silent = false;
+    if (is_silent || !hdf5_is_used) return;
+    is_silent = true;
+    using SetPrinting = int (*)(std::int64_t stack, void* function, void* data);
+    static const auto set_printing = reinterpret_cast<SetPrinting>(hdf5_function("H5Eset_auto2"));
+    constexpr std::int64_t kOfThread = 0;  // H5E_DEFAULT
+    if (set_printing) set_printing(kOfThread, nullptr, nullptr);
+}
+
+void use_hdf5() {
+    hdf5_is_used = true;
+    silence_hdf5();
+}
+
+template <std::size_t number>
+GDALDataset* open_hdf5(GDALOpenInfo* info) {
+    use_hdf5();
+    return hdf5_open[number](info);
+}
+
 /// netCDF's library itself goes to addresses. A group of HDF5 begins "://", too.
 GDALDataset* open_local_netcdf(GDALOpenInfo* info) {
     const bool address = std::strstr(info->pszFilename, "://") != nullptr;
-    return address && !disarmed().may_ask_net() ? nullptr : netcdf_open(info);
+    if (address && !disarmed().may_ask_net()) return nullptr;
+    use_hdf5();
+    return netcdf_open(info);
 }
 
 template <std::size_t Driver>
@@ -99,6 +153,16 @@ void close_remote_systems(bool (*is_local_file_system)(std::string_view name)) {
     VSIFreeFilesystemPluginCallbacksStruct(nothing);
 }
 
+/// Has HDF5 be silent wherever one of its drivers opens a file.
+template <std::size_t... number>
+void silence_drivers(std::index_sequence<number...>) {
+    const auto wrap = [](const char* name, OpenFunction& open, OpenFunction wrapper) {
+        if (GDALDriver* const found = driver(name))
+            if (found->pfnOpen) open = std::exchange(found->pfnOpen, wrapper);
+    };
+    (wrap(kHdf5Drivers[number], hdf5_open[number], open_hdf5<number>), ...);
+}
+
 void disarm(bool (*is_local_file_system)(std::string_view name), bool (*may_ask_net)()) {
     constexpr auto kGates = gates(std::make_index_sequence<kRemoteDrivers.size()>());
     const std::lock_guard lock(mutex());
@@ -117,6 +181,7 @@ void disarm(bool (*is_local_file_system)(std::string_view name), bool (*may_ask_
         netcdf_open = std::exchange(netcdf->pfnOpen, open_local_netcdf);
     if (GDALDriver* const geopackage = driver("GPKG"))
         geopackage_open = std::exchange(geopackage->pfnOpen, open_plain_geopackage);
+    silence_drivers(std::make_index_sequence<kHdf5Drivers.size()>());
     close_remote_systems(is_local_file_system);
     CPLHTTPSetFetchCallback(fetch_nothing, nullptr);
 }
@@ -187,8 +252,8 @@ void open_regular_files_only(void (*skipped)(const std::string& name)) {
 
 extern "C" __attribute__((visibility("default"))) const relevo::dem::GdalModule*
 relevo_gdal_module() {
-    static const relevo::dem::GdalModule module{relevo::dem::disarm, relevo::dem::allow_remote,
-                                                relevo::dem::disarmed_drivers,
-                                                relevo::dem::open_regular_files_only};
+    static const relevo::dem::GdalModule module{
+        relevo::dem::disarm, relevo::dem::allow_remote, relevo::dem::disarmed_drivers,
+        relevo::dem::open_regular_files_only, relevo::dem::silence_hdf5};
     return &module;
 }

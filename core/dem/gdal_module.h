@@ -19,6 +19,8 @@ struct GdalModule {
     /// open_regular_files_only() of regular_files.h.
     /// @param skipped  is called with the name of each file that is not opened, on any thread
     void (*open_regular_files_only)(void (*skipped)(const std::string& name));
+    /// Keeps HDF5 from printing its errors on this thread, where a file has been opened with it.
+    void (*silence_hdf5)();
 };
 
 /// The module's only symbol: const GdalModule* relevo_gdal_module().

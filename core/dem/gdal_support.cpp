@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "dem/gdal.h"
+#include "dem/gdal_module.h"
 #include "dem/guard.h"
 #include "dem/regular_files.h"
 
@@ -91,6 +92,7 @@ WithoutListing::~WithoutListing() {
 
 GdalMessages::GdalMessages() {
     prepare_gdal();
+    gdal_module().silence_hdf5();
     // GDAL keeps a stack of handlers for each thread.
     CPLPushErrorHandlerEx([](CPLErr severity, CPLErrorNum number,
                              const char* text) { collect(severity, number, text); },

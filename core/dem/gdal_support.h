@@ -48,7 +48,8 @@ class WithoutListing {
     bool many_;
 };
 
-/// Collects what GDAL says on this thread while it lives, instead of having it printed.
+/// Collects what GDAL says on this thread while it lives, instead of having it printed. What HDF5
+/// prints by itself is dropped, but for processes of other programs.
 class GdalMessages {
   public:
     GdalMessages();
