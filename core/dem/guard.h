@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/allowed_name.h"
+
 // What a file from others must not make GDAL do. Inside of the layer only.
 
 namespace relevo::dem {
