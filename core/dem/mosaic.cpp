@@ -142,6 +142,15 @@ glm::dvec2 reach_between(const Grid& grid, const Grid& own) {
     return glm::max(glm::dvec2(1), {std::hypot(across.x, down.x), std::hypot(across.y, down.y)});
 }
 
+/// As Resampling::shift.
+std::optional<double> shift_between(const Grid& grid, const Grid& own) {
+    if (grid.crs().text() != own.crs().text()) return std::nullopt;
+    const auto middle = [](const Grid& of) {
+        return of.affine()((of.columns() - 1) / 2.0, (of.rows() - 1) / 2.0).x;
+    };
+    return whole_turns(grid.crs(), middle(own) - middle(grid));
+}
+
 /// Has a piece read as it is resampled to another one's grid.
 void resample(Piece& piece, const Frame& frame) {
     if (piece.encoding != Encoding::None)
@@ -156,7 +165,7 @@ void resample(Piece& piece, const Frame& frame) {
     affine.x0 = first.x;
     affine.y0 = first.y;
     const Grid on(piece.place.columns, piece.place.rows, affine, grid.crs());
-    piece.resampling = Resampling{on, reach_between(on, piece.grid)};
+    piece.resampling = Resampling{on, reach_between(on, piece.grid), shift_between(on, piece.grid)};
     piece.levels = {{-1, piece.place.columns, piece.place.rows}};
     piece.sparse.reset();
 }

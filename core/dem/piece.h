@@ -36,6 +36,8 @@ struct Resolution {
 struct Resampling {
     Grid grid;         ///< the DEM's posts in Piece::place
     glm::dvec2 reach;  ///< of the tent, in posts of the raster
+    /// To add to the DEM's longitudes where both have one CRS, whole turns; none: they have not.
+    std::optional<double> shift;
 };
 
 /// One raster: where it is, what its numbers mean, and how they are read.

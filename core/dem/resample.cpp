@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "dem/places_over.h"
@@ -26,13 +27,15 @@ PointsOver points_around(const Window& window) {
 class Resampler {
   public:
     Resampler(const Piece& piece, const Window& window, const ReadPosts& read, float* height_m)
-        : reach_(piece.resampling->reach),
-          raster_(piece.grid.columns(), piece.grid.rows()),
+        : on_(*piece.resampling),
+          own_(piece.grid),
+          raster_(own_.columns(), own_.rows()),
           window_(window),
           read_(read),
           height_m_(height_m),
-          points_(points_around(window)),
-          places_(piece.resampling->grid, piece.grid, points_) {}
+          points_(points_around(window)) {
+        if (!on_.shift) places_.emplace(on_.grid, own_, points_);
+    }
 
     /// In halves where the raster has too many posts there.
     void read(const Window& part) const {
@@ -61,13 +64,16 @@ class Resampler {
             for (int column = part.column; column < part.end_column(); ++column)
                 height_m_[std::int64_t{row - window_.row} * window_.columns + column -
                           window_.column] =
-                    tent_mean(place(column, row), reach_, posts, own.data(), raster_);
+                    tent_mean(place(column, row), on_.reach, posts, own.data(), raster_);
     }
 
   private:
     glm::dvec2 place(int column, int row) const {
+        if (on_.shift)
+            return own_.affine().inverse(on_.grid.affine()(column, row) +
+                                         glm::dvec2(*on_.shift, 0));
         const glm::ivec2 first(points_.first_post);
-        return places_(column - first.x, row - first.y);
+        return (*places_)(column - first.x, row - first.y);
     }
 
     /// The posts that heights of a part are means of.
@@ -81,17 +87,18 @@ class Resampler {
                 high = glm::max(high, at);
             }
         if (!(low.x <= high.x)) return {};
-        const glm::ivec2 first(glm::ceil(low - reach_)), last(glm::floor(high + reach_));
+        const glm::ivec2 first(glm::ceil(low - on_.reach)), last(glm::floor(high + on_.reach));
         return {first.x, first.y, last.x - first.x + 1, last.y - first.y + 1};
     }
 
-    glm::dvec2 reach_;
+    const Resampling& on_;
+    const Grid& own_;
     glm::ivec2 raster_;
     Window window_;
     const ReadPosts& read_;
     float* height_m_;
     PointsOver points_;
-    PlacesOver places_;
+    std::optional<PlacesOver> places_;
 };
 
 }  // namespace
@@ -106,16 +113,18 @@ float tent_mean(const glm::dvec2& at, const glm::dvec2& reach, const Window& pos
         glm::clamp(glm::ivec2(glm::floor(at + 0.5)), glm::ivec2(0), raster - 1);
     if (std::isnan(height(nearest.x, nearest.y))) return kHole;
     const glm::ivec2 first(glm::ceil(at - reach)), last(glm::floor(at + reach));
+    const glm::dvec2 per_post = 1.0 / reach;
     double sum = 0, weights = 0;
-    for (int row = first.y; row <= last.y; ++row)
+    for (int row = first.y; row <= last.y; ++row) {
+        const double of_row = 1 - std::abs(row - at.y) * per_post.y;
         for (int column = first.x; column <= last.x; ++column) {
-            const double weight =
-                (1 - std::abs(column - at.x) / reach.x) * (1 - std::abs(row - at.y) / reach.y);
+            const double weight = of_row * (1 - std::abs(column - at.x) * per_post.x);
             const float h = height(column, row);
             if (!(weight > 0) || std::isnan(h)) continue;
             sum += weight * double{h};
             weights += weight;
         }
+    }
     return static_cast<float>(sum / weights);
 }
 

@@ -26,8 +26,10 @@ constexpr std::array<std::string_view, 5> kSurfaces = {" above ", " over ", " re
 
 // What GDAL's drivers, PROJ and people write.
 const std::array kUnits = {
-    Known{"m", 1, {"m", "metre", "metres", "meter", "meters", "mtr", "metros", "mètre", "mètres",
-               "masl", "gpm", "geopotentialmetre", "geopotentialmeter"}},
+    Known{"m",
+          1,
+          {"m", "metre", "metres", "meter", "meters", "mtr", "metros", "mètre", "mètres", "masl",
+           "gpm", "geopotentialmetre", "geopotentialmeter"}},
     Known{"ft",
           kFoot_m,
           {"ft", "foot", "feet", "internationalfoot", "internationalfeet", "footinternational",

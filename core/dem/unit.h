@@ -16,8 +16,8 @@ struct Unit {
 };
 
 /// The unit that a file or a person means by a word: "m", "metre", "Meters", "ft", "feet", "us-ft",
-/// "US survey foot", "gpm" and so on, capitals or not, also with the surface that heights are above:
-/// "metres above EGM96". Nothing where the word is none of a length.
+/// "US survey foot", "gpm" and so on, capitals or not, also with the surface that heights are
+/// above: "metres above EGM96". Nothing where the word is none of a length.
 std::optional<Unit> known_unit(std::string_view word);
 
 /// Whether a file's word for a unit says that there is none: "", "unknown", "unspecified", "none".

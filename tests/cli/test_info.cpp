@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -6,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "cli/program.h"
 #include "dem/fixture.h"
 #include "support/support.h"
@@ -34,6 +36,33 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "mm of rain a year\nground     trees up to 2650 m, permanent ice from 3480 m, "
                   "snow from 2950 m on 2026-06-21\nnet        pieces of 64 posts: drawn positions "
                   "are within 0.00024 m, 3.2e-06 of the post spacing\n");
+}
+
+TEST(InfoVerb, OnlyItsOwnLinesAreOnStandardError) {
+    const auto written = [](const char* driver, const char* name) {
+        Raster raster;
+        raster.driver = driver;
+        raster.columns = raster.rows = 80;
+        if (raster.driver == "netCDF") raster.options = {"FORMAT=NC4"};
+        return write_raster(dir() / name, raster);
+    };
+    const std::string picture = (dir() / "quiet.png").string();
+    for (const std::string& path :
+         {written("netCDF", "a.nc"), written("BAG", "a.bag"), written("HFA", "a.img"),
+          std::string(source_dir() / "tests/data/cases/grib/gfs.t06z.pgrb2.10p0.f010.grib2")}) {
+        for (int i = 0; i < 3; ++i) {  // on whichever thread
+            const Result info = relevo({"-q", "info", path}),
+                         capture = relevo({"-q", "capture", path, "-o", picture, "--size", "64x48",
+                                           "--overwrite"});
+            for (const std::string& text : {info.err, capture.err})
+                for (const std::string& line : split(text, '\n'))
+                    EXPECT_TRUE(line.empty() || line.starts_with("relevo: warning: ") ||
+                                line.starts_with("relevo: error: "))
+                        << path << ": " << line;
+        }
+        const std::string more = relevo({"info", path}).err;
+        EXPECT_LE(std::ranges::count(more, '\n'), 3) << more;
+    }
 }
 
 TEST(InfoVerb, JsonHasTheSunAndTheNet) {

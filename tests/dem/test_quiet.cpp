@@ -1,6 +1,7 @@
 #include <functional>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "base/log.h"
@@ -55,6 +56,37 @@ TEST(Quiet, ADatasetThatIsReadOnAnotherThreadPrintsNothing) {
               }),
               "");
     EXPECT_THAT(error, HasSubstr("its heights cannot be read"));
+}
+
+TEST(Quiet, NoFormatPrintsWhetherItsFileIsWholeOrCutShort) {
+    const struct {
+        const char* driver;
+        const char* ending;
+        const char* type;
+    } formats[] = {{"GTiff", "tif", "Float32"}, {"netCDF", "nc", "Float32"},
+                   {"HFA", "img", "Float32"},   {"AAIGrid", "asc", "Float32"},
+                   {"BAG", "bag", "Float32"},   {"DTED", "dt0", "Int16"},
+                   {"PNG", "png", "UInt16"},    {"GRIB", "grb2", "Float32"}};
+    for (const auto& format : formats) {
+        Raster raster;
+        raster.driver = format.driver;
+        raster.type = format.type;
+        raster.columns = raster.rows = 121;
+        if (raster.driver == "DTED") {
+            raster.crs = "EPSG:4326";
+            raster.geotransform = {{8 - 1 / 240.0, 1 / 120.0, 0, 47 + 1 / 240.0, 0, -1 / 120.0}};
+        }
+        const std::string path =
+            write_raster(folder() / fmt::format("a.{}", format.ending), raster);
+        const auto bytes = std::filesystem::file_size(path);
+        for (const std::uintmax_t left : {bytes, bytes * 3 / 4, bytes / 3, std::uintmax_t{100}}) {
+            test::cut_short(path, left);
+            EXPECT_EQ(
+                printed([&] { std::thread([&] { test::error_of([&] { load(path); }); }).join(); }),
+                "")
+                << format.driver << ", " << left << " of " << bytes << " bytes";
+        }
+    }
 }
 
 }  // namespace
