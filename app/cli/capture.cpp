@@ -178,7 +178,9 @@ void report_chosen(const session::Session& session) {
     const bool time = !session.time_reason().empty(), view = !session.view_reason().empty();
     if (!time && !view) return;
     const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
-    std::string text = "chosen: " + (time ? local_time(session) : "");
+    const auto& overlay = session.overlay_time();
+    const char* const whose = overlay && overlay->instant() ? " (the overlay's)" : "";
+    std::string text = "chosen: " + (time ? local_time(session) + whose : "");
     if (view && azimuth_deg)
         text += fmt::format("{}seen from the {}", time ? ", " : "",
                             geo::compass_point(std::fmod(*azimuth_deg + 360, 360)));

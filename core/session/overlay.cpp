@@ -135,6 +135,11 @@ std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
     return overlay_time(dem::band_metadata(overlay.file, overlay.band));
 }
 
+std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene) {
+    const std::optional<OverlayTime> time = scene.overlay ? time_of(*scene.overlay) : std::nullopt;
+    return time ? time->instant() : std::nullopt;
+}
+
 Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     if (is_photo(asked)) return photo_of(asked, grid);
     const dem::BandOver band = dem::read_band_over(grid, asked.file, asked.band);

@@ -10,6 +10,7 @@
 #include "scene/stereo.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
+#include "session/overlay.h"
 #include "session/stamps.h"
 #include "session/standing.h"
 #include "session/words.h"
@@ -62,6 +63,11 @@ void SceneState::set_time(sun::Instant utc) {
 }
 
 sun::Instant SceneState::default_time() {
+    if (const std::optional<sun::Instant> of_overlay = instant_of_overlay(scene)) {
+        time_reason_ = fmt::format("time: {}, that of the overlay; --time sets another",
+                                   sun::to_iso(*of_overlay));
+        return *of_overlay;
+    }
     const scene::DefaultTime chosen =
         day_->time(is_map() ? scene::kMapSide_deg : scene::side_of_deg(inputs.camera));
     time_reason_ = chosen.reason();

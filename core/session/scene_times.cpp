@@ -12,6 +12,7 @@
 #include "scene/framing.h"
 #include "scene/map_view.h"
 #include "scene/stereo.h"
+#include "session/overlay.h"
 #include "session/standing.h"
 #include "session/words.h"
 #include "sun/event_time.h"
@@ -150,6 +151,8 @@ scene::View SceneTimes::settled_view(const scene::Scene& scene) {
 
 /// Default time of a scene.
 sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
+    if (const std::optional<sun::Instant> of_overlay = instant_of_overlay(scene))
+        return *of_overlay;
     const auto heights = loaded(scene);
     const render::Ground ground = ground_of(*heights);
     const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);

@@ -84,6 +84,32 @@ TEST_F(OverlayOption, LiesWhereItsPostsAre) {
     EXPECT_GT(lit / lit_count, 1.5 * shaded / shaded_count);
 }
 
+TEST_F(OverlayOption, GivesThePictureItsTimeUnlessOneIsGiven) {
+    const std::string mask = raster("mask.tif", {"shadow", "--time", "2026-12-21T09:30-05:00"}),
+                      hours = raster("hours.tif", {"hours", "--date", "2026-12-21", "--tz",
+                                                   "America/New_York", "--step", "30"});
+    const auto picture = [&](const std::string& overlay, std::vector<std::string> more) {
+        more.insert(more.begin(), {"--overlay", overlay, "--overlay-opacity", "0.5"});
+        return taken("timed.png", more);
+    };
+    const auto chosen = [&](const std::string& overlay, std::vector<std::string> more) {
+        more.insert(more.begin(), {"capture", bundled_dem(), "-o", (dir_ / "said.png").string(),
+                                   "--size", "32x24", "--overwrite", "--overlay", overlay});
+        return relevo(more).err;
+    };
+    const image::Image8 its = picture(mask, {});
+    EXPECT_EQ(its.values, picture(mask, {"--time", "2026-12-21T14:30Z"}).values);
+    EXPECT_NE(its.values, picture(mask, {"--time", "2026-12-21T19:30Z"}).values);
+    // Hours of a day have its middle.
+    EXPECT_EQ(picture(hours, {}).values, picture(hours, {"--time", "2026-12-21T17:00Z"}).values);
+    EXPECT_NE(chosen(mask, {}).find("chosen: 21 December 2026 09:30 (the overlay's), seen from "),
+              std::string::npos)
+        << chosen(mask, {});
+    EXPECT_NE(chosen(hours, {}).find("chosen: 21 December 2026 12:00 (the overlay's), "),
+              std::string::npos);
+    EXPECT_EQ(chosen(mask, {"--time", "2026-12-21T19:30Z"}).find("overlay's"), std::string::npos);
+}
+
 TEST_F(OverlayOption, HasALegendUnlessNoneIsWanted) {
     const std::string hours =
         raster("hours.tif", {"hours", "--date", "2026-06-21", "--step", "30"});
