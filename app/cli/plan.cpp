@@ -6,7 +6,9 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include "base/allocation.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -43,19 +45,37 @@ std::string this_program() {
     return error ? "relevo" : path.string();
 }
 
-/// Tasks that take about as long as is asked for.
+/// Memory that this computer gives to processes [MiB].
+double memory_here_mib() {
+    double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+    if (const auto granted = allocation().memory_bytes)
+        bytes = std::min(bytes, static_cast<double>(*granted));
+    return bytes / kMiB;
+}
+
+/// Tasks that this computer does at once: as many as it has processors, if it has memory for them.
+int tasks_at_once(const PlanArguments& arguments, const PlannedWork& work) {
+    if (arguments.threads > 0) return std::max(1, work.threads / arguments.threads);
+    const double fit = memory_here_mib() / std::max(1.0, kTaskMemoryMargin * work.memory_mib);
+    return static_cast<int>(std::clamp(fit, 1.0, double(work.threads)));
+}
+
+/// Tasks that take about as long as is asked for; for GNU parallel enough of them that all
+/// processors of this computer have work.
 TaskList tasks_of(const PlanArguments& arguments, const PlannedWork& work) {
+    const int at_once = arguments.parallel.empty() ? 1 : tasks_at_once(arguments, work);
     TaskList list{.program = this_program(),
                   .folder = fs::current_path().string(),
                   .command = work.words,
                   .merge = work.merge_words,
                   .tasks = 1,
-                  .threads = arguments.threads > 0 ? arguments.threads : work.threads,
+                  .threads = arguments.threads > 0 ? arguments.threads : work.threads / at_once,
                   .memory_mib = work.memory_mib,
                   .task_s = 0,
                   .rasters = work.rasters};
     const double all_s = work.computing_s * work.threads / list.threads;
-    const double wanted = std::floor(all_s / (60.0 * arguments.task_minutes));
+    const double wanted =
+        std::max<double>(at_once, std::floor(all_s / (60.0 * arguments.task_minutes)));
     const double most =
         static_cast<double>(std::min<std::size_t>(work.left, std::size_t(arguments.most_tasks)));
     list.tasks = static_cast<std::size_t>(std::clamp(wanted, 1.0, std::max(1.0, most)));
@@ -172,8 +192,8 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work) {
     write(arguments.parallel, parallel_lines(list), "--parallel");
     if (!arguments.slurm.empty()) fmt::print("\nsh {}\n", shell_word(arguments.slurm));
     if (!arguments.parallel.empty())
-        fmt::print("\nparallel < {} && {}\n", shell_word(arguments.parallel),
-                   shell_line("relevo", list.merge));
+        fmt::print("\nparallel -j {} < {} && {}\n", tasks_at_once(arguments, work),
+                   shell_word(arguments.parallel), shell_line("relevo", list.merge));
 }
 
 namespace {

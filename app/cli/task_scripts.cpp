@@ -9,7 +9,7 @@
 namespace relevo::cli {
 namespace {
 
-constexpr double kMemoryMargin = 1.25, kTimeMargin = 3;
+constexpr double kTimeMargin = 3;
 constexpr int kLeastMinutes = 10, kTries = 3;
 
 bool is_plain(char c) {
@@ -40,7 +40,7 @@ int minutes_of(const TaskList& tasks) {
 }
 
 int memory_of(const TaskList& tasks) {
-    return static_cast<int>(std::ceil(kMemoryMargin * tasks.memory_mib));
+    return static_cast<int>(std::ceil(kTaskMemoryMargin * tasks.memory_mib));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 /// A command's tasks as text for Slurm and for GNU parallel.
 namespace relevo::cli {
 
+inline constexpr double kTaskMemoryMargin = 1.25;  ///< of a task's memory over its estimate
+
 /// Many processes of one command, and what is done once all have succeeded.
 struct TaskList {
     std::string program;               ///< an absolute path

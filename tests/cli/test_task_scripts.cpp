@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -5,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel_for.h"
 #include "base/text.h"
 #include "cli/job_fixture.h"
 #include "cli/program.h"
@@ -146,7 +148,7 @@ TEST(Plan, SaysWhatATaskTakesAndWritesWhatDoesIt) {
     ASSERT_EQ(plan.status, 0) << plan.err;
     for (const char* text :
          {"tiles               16 of 101 x 101 posts, 0 there already\n", "\nhalo ", "\nmemory ",
-          "\ncomputing ", "\nreading ", "\nwriting ", "\ntasks               1, "})
+          "\ncomputing ", "\nreading ", "\nwriting ", "\ntasks               "})
         EXPECT_NE(plan.out.find(text), std::string::npos) << text << plan.out;
     EXPECT_TRUE(fs::exists(where / "out/plan.json"));
     EXPECT_FALSE(fs::exists(where / "out/r0001_c0001.tif"));
@@ -162,6 +164,35 @@ TEST(Plan, SaysWhatATaskTakesAndWritesWhatDoesIt) {
     EXPECT_NE(planned(where, {"--parallel", lines.string()}).err.find("exists"), std::string::npos);
     EXPECT_EQ(relevo({"plan", "sun", "shadow", bundled_dem(), "--sun", "123,8", "-o", "x"}).err,
               "relevo: error: plan: needs --tiles\n");
+}
+
+TEST(Plan, GivesAWorkstationAsManyTasksAsItHasProcessors) {
+    const fs::path where = scratch_dir("plan of a workstation");
+    const auto tasks = [&](int processors, const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            "plan",  "sun",     "shadow", bundled_dem(), "--sun",
+            "123,8", "--tiles", "101",    "-o",          (where / "out").string()};
+        words.insert(words.end(), more.begin(), more.end());
+        const Result plan = relevo(words, {fmt::format("RELEVO_THREADS={}", processors)});
+        EXPECT_EQ(plan.status, 0) << plan.err;
+        return plan.out;
+    };
+    const std::string lines = (where / "tasks.txt").string();
+    const int processors = thread_count();
+    // Seconds of work in all: less than one task's minutes.
+    const std::string all = tasks(processors, {"--parallel", lines});
+    EXPECT_NE(all.find(fmt::format("\ntasks               {}, ", processors)), std::string::npos)
+        << all;
+    EXPECT_NE(all.find(" each on 1 threads\n"), std::string::npos) << all;
+    EXPECT_NE(all.find(fmt::format("\nparallel -j {} < ", processors)), std::string::npos) << all;
+    const std::string text = read_text(lines, "test");
+    EXPECT_EQ(std::ranges::count(text, '\n'), processors);
+    EXPECT_NE(text.find("RELEVO_THREADS=1 "), std::string::npos) << text;
+    // A task that takes all processors is alone, and so is one of a cluster.
+    const std::string wide = tasks(
+        processors, {"--parallel", lines, "--overwrite", "--cpus", std::to_string(processors)});
+    EXPECT_NE(wide.find("\ntasks               1, "), std::string::npos) << wide;
+    EXPECT_NE(tasks(processors, {}).find("\ntasks               1, "), std::string::npos);
 }
 
 class PlanOfAJob : public JobTest {};
