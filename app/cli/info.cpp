@@ -127,12 +127,35 @@ nlohmann::ordered_json to_json(const session::ClimateReport& report) {
             {"ground_cover", climate::name_of(report.cover)}};
 }
 
-nlohmann::ordered_json sun_json(const sun::Position& sun, const sun::Refraction& air,
-                                sun::Instant utc) {
-    return {{"utc", sun::to_iso(utc)},
-            {"azimuth_deg", degrees(sun.azimuth_rad)},
-            {"elevation_deg", degrees(sun.elevation_rad)},
-            {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
+/// What depends on the time.
+struct Moment {
+    sun::Instant utc;
+    sun::Position sun;
+    sun::Refraction air;
+    session::ClimateReport climate;
+};
+
+/// At the time given, else now; none, with a notice, where the computer's clock is outside of the
+/// years that are computed.
+std::optional<Moment> moment_of(const dem::Summary& summary,
+                                const std::optional<sun::ParsedTime>& given) {
+    const sun::Instant utc = given ? given->utc : sun::Instant::now();
+    if (!given && !sun::is_in_years(utc)) {
+        log::warning(fmt::format(
+            "sun and climate are computed for the years {} to {}, but this computer's clock says "
+            "{}; set it, or add --time",
+            sun::kFirstYear, sun::kLastYear, sun::to_iso(utc)));
+        return std::nullopt;
+    }
+    return Moment{utc, sun::position(utc, summary.center), air_over(summary),
+                  climate_over(summary, utc)};
+}
+
+nlohmann::ordered_json sun_json(const Moment& at) {
+    return {{"utc", sun::to_iso(at.utc)},
+            {"azimuth_deg", degrees(at.sun.azimuth_rad)},
+            {"elevation_deg", degrees(at.sun.elevation_rad)},
+            {"apparent_elevation_deg", degrees(at.air.apparent_rad(at.sun.elevation_rad))}};
 }
 
 }  // namespace
@@ -162,16 +185,15 @@ void add_info(Verb app) {
         const dem::Summary summary = field && field->reduction == 1
                                          ? dem::summarize(*field)
                                          : dem::summarize(source, memory.posts);
-        const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
-        const sun::Position sun = sun::position(utc, summary.center);
-        const sun::Refraction air = air_over(summary);
-        const session::ClimateReport climate = climate_over(summary, utc);
+        const std::optional<Moment> moment = moment_of(summary, given_time);
         const std::optional<dem::Water> water = water_of(source);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
-            json["sun"] = sun_json(sun, air, utc);
-            json["climate"] = to_json(climate);
+            if (moment) {
+                json["sun"] = sun_json(*moment);
+                json["climate"] = to_json(moment->climate);
+            }
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
@@ -181,9 +203,12 @@ void add_info(Verb app) {
         }
         fmt::print("{}", dem::to_text(summary));
         fmt::print("{}", text_of(water, source.grid()));
-        fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
-        fmt::print("{:<10} {}\n", "climate", session::climate_text(climate));
-        fmt::print("{:<10} {}\n", "ground", session::ground_text(climate));
+        if (moment) {
+            fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(moment->sun, moment->air),
+                       sun::to_iso(moment->utc));
+            fmt::print("{:<10} {}\n", "climate", session::climate_text(moment->climate));
+            fmt::print("{:<10} {}\n", "ground", session::ground_text(moment->climate));
+        }
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);
             const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);

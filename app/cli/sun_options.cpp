@@ -26,10 +26,10 @@ Check year_number() {
                 const std::size_t sign = text.starts_with('-');
                 const bool digits = text.size() > sign + 9 &&
                                     text.find_first_not_of("0123456789", sign) == text.npos;
-                return digits
-                           ? fmt::format("the sun is computed for the years {} to {}, but got {}",
-                                         sun::kFirstYear, sun::kLastYear, text)
-                           : whole_number().fault(text);
+                return digits ? fmt::format(
+                                    "sun and moon are computed for the years {} to {}, but got {}",
+                                    sun::kFirstYear, sun::kLastYear, text)
+                              : whole_number().fault(text);
             },
             ""};
 }
@@ -71,8 +71,8 @@ DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place, bool tell) 
     Days days;
     if (year) {
         if (*year < sun::kFirstYear || *year > sun::kLastYear)
-            bad_input(fmt::format("--year: {}: the sun is computed for the years {} to {}", *year,
-                                  sun::kFirstYear, sun::kLastYear));
+            bad_input(fmt::format("--year: {}: sun and moon are computed for the years {} to {}",
+                                  *year, sun::kFirstYear, sun::kLastYear));
         days.first = {*year, 1, 1};
         days.last = {*year, 12, 31};
     } else if (!date.empty()) {

@@ -53,12 +53,16 @@ double angle_above(double up, double east, double north) {
 
 }  // namespace
 
-void check_year(Instant instant) {
+bool is_in_years(Instant instant) {
     constexpr double kSlack_s = 2 * kDay_s;
     static const Instant first = Instant::from_utc({{kFirstYear, 1, 1}}) - kSlack_s;
     static const Instant last = Instant::from_utc({{kLastYear + 1, 1, 1}}) + kSlack_s;
-    if (instant < first || instant >= last)
-        bad_input(fmt::format("sun: {}: the sun is computed for the years {} to {}",
+    return instant >= first && instant < last;
+}
+
+void check_year(Instant instant) {
+    if (!is_in_years(instant))
+        bad_input(fmt::format("time: {}: sun and moon are computed for the years {} to {}",
                               to_iso(instant), kFirstYear, kLastYear));
 }
 

@@ -58,8 +58,10 @@ struct Position : SkyPosition {
     double equation_of_time_s = 0;  ///< as in Geocentric
 };
 
-/// Throws the layer's own error unless the instant lies in 1900-2100, give or take two days so that
-/// local days at both ends are whole.
+/// Whether the instant lies in 1900-2100, give or take two days so that local days at both ends are
+/// whole.
+bool is_in_years(Instant instant);
+/// Throws the layer's own error unless it does.
 void check_year(Instant instant);
 
 /// @throws Error (BadInput) outside 1900-2100

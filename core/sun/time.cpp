@@ -24,15 +24,15 @@ constexpr std::int64_t kFarthest_us = 253'402'300'799'999'999;  // the end of th
 
 void check_year(std::int64_t year) {
     if (year < kFirstWritten || year > kLastWritten)
-        bad_input(fmt::format("date: year {}: the sun is computed for the years {} to {}", year,
-                              kFirstYear, kLastYear));
+        bad_input(fmt::format("date: year {}: sun and moon are computed for the years {} to {}",
+                              year, kFirstYear, kLastYear));
 }
 
 /// Nearer to 1970 than the years that can be written; the first of them end the same way.
 void check_moment(std::int64_t us) {
     if (us > kFarthest_us || us < -kFarthest_us)
         bad_input(
-            fmt::format("time: {:.4g} s from 1970: the sun is computed for the years "
+            fmt::format("time: {:.4g} s from 1970: sun and moon are computed for the years "
                         "{} to {}",
                         static_cast<double>(us) * 1e-6, kFirstYear, kLastYear));
 }
@@ -114,7 +114,7 @@ Instant operator+(Instant instant, double seconds) {
     if (!(std::abs(seconds) <= kLongest_s) ||
         __builtin_add_overflow(instant.unix_us_, std::llround(seconds * 1e6), &sum_us))
         bad_input(
-            fmt::format("time: {:.4g} s later: the sun is computed for the years {} "
+            fmt::format("time: {:.4g} s later: sun and moon are computed for the years {} "
                         "to {}",
                         seconds, kFirstYear, kLastYear));
     return Instant::from_unix_us(sum_us);
@@ -183,7 +183,7 @@ std::optional<Date> FieldReader::date() {
     // A year of more than four digits is one, but none that is computed.
     const std::size_t end = rest_.find_first_not_of("0123456789");
     if (end != std::string_view::npos && end > 4 && rest_[end] == '-')
-        fail(fmt::format("the sun is computed for the years {} to {}, but got {}", kFirstYear,
+        fail(fmt::format("sun and moon are computed for the years {} to {}, but got {}", kFirstYear,
                          kLastYear, rest_.substr(0, end)));
     const auto year = digits(4);
     if (!year || !take('-')) return std::nullopt;
@@ -192,7 +192,7 @@ std::optional<Date> FieldReader::date() {
     const auto day = digits(2);
     if (!day) return std::nullopt;
     if (*year < kFirstYear || *year > kLastYear)
-        fail(fmt::format("the sun is computed for the years {} to {}, but got {}", kFirstYear,
+        fail(fmt::format("sun and moon are computed for the years {} to {}, but got {}", kFirstYear,
                          kLastYear, *year));
     check("month", *month, 1, 12);
     const int last = days_in_month(*year, *month);

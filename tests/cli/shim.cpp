@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <new>
 
 #include <dlfcn.h>
@@ -49,6 +50,14 @@ ssize_t pread(int file, void* to, size_t size, off_t at) {
         return -1;
     }
     return static_cast<ssize_t>(syscall(SYS_pread64, file, to, size, at));
+}
+
+/// "clock": it is 124 years later.
+int clock_gettime(clockid_t clock, struct timespec* time) {
+    const long result = syscall(SYS_clock_gettime, clock, time);
+    if (result == 0 && clock == CLOCK_REALTIME && refuses("clock"))
+        time->tv_sec += time_t{124} * 31'556'952;
+    return static_cast<int>(result);
 }
 
 /// "encoders": FFmpeg has none.

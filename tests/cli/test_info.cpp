@@ -20,6 +20,25 @@ std::filesystem::path dir() {
     return folder;
 }
 
+TEST(Info, DoesWithoutTheSunIfTheClockIsBeyondTheYearsThatAreComputed) {
+    const std::vector<std::string> late{std::string("LD_PRELOAD=") + RELEVO_TEST_SHIM,
+                                        "RELEVO_SHIM=clock"};
+    const Result text = relevo({"info", bundled_dem()}, late);
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("\nposts "), std::string::npos) << text.out;
+    EXPECT_EQ(text.out.find("\nsun "), std::string::npos) << text.out;
+    EXPECT_TRUE(text.err.starts_with(
+        "relevo: warning: sun and climate are computed for the years 1900 to 2100, but this "
+        "computer's clock says 21"))
+        << text.err;
+    const Result json = relevo({"info", bundled_dem(), "--json"}, late);
+    EXPECT_EQ(json.status, 0) << json.err;
+    EXPECT_FALSE(nlohmann::json::parse(json.out).contains("sun"));
+    const Result timed = relevo({"info", bundled_dem(), "--time", "2026-06-21T16:00Z"}, late);
+    EXPECT_NE(timed.out.find("\nsun "), std::string::npos) << timed.out;
+    EXPECT_EQ(timed.err.find("clock"), std::string::npos) << timed.err;
+}
+
 TEST(InfoVerb, SaysEverythingInLines) {
     const Result run = relevo({"-v", "info", bundled_dem(), "--time", "2026-06-21T16:00Z"});
     ASSERT_EQ(run.status, 0) << run.err;

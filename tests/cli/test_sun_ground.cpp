@@ -333,7 +333,8 @@ TEST(Years, BeyondTheCalendarAreRefusedWithTheRangeThereIs) {
     const auto refused = [](const std::vector<std::string>& arguments) {
         const Result run = relevo(arguments);
         EXPECT_TRUE(run.status == 2 || run.status == 3) << run.status;
-        EXPECT_NE(run.err.find("the sun is computed for the years 1900 to 2100"), std::string::npos)
+        EXPECT_NE(run.err.find("sun and moon are computed for the years 1900 to 2100"),
+                  std::string::npos)
             << run.err;
     };
     const std::string at = "46.9,8.9";

@@ -357,9 +357,9 @@ TEST(BadSunInput, EachHasItsMessage) {
                    "--from 2026-06-22 --to 2026-06-21: ends before it begins, expected the earlier "
                    "day first");
     expect_failure(day({"--year", "2101", "--tz", "UTC"}), 3,
-                   "--year: 2101: the sun is computed for the years 1900 to 2100");
+                   "--year: 2101: sun and moon are computed for the years 1900 to 2100");
     expect_failure(day({"--date", "1899-12-31", "--tz", "UTC"}), 3,
-                   "date: 1899-12-31: the sun is computed for the years 1900 to 2100, "
+                   "date: 1899-12-31: sun and moon are computed for the years 1900 to 2100, "
                    "but got 1899");
     expect_failure(day({"--date", "2026-02-30", "--tz", "UTC"}), 3,
                    "date: 2026-02-30: no such date, expected day 1 to 28 of 2026-02 but got 30");
@@ -421,7 +421,7 @@ TEST(BadSunInput, UnknownEventsAndDatesOfThem) {
                    "day as 2026-06-21T18:30");
     expect_failure(
         {"sun", "carpet", bundled_dem(), "--at", kValley, "--year", "1850", "--tz", "UTC"}, 3,
-        "--year: 1850: the sun is computed for the years 1900 to 2100");
+        "--year: 1850: sun and moon are computed for the years 1900 to 2100");
     expect_failure(
         {"sun", "carpet", bundled_dem(), "--at", kValley, "--year", "2026", "--tz", "UTC", "--step",
          "7min"},

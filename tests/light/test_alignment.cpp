@@ -180,7 +180,7 @@ TEST(Alignments, ErrorsSayWhatIsWrong) {
     EXPECT_EQ(error_of([&] {
                   alignments(here, target, {2150, 6, 22}, {2150, 6, 23}, kZurich);
               }),
-              "exit 3: sun: 2150-06-21T23:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 2150-06-21T23:00:00Z: sun and moon are computed for the years 1900 "
               "to 2100");
     AlignmentOptions options;
     options.tolerance_rad = 0;

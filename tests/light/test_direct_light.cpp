@@ -439,7 +439,7 @@ TEST(DirectLight, SaysHowItWasMadeAndWhatIsWrong) {
     EXPECT_EQ(test::error_of([&] {
                   light.day({1899, 6, 22}, kZurich);
               }),
-              "exit 3: sun: 1899-06-21T23:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 1899-06-21T23:00:00Z: sun and moon are computed for the years 1900 "
               "to 2100");
     EXPECT_EQ(test::error_of([&] {
                   light.day({2011, 12, 30}, Zone::named("Pacific/Apia"));

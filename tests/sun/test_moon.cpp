@@ -164,10 +164,11 @@ TEST(Moon, HasAnAgeAndAName) {
 }
 
 TEST(Moon, OutsideTheYearsIsAnError) {
-    EXPECT_EQ(test::error_of([] {
-                  moon_position(instant_of("1850-01-01T00:00"), {0, 0, 0});
-              }),
-              "exit 3: sun: 1850-01-01T00:00:00Z: the sun is computed for the years 1900 to 2100");
+    EXPECT_EQ(
+        test::error_of([] {
+            moon_position(instant_of("1850-01-01T00:00"), {0, 0, 0});
+        }),
+        "exit 3: time: 1850-01-01T00:00:00Z: sun and moon are computed for the years 1900 to 2100");
 }
 
 }  // namespace

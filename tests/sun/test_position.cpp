@@ -114,8 +114,8 @@ TEST_P(PositionTables, NrelSpa) {
     for (const Row& row : rows("spa_c_azel.csv")) {
         if (!row.in_years()) {
             EXPECT_EQ(test::error_of([&] { row.epoch(); }),
-                      "exit 3: sun: " + row.text("time") +
-                          "Z: the sun is computed for the years 1900 to 2100");
+                      "exit 3: time: " + row.text("time") +
+                          "Z: sun and moon are computed for the years 1900 to 2100");
             ++outside;
             continue;
         }
@@ -148,12 +148,12 @@ TEST_P(PositionTables, NrelMidc) {
         const int year = std::stoi(time);
         if (year < kFirstYear || year > kLastYear) {
             if (year >= 1000) {
-                EXPECT_EQ(
-                    test::error_of([&] { position(instant_of(time), row.place()); }),
-                    "exit 3: sun: " + time + "Z: the sun is computed for the years 1900 to 2100");
+                EXPECT_EQ(test::error_of([&] { position(instant_of(time), row.place()); }),
+                          "exit 3: time: " + time +
+                              "Z: sun and moon are computed for the years 1900 to 2100");
                 EXPECT_EQ(test::error_of([&] { parse_time(time + "Z"); }),
                           "exit 3: time: " + time +
-                              "Z: the sun is computed for the years 1900 to 2100, but got " +
+                              "Z: sun and moon are computed for the years 1900 to 2100, but got " +
                               time.substr(0, 4));
             } else {
                 // Three digits, or before Christ: not even written as a year.
@@ -278,12 +278,12 @@ TEST(Position, YearsOutside1900To2100AreAnError) {
     EXPECT_EQ(test::error_of([&] {
                   position(Instant::from_utc({{1850, 6, 1}}), place);
               }),
-              "exit 3: sun: 1850-06-01T00:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 1850-06-01T00:00:00Z: sun and moon are computed for the years 1900 "
               "to 2100");
     EXPECT_EQ(test::error_of([&] {
                   position(Instant::from_utc({{2101, 1, 3}}), place);
               }),
-              "exit 3: sun: 2101-01-03T00:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 2101-01-03T00:00:00Z: sun and moon are computed for the years 1900 "
               "to 2100");
     // Local days at both ends are whole.
     EXPECT_EQ(test::error_of([&] {

@@ -68,7 +68,7 @@ TEST(PositionTable, OutsideItIsAnError) {
     EXPECT_EQ(test::error_of([&] {
                   PositionTable(instant_of("2090-01-01T00:00"), instant_of("2120-01-01T00:00"));
               }),
-              "exit 3: sun: 2120-01-01T00:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 2120-01-01T00:00:00Z: sun and moon are computed for the years 1900 "
               "to 2100");
 }
 

@@ -79,21 +79,22 @@ TEST(Date, WhatIsNoDateIsAnError) {
               "exit 3: date: 2026-00-10: no such month, expected month 1 to 12 but got "
               "0");
     EXPECT_EQ(error("1899-12-31"),
-              "exit 3: date: 1899-12-31: the sun is computed for the years 1900 to 2100, "
+              "exit 3: date: 1899-12-31: sun and moon are computed for the years 1900 to 2100, "
               "but got 1899");
     EXPECT_EQ(error("2101-01-01"),
-              "exit 3: date: 2101-01-01: the sun is computed for the years 1900 to 2100, "
+              "exit 3: date: 2101-01-01: sun and moon are computed for the years 1900 to 2100, "
               "but got 2101");
     // A year of more than four digits is one, but none that is computed.
     for (const std::string year : {"99999", "12026", "4294969322", "99999999999999999999"})
         EXPECT_EQ(error(year + "-06-21"),
                   "exit 3: date: " + year +
-                      "-06-21: the sun is computed for the years 1900 to 2100, but got " + year);
+                      "-06-21: sun and moon are computed for the years 1900 to 2100, but got " +
+                      year);
 }
 
 TEST(Date, WhatTheCalendarDoesNotHoldIsAnErrorAndNoOtherDate) {
     using test::error_of;
-    const std::string years = ": the sun is computed for the years 1900 to 2100";
+    const std::string years = ": sun and moon are computed for the years 1900 to 2100";
     // The calendar's own years wrap at 32767: 99999 would be -31073.
     for (const int year : {99999, 10000, 0, -1, 2'147'483'647, -2'147'483'647}) {
         const std::string expected = "exit 3: date: year " + std::to_string(year) + years;

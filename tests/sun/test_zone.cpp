@@ -264,10 +264,10 @@ TEST(ParseTime, ImpossibleTimesAreErrors) {
               "exit 3: time: 2016-12-31T23:59:60Z: leap seconds cannot be given; take "
               "second 59, or 00 of the next minute");
     EXPECT_EQ(parse_error("1899-12-31T12:00Z"),
-              "exit 3: time: 1899-12-31T12:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 1899-12-31T12:00Z: sun and moon are computed for the years 1900 "
               "to 2100, but got 1899");
     EXPECT_EQ(parse_error("2101-01-01T00:00Z"),
-              "exit 3: time: 2101-01-01T00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 2101-01-01T00:00Z: sun and moon are computed for the years 1900 "
               "to 2100, but got 2101");
     EXPECT_EQ(parse_error("2026-06-21"),
               "exit 3: time: 2026-06-21: no time of day, expected one such as T18:30 "
