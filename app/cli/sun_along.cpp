@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -164,7 +165,10 @@ void check_times(const AlongArguments& arguments, const dem::NamedLine& line,
 /// @throws Error (BadInput) where one has none, and where one is no time
 std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string& path,
                                    const sun::Zone& zone) {
+    // Loggers mix up fractions of a second: such points have one time.
+    constexpr double kLoggersSecond_s = 1;
     std::vector<sun::Instant> times;
+    std::optional<sun::Instant> earliest;
     for (const dem::NamedPlace& place : line.places) {
         if (!has_time(place))
             bad_input(
@@ -177,12 +181,21 @@ std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string
         } catch (const Error& error) {
             bad_input(fmt::format("sun along: {}: line {}: {}", path, place.line, error.what()));
         }
-        if (times.size() > 1 && times.back() < times[times.size() - 2])
+        if (times.size() < 2) continue;
+        const sun::Instant before = times[times.size() - 2];
+        if (before - times.back() >= kLoggersSecond_s)
             bad_input(fmt::format(
                 "sun along: {}: line {}: its time, {}, is before that of the point before, {}; "
                 "expected times in order",
-                path, place.line, sun::to_iso(times.back()), sun::to_iso(times[times.size() - 2])));
+                path, place.line, sun::exact_iso(times.back()), sun::exact_iso(before)));
+        earliest = std::min(earliest.value_or(before), times.back());
+        times.back() = std::max(times.back(), before);
     }
+    if (earliest && *earliest < times.front() && times.front() == times.back())
+        bad_input(fmt::format(
+            "sun along: {}: all points are within one second, from {} to {}; expected times that "
+            "increase",
+            path, sun::exact_iso(*earliest), sun::exact_iso(times.back())));
     return times;
 }
 

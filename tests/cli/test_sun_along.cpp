@@ -49,6 +49,40 @@ json json_of(const std::string& track, std::vector<std::string> more) {
     return json::parse(run.out);
 }
 
+/// A GPX track with a point at each of these times, to the north.
+std::string track_at(const std::vector<std::string>& times) {
+    std::string text = "<gpx version=\"1.1\" creator=\"t\"><trk><trkseg>";
+    for (std::size_t i = 0; i < times.size(); ++i)
+        text += fmt::format("<trkpt lat=\"{}\" lon=\"-84.24\"><time>2026-02-10T{}Z</time></trkpt>",
+                            36.30 + 0.001 * static_cast<double>(i), times[i]);
+    return file("times.gpx", text + "</trkseg></trk></gpx>");
+}
+
+TEST(SunAlongVerb, KeepsFractionsOfASecond) {
+    const json quick = json_of(track_at({"16:00:00.100", "16:00:00.350"}), {});
+    EXPECT_NEAR(quick["duration_h"].get<double>() * 3600, 0.25, 1e-6);
+    // Points within one second are in order, and have one time if their fractions are not.
+    const json mixed =
+        json_of(track_at({"16:00:00.207", "16:00:00.107", "16:00:20.5", "16:00:20.1"}), {});
+    EXPECT_NEAR(mixed["duration_h"].get<double>() * 3600, 20.293, 1e-6);
+    const auto error = [](const std::string& track) { return relevo(along(track, {})).err; };
+    EXPECT_NE(
+        error(track_at({"16:00:01.25", "16:00:00.2"}))
+            .find("its time, 2026-02-10T16:00:00.200000Z, is before that of the point before, "
+                  "2026-02-10T16:00:01.250000Z; expected times in order\n"),
+        std::string::npos);
+    EXPECT_NE(
+        error(track_at({"16:00:09", "16:00:00"})).find("its time, 2026-02-10T16:00:00Z, is before"),
+        std::string::npos);
+    const std::string same = (source_dir() / "tests/data/cases/gpx/same_time.gpx").string();
+    EXPECT_NE(error(same).find("relevo: error: sun along: " + same +
+                               ": all points are within one second, from "
+                               "2026-06-01T15:00:00.107000Z to 2026-06-01T15:00:00.207000Z; "
+                               "expected times that increase\n"),
+              std::string::npos)
+        << error(same);
+}
+
 TEST(SunAlongVerb, SpeaksJsonAsDocumented) {
     const json walk = json_of(walk_csv(), {"--start", "2026-02-10T07:20", "--speed", "5"});
     EXPECT_EQ(walk["zone"], "America/New_York");

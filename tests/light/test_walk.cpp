@@ -282,7 +282,8 @@ TEST(Walk, WhatIsNoWalkIsSaid) {
     EXPECT_EQ(error_of([&] {
                   Walk::timed({a, b}, {t, t});
               }),
-              "exit 3: walk: all points have the same time, expected times that increase");
+              "exit 3: walk: all points have the same time, 2026-02-10T12:00:00Z, expected times "
+              "that increase");
 }
 
 TEST(Walk, OutsideOfTheDemIsSaidWithWhereAndHowFar) {

@@ -50,9 +50,11 @@ Walk Walk::timed(std::vector<geo::Geodetic> places, std::vector<sun::Instant> ti
             bad_input(
                 fmt::format("walk: point {}: its time, {}, is before that of the "
                             "point before, {}; expected times in order",
-                            i + 1, sun::to_iso(walk.utc_[i]), sun::to_iso(walk.utc_[i - 1])));
+                            i + 1, sun::exact_iso(walk.utc_[i]), sun::exact_iso(walk.utc_[i - 1])));
     if (!(walk.duration_s() > 0))
-        bad_input("walk: all points have the same time, expected times that increase");
+        bad_input(
+            fmt::format("walk: all points have the same time, {}, expected times that increase",
+                        sun::exact_iso(walk.utc_.front())));
     walk.check_duration();
     return walk;
 }
