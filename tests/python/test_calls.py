@@ -172,7 +172,7 @@ def test_classes_of_errors():
 @pytest.mark.parametrize(
     "call, message",
     [
-        (lambda dem: dem.sun.hours(), "expected one of date, from and to, or year"),
+        (lambda dem: dem.sun.hours(), "expected one of date, start and end, or year"),
         (lambda dem: dem.sun.hours("2026-02-30"), "2026-02-30"),
         (lambda dem: dem.sun.hours("2026-06-21", year=2026), "expected one of"),
         (lambda dem: dem.sun.hours(20260621), "date: expected a date"),

@@ -9,11 +9,11 @@ _PHRASES: Final = (
     (re.compile(r"/vsimem/relevo/\d+/heights\.tif"), "heights"),  # the name that heights of memory have for GDAL
     (re.compile(r"^relevo_\w+: "), ""),  # functions and their texts of options
     (re.compile(r"^(heights\.)?options:(\d+:)? ?"), ""),
+    (re.compile(r"^dem: \(text\):1: "), ""),
     (re.compile(r"\(text\):1: "), ""),
     (re.compile(r"^scene: picture\.size: "), "size: "),
     (re.compile(r"^scene: time\.at: "), "time: "),
     (re.compile(r"^scene: (time\.)?(date|zone|camera|exaggeration)(?=[.:])"), r"\2"),
-    (re.compile(r"^dem: "), ""),
     (re.compile(r"^from: "), "start: "),
     (re.compile(r"\bdate, from and to, or year\b"), "date, start and end, or year"),
     (re.compile(r"name it on the command line, or add --trust"), "open it with the program, which asks"),
