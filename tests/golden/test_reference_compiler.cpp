@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -235,6 +236,47 @@ TEST(ReferenceCompiler, SeesTheProgramsOfACapture) {
             << file;
     }
     EXPECT_GE(compared, 5);  // geometry, terrain, background, edges, antialias
+}
+
+/// Whether a text has a word, not as the end of a longer one.
+bool has_word(const std::string& text, const std::string& word) {
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1))
+        if (at == 0 ||
+            (std::isalnum(static_cast<unsigned char>(text[at - 1])) == 0 && text[at - 1] != '_'))
+            return true;
+    return false;
+}
+
+/// Neither a disabled effect's file nor anything that it declares is in the programs.
+TEST(ReferenceCompiler, FindsNothingOfADisabledEffectInTheText) {
+    const Shipped shipped;
+    const shader::ParamStore values = shipped.values();
+    const auto programs_with = [&](const effect::Switches& switches) {
+        Programs programs;
+        programs.add(effect::select(shipped.registry, {}, switches), values, "all", "",
+                     {.shown = true, .software = true, .natives = kNatives});
+        return programs.all();
+    };
+    const auto names = [](const std::vector<Programs::Program>& programs, const std::string& id) {
+        return std::ranges::any_of(programs, [&](const Programs::Program& program) {
+            const std::string text = program.vertex + program.fragment + program.compute;
+            return has_word(text, id + ".glsl") || has_word(text, id + "_on_");
+        });
+    };
+    std::size_t named = 0;
+    std::set<std::string> tried;
+    for (const Ids& ids : shipped.everything()) {
+        const std::vector<Programs::Program> all = programs_with({.only = ids});
+        for (const std::string& id : ids) {
+            if (!tried.insert(id).second) continue;
+            Ids others = ids;
+            std::erase(others, id);
+            EXPECT_FALSE(names(programs_with({.only = others, .disable = {id}}), id)) << id;
+            named += names(all, id) ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(tried.size(), shipped.registry.effects().size());
+    EXPECT_GT(2 * named, tried.size());  // names are found where they are; of some all is native
 }
 
 /// Values that are constants in the text decide what a compiler sees of it.
