@@ -12,7 +12,7 @@
 flat in vec4 post_limits;
 in vec2 post_of_tile;
 in float height_m;
-in float height_from_eye_m;
+in float height_in_tile_m;
 in vec3 vertex_normal;
 in vec3 place_m;
 
@@ -23,10 +23,13 @@ layout(location = HEIGHT_STEPS) out vec2 height_steps_out;
 /// How the height changes from this pixel to the next one right and up, on this triangle [m/px].
 /// Heights divided by the depth are linear in the picture, as is 1 / depth: their differences are
 /// those of the whole triangle's plane, also where the triangle ends between two pixels.
+/// 0 on level ground, where the differences are those of rounding: up to 64 of a float's steps, but for slivers.
 vec2 height_steps() {
+    const float rounding = 4e-6;
     float near = gl_FragCoord.w;
-    float scaled = height_from_eye_m * near;
-    return (vec2(dFdx(scaled), dFdy(scaled)) - height_from_eye_m * vec2(dFdx(near), dFdy(near))) / near;
+    float scaled = height_in_tile_m * near;
+    vec2 steps = (vec2(dFdx(scaled), dFdy(scaled)) - height_in_tile_m * vec2(dFdx(near), dFdy(near))) / near;
+    return length(steps) > rounding * abs(height_in_tile_m) ? steps : vec2(0.0);
 }
 #endif
 

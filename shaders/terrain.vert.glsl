@@ -14,7 +14,7 @@ const float kSkirt_px = 2.0;  // how far the skirt hangs down in the picture
 flat out vec4 post_limits;  // xy: first; zw: from there to the last
 out vec2 post_of_tile;        // from the first
 out float height_m;
-out float height_from_eye_m;  // of the DEM's heights: near the eye small, and so exact
+out float height_in_tile_m;  // above the eye, or that height of the tile's that is nearest to it: small, and so exact
 out vec3 vertex_normal;
 out vec3 place_m;  // of a map, relative to the eye
 
@@ -76,7 +76,7 @@ void main() {
     height_m = nowhere ? kNowhere_m : height_m;
 #endif
 #ifdef HEIGHT_STEPS
-    height_from_eye_m = height.r - frame.eye_m.w / frame.height_range.z;
+    height_in_tile_m = height.r - clamp(frame.eye_m.w / frame.height_range.z, net_uuvv.w, up_0.w);
 #endif
 #ifdef ORTHOGRAPHIC
     place_m = v.position_m;

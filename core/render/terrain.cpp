@@ -457,6 +457,7 @@ TileMesh::Instance Terrain::instance_of(const TileSelection::Tile& tile,
     const TileKey& key = tile.draw.key;
     const PatchNet& net = tree_.net(key);
     const auto& p = net.position_m;
+    const dem::Pyramid::Bounds bounds = pyramid_.bounds(key.level, key.at);
     const glm::ivec2 first_post = key.at * (kTileQuads << key.level);
     const double posts_a_quad = 1 << key.level;
     const glm::dvec2 quads =
@@ -469,8 +470,8 @@ TileMesh::Instance Terrain::instance_of(const TileSelection::Tile& tile,
             with(p[5], posts_a_quad),
             with(p[6], tile.morph_start_m),
             with(p[7], tile.per_morph_m),
-            with(p[8], 0),
-            with(net.vertical[0], 0),
+            with(p[8], bounds.lowest_m),
+            with(net.vertical[0], bounds.highest_m),
             with(net.vertical[1], 0),
             with(net.vertical[2], 0)};
 }

@@ -290,7 +290,7 @@ void sea_on_material(inout Surface s) {
     sea_normal = normalize(s.up - vec3(waves.slope, 0.0));
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m, waves.roughness);
     // The surface of this pixel is that of the water, not the drawn floor's.
-    s.height_m = mix(s.height_m, height_m, water.share);
+    surface_of_water(s, height_m, water.share, water.known);
     s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
     if (overview > 0.0 && water.share < 1.0)
         s.normal = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), overview));

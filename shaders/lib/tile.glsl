@@ -18,8 +18,8 @@ layout(location = 5) in vec4 net_uv;  // w: and row
 layout(location = 6) in vec4 net_uuv;  // w: posts from vertex to vertex
 layout(location = 7) in vec4 net_vv;  // w: distance from the eye where morphing starts [m]
 layout(location = 8) in vec4 net_uvv;  // w: morphing there a metre, 1 being all of it [1/m]
-layout(location = 9) in vec4 net_uuvv;
-layout(location = 10) in vec4 up_0;
+layout(location = 9) in vec4 net_uuvv;  // w: lowest height of the tile [m]
+layout(location = 10) in vec4 up_0;  // w: highest [m]
 layout(location = 11) in vec4 up_u;
 layout(location = 12) in vec4 up_v;
 

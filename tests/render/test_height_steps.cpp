@@ -189,6 +189,33 @@ TEST(HeightSteps, AreOfTheDemsOwnHeightsUnderExaggeration) {
     }
 }
 
+TEST(HeightSteps, AreZeroOnLevelGround) {
+    // A lake below a mountain, seen from above both, from between and from its shore.
+    const auto lake = test::field_of(
+        129, 129, {500000, kSpacing_m, 0, 5200000, 0, -kSpacing_m}, "EPSG:32632",
+        [](int column, int row) { return 500 + 9.0 * std::max(column + row - 140, 0); });
+    Drawn drawn(lake,
+                {test::kBrightSky,
+                 probe("length(vec2(s.height_dx_m, s.height_dy_m)), s.post.x + s.post.y")},
+                320, 256);
+    for (const double eye_m : {4000.0, 1500.0, 700.0, 502.0}) {
+        drawn.stand(0.3, 0.2, eye_m, 150, eye_m > 1000 ? -60 : -5);
+        const image::ImageF image = drawn.radiance();
+        int level = 0, steep = 0, is_zero = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) {
+                if (test::is_sky(image, x, y)) continue;
+                const glm::dvec2 found = Drawn::values(image, x, y);
+                level += found.y < 139;
+                is_zero += found.y < 139 && found.x == 0;
+                steep += found.y > 141 && found.x > 0;
+            }
+        EXPECT_GT(level, 2000) << eye_m;
+        EXPECT_GE(is_zero, 0.9999 * level) << eye_m;  // slivers round by more
+        EXPECT_GT(steep, 100) << eye_m;
+    }
+}
+
 TEST(HeightSteps, DrawContoursOfOneWidth) {
     // A cone's contours are circles: the area of a drawn one over its length is its width.
     constexpr double kTop_m = 1500, kSlope = 0.1, kInterval_m = 50, kWidth_px = 2;
