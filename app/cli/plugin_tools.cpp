@@ -2,12 +2,14 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "effect/new_plugin.h"
 #include "session/plugin_check.h"
@@ -46,12 +48,20 @@ void check(const session::PluginCheckOptions& options) {
     // What effects switch on and off is no matter here, nor are other broken plugins.
     const log::Level level = log::level();
     if (level != log::Level::Debug) log::set_level(log::Level::Error);
-    const session::PluginCheckTotals totals =
-        session::check_plugins(options, [](const effect::Finding& finding) {
+    std::optional<ProgressBar> bar;
+    const session::PluginCheckTotals totals = session::check_plugins(
+        options,
+        [&](const effect::Finding& finding) {
+            bar.reset();
             fmt::print("{}: {}\n", finding.is_error ? "error" : "warning",
                        printable_lines(finding.text));
             std::fflush(stdout);
+        },
+        [&](double share) {
+            if (!bar) bar.emplace("plugins check");
+            bar->show(share);
         });
+    bar.reset();
     log::set_level(level);
     const std::string text =
         fmt::format("{}: {}, {}", fmt::join(totals.checked, ", "), counted(totals.errors, "error"),

@@ -78,11 +78,13 @@ void print_list(const effect::Registry& registry, bool json) {
 /// @throws Error (Failed) if a plugin is broken, after the list
 void list(const effect::Registry& registry, bool json) {
     print_list(registry, json);
-    const std::size_t broken = registry.broken().size();
-    if (broken == 0) return;
+    std::vector<std::string> broken;
+    for (const effect::BrokenEffect& effect : registry.broken())
+        broken.push_back(effect.id);
+    if (broken.empty()) return;
     std::fflush(stdout);
-    failed(fmt::format("plugins: {} of {} cannot be used", broken,
-                       broken + registry.effects().size()));
+    failed(fmt::format("plugins: {} of {} cannot be used: {}", broken.size(),
+                       broken.size() + registry.effects().size(), fmt::join(broken, ", ")));
 }
 
 void info(const effect::Effect& effect, bool json) {

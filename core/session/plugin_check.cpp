@@ -8,13 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "effect/selection.h"
+#include "render/programs.h"
+#include "session/active_effects.h"
 #include "session/non_finite.h"
 #include "session/session.h"
 #include "session/words.h"
+#include "shader/core_texts.h"
 
 namespace relevo::session {
 namespace {
@@ -53,19 +58,30 @@ std::vector<std::string> author_lines(const std::string& what) {
 class Check {
   public:
     Check(const effect::Effect& effect, const PluginCheckOptions& options,
-          const OnFinding& on_finding)
-        : id_(effect.id()), options_(options), on_finding_(on_finding) {}
+          const OnFinding& on_finding, const OnCheckProgress& on_progress)
+        : effect_(effect),
+          id_(effect.id()),
+          options_(options),
+          on_finding_(on_finding),
+          on_progress_(on_progress) {}
 
     void run(const effect::Registry& registry) {
         using Ids = std::vector<std::string>;
+        const std::string bundled = (share_dir() / "plugins" / "").string();
+        std::vector<const effect::Effect*> drawn, stitched;
+        for (const effect::Effect& other : registry.effects())
+            if (other.id() != id_ && other.manifest.folder.string().starts_with(bundled))
+                (answers(effect_, other) || answers(other, effect_) ? drawn : stitched)
+                    .push_back(&other);
+        pictures_ = 2 * kViews.size() + drawn.size();
         // What is wrong alone is wrong with others, and their programs take far longer to compile.
         if (!draws_all({.only = Ids{id_}}, "") || !texts_.empty()) return;
         if (!draws_all({.enable = {id_}}, "with the default effects")) return;
-        const std::string bundled = (share_dir() / "plugins" / "").string();
-        for (const effect::Effect& other : registry.effects())
-            if (other.id() != id_ && other.manifest.folder.string().starts_with(bundled) &&
-                !draws({.only = Ids{id_, other.id()}}, kViews[kOnGround], "with " + other.id()))
+        for (const effect::Effect* other : drawn)
+            if (!draws({.only = Ids{id_, other->id()}}, kViews[kOnGround], "with " + other->id()))
                 return;
+        for (const effect::Effect* other : stitched)
+            if (!stitches(registry, {.only = Ids{id_, other->id()}}, "with " + other->id())) return;
     }
 
   private:
@@ -92,10 +108,38 @@ class Check {
         return true;
     }
 
+    /// Whether an effect provides a word that changes the text of another one.
+    static bool answers(const effect::Effect& effect, const effect::Effect& asking) {
+        const effect::Manifest& manifest = asking.manifest;
+        return std::ranges::any_of(effect.manifest.provides, [&](const std::string& word) {
+            return contains(manifest.wants, word) || contains(manifest.needs, word);
+        });
+    }
+
+    /// As draws(), of the texts of the programs alone.
+    bool stitches(const effect::Registry& registry, const effect::Switches& switches,
+                  const std::string& with) {
+        try {
+            const effect::Selection selection = effect::select(registry, {}, switches);
+            shader::StitchInput input;
+            input.snippets = selection.snippets();
+            input.passes = selection.passes();
+            input.instances = selection.instances();
+            input.capabilities = selection.capabilities;
+            input.values = &session_->effects().values;
+            input.max_texture_units = session_->device().max_texture_units;
+            render::stitch_frames(shader::FolderTexts(share_dir() / "shaders"), input, {});
+        } catch (const Error& error) {
+            return reports(error, with);
+        }
+        return true;
+    }
+
     /// @param with  other effects, for messages; empty: none
     /// @returns false if it cannot be drawn
     bool draws(const effect::Switches& switches, const View& view, const std::string& with) {
         const scene::Scene scene = scene_of(switches, view);
+        on_progress_(static_cast<double>(drawn_++) / static_cast<double>(pictures_));
         try {
             if (!session_)
                 session_ = std::make_unique<Session>(
@@ -106,14 +150,19 @@ class Check {
             check_numbers(scene, view);
         } catch (const Error& error) {
             if (error.code() == ErrorCode::NoDevice) throw;
-            const std::string what = error.what();
-            // Two effects that exclude each other are no mistake.
-            if (!with.empty() && what.starts_with("effects: ")) return true;
-            for (const std::string& line : author_lines(what))
-                report(with.empty() ? line : fmt::format("{} ({})", line, with));
-            return false;
+            return reports(error, with);
         }
         return true;
+    }
+
+    /// @returns false if the error is a mistake
+    bool reports(const Error& error, const std::string& with) {
+        const std::string what = error.what();
+        // Two effects that exclude each other are no mistake.
+        if (!with.empty() && what.starts_with("effects: ")) return true;
+        for (const std::string& line : author_lines(what))
+            report(with.empty() ? line : fmt::format("{} ({})", line, with));
+        return false;
     }
 
     void check_numbers(const scene::Scene& scene, const View& view) {
@@ -134,9 +183,12 @@ class Check {
         if (texts_.insert(text).second) on_finding_({true, text});
     }
 
+    const effect::Effect& effect_;
     std::string id_;
     const PluginCheckOptions& options_;
     const OnFinding& on_finding_;
+    const OnCheckProgress& on_progress_;
+    std::size_t pictures_ = 0, drawn_ = 0;  // of all that it draws, and of those so far
     FilesInUse files_;
     std::unique_ptr<Session> session_;
     std::set<std::string> texts_, causes_;
@@ -172,7 +224,8 @@ void check_paths(const PluginCheckOptions& options, const effect::Registry& regi
 
 }  // namespace
 
-PluginCheckTotals check_plugins(const PluginCheckOptions& options, const OnFinding& on_finding) {
+PluginCheckTotals check_plugins(const PluginCheckOptions& options, const OnFinding& on_finding,
+                                const OnCheckProgress& on_progress) {
     PluginCheckOptions all = options;
     all.plugin_path.insert(all.plugin_path.end(), options.paths.begin(), options.paths.end());
     const effect::Registry registry =
@@ -189,13 +242,18 @@ PluginCheckTotals check_plugins(const PluginCheckOptions& options, const OnFindi
         for (const std::string& line : author_lines(broken.error))
             report({true, line});
     }
-    for (const effect::Effect& effect : registry.effects()) {
-        if (!is_named(options, effect.manifest.folder)) continue;
-        totals.checked.push_back(effect.id());
+    std::vector<const effect::Effect*> named;
+    for (const effect::Effect& effect : registry.effects())
+        if (is_named(options, effect.manifest.folder)) named.push_back(&effect);
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        totals.checked.push_back(named[i]->id());
         const int errors = totals.errors;
-        for (const effect::Finding& finding : effect::lint(effect, registry))
+        for (const effect::Finding& finding : effect::lint(*named[i], registry))
             report(finding);
-        if (totals.errors == errors) Check(effect, all, report).run(registry);
+        const OnCheckProgress of_all = [&](double share) {
+            on_progress((static_cast<double>(i) + share) / static_cast<double>(named.size()));
+        };
+        if (totals.errors == errors) Check(*named[i], all, report, of_all).run(registry);
     }
     return totals;
 }

@@ -100,8 +100,8 @@ TEST_F(PluginTools, AListWithABrokenPluginFails) {
     add("plugins", "red", "void red_on_lit() {}\n");
     const Result run = relevo({"plugins", "list", "--plugin-path", path("plugins")});
     EXPECT_EQ(run.status, 1);
-    EXPECT_THAT(run.err,
-                ::testing::MatchesRegex("relevo: error: plugins: 1 of [0-9]+ cannot be used\n"));
+    EXPECT_THAT(run.err, ::testing::MatchesRegex(
+                             "relevo: error: plugins: 1 of [0-9]+ cannot be used: red\n"));
     EXPECT_THAT(relative(run.out), HasSubstr("red          -    shader: plugins/red/red.glsl:1: "));
 }
 

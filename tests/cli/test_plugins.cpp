@@ -337,8 +337,8 @@ TEST_F(Plugins, OneBadByteLeavesTheListWhole) {
     const Result run =
         relevo({"plugins", "--json", "--plugin-path", (folder_ / "plugins").string()});
     EXPECT_EQ(run.status, 1);
-    EXPECT_THAT(run.err,
-                ::testing::MatchesRegex("relevo: error: plugins: 1 of [0-9]+ cannot be used\n"));
+    EXPECT_THAT(run.err, ::testing::MatchesRegex(
+                             "relevo: error: plugins: 1 of [0-9]+ cannot be used: odd\n"));
     const nlohmann::json json = nlohmann::json::parse(run.out);
     ASSERT_EQ(json["broken"].size(), 1u);
     EXPECT_EQ(json["broken"][0]["id"], "odd");
