@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs the packages of tools/packages.txt that are missing. Usage: install_packages.sh [test]
+# Installs the packages of tools/packages.txt that are missing. Usage: install_packages.sh [test|fuzz]
 set -euo pipefail
 list=$(dirname "$0")/packages.txt
-wanted=$(sed -n 's/^\([a-z0-9].*\)$/\1/p' "$list" | { [ "${1:-}" = test ] && sed 's/^test //' || grep -v '^test '; })
+wanted=$(sed -n "s/^\(${1:-} \)\{0,1\}\([a-z0-9][^ ]*\)$/\2/p" "$list")
 missing=$(for package in $wanted; do
     dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || echo "$package"
 done)

@@ -67,10 +67,10 @@ scene::Scene read_dem(const std::vector<std::string>& files, json::Value dem) {
         item.kind = json::Value::Kind::String;
         item.text = file;
     }
-    if (dem.kind == json::Value::Kind::Object) dem.members.emplace_back("files", std::move(list));
+    if (dem.kind == json::Value::Kind::Object) dem.members.push_back({"files", std::move(list)});
     json::Value whole;
     whole.kind = json::Value::Kind::Object;
-    whole.members.emplace_back("dem", std::move(dem));
+    whole.members.push_back({"dem", std::move(dem)});
     scene::Scene scene;
     take(scene, whole, {});
     return scene;

@@ -121,13 +121,13 @@ ModuleCall::Pause::~Pause() {
 
 // These replace the C library's for modules: the linkers of GNU and LLVM export them, because a
 // library that the program links has the same names.
-extern "C" [[noreturn]] void _exit(int status) {
+extern "C" void _exit(int status) {
     relevo::effect::check_exit(__builtin_return_address(0));
     while (true)
         syscall(SYS_exit_group, status);
 }
 
-extern "C" [[noreturn]] void _Exit(int status) noexcept {
+extern "C" void _Exit(int status) noexcept {
     relevo::effect::check_exit(__builtin_return_address(0));
     while (true)
         syscall(SYS_exit_group, status);

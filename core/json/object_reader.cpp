@@ -46,7 +46,7 @@ const Value* ObjectReader::take(const std::string& key) {
 
 bool ObjectReader::has(std::string_view key) const {
     return std::ranges::any_of(object_.members,
-                               [&](const auto& member) { return member.first == key; });
+                               [&](const auto& member) { return member.name == key; });
 }
 
 const Value& ObjectReader::need(const std::string& key) {

@@ -52,8 +52,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         if (!fresh)
             bad_input(fmt::format("{}: {}:{}: {}: given already in line {}", who_, file_, line_,
                                   value, same->second));
-        stack_.back().members.emplace_back(value, Value{});
-        stack_.back().members.back().second.line = line_;
+        stack_.back().members.push_back({value, Value{}});
+        stack_.back().members.back().value.line = line_;
         return true;
     }
 
@@ -106,7 +106,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         } else if (stack_.back().kind == Value::Kind::Array) {
             stack_.back().items.push_back(std::move(value));
         } else {
-            Value& member = stack_.back().members.back().second;
+            Value& member = stack_.back().members.back().value;
             value.line = member.line;
             member = std::move(value);
         }

@@ -3,12 +3,13 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 /// Reads JSON files that people write: scenes, jobs, presets and plugin manifests. Every value
 /// knows its line, for messages. JSON is written with nlohmann/json directly.
 namespace relevo::json {
+
+struct Member;
 
 struct Value {
     enum class Kind { Null, Bool, Number, String, Array, Object };
@@ -16,9 +17,15 @@ struct Value {
     bool boolean = false;
     double number = 0;
     std::string text;
-    std::vector<Value> items;                            ///< of an array
-    std::vector<std::pair<std::string, Value>> members;  ///< of an object, in the file's order
-    int line = 0;                                        ///< of a member: its key's
+    std::vector<Value> items;     ///< of an array
+    std::vector<Member> members;  ///< of an object, in the file's order
+    int line = 0;                 ///< of a member: its key's
+};
+
+/// A pair would do, but not for clang with this library: it needs a whole type sooner.
+struct Member {
+    std::string name;
+    Value value;
 };
 
 /// A value for messages: `"text"`, `12`, `a list`, `an object`.

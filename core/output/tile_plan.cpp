@@ -6,6 +6,8 @@
 #include <iterator>
 #include <memory>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -40,8 +42,33 @@ Json json_of(const dem::Window& window) {
     return {window.column, window.row, window.columns, window.rows};
 }
 
-dem::Window window_of(const Json& json) {
-    return {json.at(0), json.at(1), json.at(2), json.at(3)};
+/// A whole number that T holds. The library would convert others to any number.
+/// @throws std::exception, here and below, for what is damaged
+template <typename T>
+T whole(const Json& json) {
+    const bool fits = json.is_number_unsigned()
+                          ? std::in_range<T>(json.get<std::uint64_t>())
+                          : json.is_number_integer() && std::in_range<T>(json.get<std::int64_t>());
+    if (!fits) throw std::out_of_range("expected a whole number");
+    return json.get<T>();
+}
+
+/// A window of a grid, which has posts.
+dem::Window window_of(const Json& json, const dem::Grid& grid) {
+    const dem::Window window{whole<int>(json.at(0)), whole<int>(json.at(1)), whole<int>(json.at(2)),
+                             whole<int>(json.at(3))};
+    if (window.column < 0 || window.row < 0 || window.is_empty() ||
+        window.columns > grid.columns() - window.column || window.rows > grid.rows() - window.row)
+        throw std::out_of_range("expected posts of the grid");
+    return window;
+}
+
+dem::Grid grid_of(const Json& dem, const std::string& name) {
+    const int columns = whole<int>(dem.at("size").at(0)), rows = whole<int>(dem.at("size").at(1));
+    const std::array<double, 6> transform = dem.at("geotransform");
+    if (columns <= 0 || rows <= 0) throw std::out_of_range("expected posts");
+    return {columns, rows, dem::Affine::of_geotransform(transform),
+            geo::Crs::parse(dem.at("crs").get<std::string>(), name)};
 }
 
 Json json_of(const dem::NamedTiles& tiles) {
@@ -49,7 +76,7 @@ Json json_of(const dem::NamedTiles& tiles) {
 }
 
 dem::NamedTiles named_of(const Json& json) {
-    return {.count = json.at("count"), .first = json.at("first")};
+    return {.count = whole<std::int64_t>(json.at("count")), .first = json.at("first")};
 }
 
 Json json_of(const TilePlan& plan) {
@@ -85,26 +112,23 @@ bool is_plain_name(const std::string& name) {
 
 TilePlan plan_of(const Json& json, const std::string& name) {
     const Json& dem = json.at("dem");
-    const std::array<double, 6> transform = dem.at("geotransform");
     TilePlan plan{.command = json.at("command"),
                   .digest = json.at("digest"),
                   .dems = dem.at("files"),
-                  .grid = dem::Grid(dem.at("size").at(0), dem.at("size").at(1),
-                                    dem::Affine::of_geotransform(transform),
-                                    geo::Crs::parse(dem.at("crs").get<std::string>(), name)),
+                  .grid = grid_of(dem, name),
                   .statistics = {.min_m = dem.at("lowest_m"),
                                  .max_m = dem.at("highest_m"),
-                                 .valid = dem.at("posts_with_height"),
-                                 .holes = dem.at("voids"),
-                                 .outliers = dem.at("outliers")},
+                                 .valid = whole<std::int64_t>(dem.at("posts_with_height")),
+                                 .holes = whole<std::int64_t>(dem.at("voids")),
+                                 .outliers = whole<std::int64_t>(dem.at("outliers"))},
                   .content = std::stoull(dem.at("content").get<std::string>(), nullptr, 16),
-                  .dem_tiles = {.tiles = dem.at("tiles"),
+                  .dem_tiles = {.tiles = whole<std::int64_t>(dem.at("tiles")),
                                 .missing = named_of(dem.at("missing")),
                                 .broken = named_of(dem.at("broken"))},
                   .stamp = dem.at("stamp"),
                   .tiles = {}};
     for (const Json& tile : json.at("tiles")) {
-        plan.tiles.push_back({tile.at(0), window_of(tile.at(1))});
+        plan.tiles.push_back({tile.at(0), window_of(tile.at(1), plan.grid)});
         if (!is_plain_name(plan.tiles.back().name))
             bad_input(
                 fmt::format("{}: a tile has the name \"{}\", expected that of a file of its "

@@ -345,7 +345,7 @@ class JobReader {
     /// Takes the member `name` out of an object.
     std::string take_name(json::Value& object, const std::string& path, std::size_t index) const {
         const std::string name = inside(object, path).string("name", fmt::format("{}", index + 1));
-        std::erase_if(object.members, [](const auto& member) { return member.first == "name"; });
+        std::erase_if(object.members, [](const auto& member) { return member.name == "name"; });
         return name;
     }
 

@@ -6,26 +6,20 @@
 
 #include "image/image.h"
 #include "session/audit.h"
+#include "session/record_reader.h"
 #include "session/scene_inputs.h"
 #include "session/session.h"
 
 /// What a picture says of itself.
 namespace relevo::session {
 
-/// Keywords of a picture's metadata: its scene as scene::scene_line(), the compared effects
-/// separated by commas, and SceneInputs::record().
-inline constexpr const char* kSceneKeyword = "relevo:scene";
+/// Keywords of a picture's metadata: the compared effects separated by commas, and
+/// SceneInputs::record().
 inline constexpr const char* kComparedKeyword = "relevo:compared";
 inline constexpr const char* kInputsKeyword = "relevo:inputs";
 /// Of layers: the origin of the local frame, `{"lat_deg":46.5,"lon_deg":8,"height_m":0}`,
 /// ellipsoidal on WGS 84; x east, y north, z up there.
 inline constexpr const char* kOriginKeyword = "relevo:origin";
-/// SHA-256 of scene::scene_line(), for formats whose metadata cannot hold the scene. The scene is
-/// then in the sidecar.
-inline constexpr const char* kSceneDigestKeyword = "relevo:scene-sha256";
-
-/// Path of a picture's JSON sidecar.
-std::filesystem::path sidecar_of(std::filesystem::path picture);
 
 /// As sidecar_of(), for writing. @throws Error (BadInput) if it is a pipe or device: writing could
 /// block
@@ -55,15 +49,6 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
 
 /// Message that a picture's scene is in its sidecar.
 std::string says_where_scene_is(const std::filesystem::path& picture);
-
-/// The JSON of a record without anything nested deeper than 32 levels; empty if it is not JSON.
-/// Records are untrusted, and serialising deep ones would exhaust the stack.
-std::string shallow_json(const std::string& text);
-
-/// The metadata of a picture including its scene, even if that is in the sidecar.
-/// @throws Error (BadInput) as image::read_metadata(), and if the sidecar with the scene is
-///     missing, unreadable or belongs to another picture
-image::Metadata read_record(const std::filesystem::path& picture);
 
 /// The JSON sidecar of a picture: scene, sun, camera, device, versions, DEM; see docs/jobs.md.
 /// @param picture  name of its file

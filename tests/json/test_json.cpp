@@ -12,16 +12,16 @@ using relevo::test::error_of;
 TEST(Json, KnowsTheLineOfEveryMember) {
     const Value json = parse("who", "a.json", "{\n  \"a\": 1,\n  \"b\": {\n\"c\": [\n1,\n\"x\"]}}");
     ASSERT_EQ(json.members.size(), 2u);
-    EXPECT_EQ(json.members[0].second.line, 2);
-    EXPECT_EQ(json.members[1].second.line, 3);
-    const Value& list = json.members[1].second.members[0].second;
+    EXPECT_EQ(json.members[0].value.line, 2);
+    EXPECT_EQ(json.members[1].value.line, 3);
+    const Value& list = json.members[1].value.members[0].value;
     EXPECT_EQ(list.line, 4);
     EXPECT_EQ(list.items[1].line, 6);
     EXPECT_EQ(list.items[0].number, 1);
 }
 
 TEST(Json, AMembersLineIsItsKeys) {
-    EXPECT_EQ(parse("who", "a.json", "{\"a\":\n\n1}").members[0].second.line, 1);
+    EXPECT_EQ(parse("who", "a.json", "{\"a\":\n\n1}").members[0].value.line, 1);
 }
 
 struct Bad {

@@ -115,6 +115,29 @@ TEST(TilePlan, IsReadAsItWasWritten) {
     EXPECT_NE(test::error_of([&] { read_plan(folder); }).find("is damaged"), std::string::npos);
 }
 
+TEST(TilePlan, NumbersThatNoPlanHasAreDamage) {
+    const fs::path folder = test::scratch_dir();
+    const auto message = [&](const std::string& columns, const std::string& window) {
+        std::ofstream(folder / kPlanFile) << fmt::format(
+            R"({{"relevo_plan": 1, "command": "c", "digest": "d", "dem": {{"files": ["a.tif"],
+                "size": [{}, 20], "geotransform": [500000, 10, 0, 5200000, 0, -10],
+                "crs": "EPSG:32632", "lowest_m": 1, "highest_m": 2, "posts_with_height": 200,
+                "voids": 0, "outliers": 0, "content": "ff", "tiles": 0,
+                "missing": {{"count": 0, "first": []}}, "broken": {{"count": 0, "first": []}},
+                "stamp": "s"}}, "tiles": [["r0001_c0001.tif", {}]]}})",
+            columns, window);
+        return test::error_of([&] { read_plan(folder); });
+    };
+    const std::string damaged = "exit 3: plan: " + (folder / kPlanFile).string() +
+                                ": is damaged; remove it, and plan again";
+    EXPECT_EQ(message("10", "[0, 0, 10, 20]"), "no error");
+    for (const char* const columns : {"0", "-1", "1e300", "4294967306", "18446744073709551615"})
+        EXPECT_EQ(message(columns, "[0, 0, 10, 20]"), damaged) << columns;
+    for (const char* const window : {"[0, 0, 11, 20]", "[-1, 0, 10, 20]", "[0, 19, 10, 2]",
+                                     "[0, 0, 0, 20]", "[2147483647, 0, 2147483647, 20]", "[0, 0]"})
+        EXPECT_EQ(message("10", window), damaged) << window;
+}
+
 TEST(TilePlan, PostsThatAreKnownAreThoseOfTheDem) {
     test::Raster raster;
     raster.columns = 900;

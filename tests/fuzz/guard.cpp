@@ -1,0 +1,9 @@
+#include "dem/guard.h"
+
+#include <string>
+
+#include "fuzz/fuzz.h"
+
+void relevo::fuzz::read(std::string_view bytes) {
+    dem::refuse_unsafe_vrt(file(bytes, "mosaic.vrt"));
+}

@@ -1,0 +1,13 @@
+#include "scene/job.h"
+
+#include <string>
+
+#include "fuzz/fuzz.h"
+
+void relevo::fuzz::read(std::string_view bytes) {
+    const scene::Job job = scene::read_job_text(std::string(bytes), "job.json", folder());
+    const auto noon = [](const scene::Scene& scene) {
+        return sun::parse_time(scene.time.at, sun::Zone());
+    };
+    scene::shots_of(job, noon, 100);
+}

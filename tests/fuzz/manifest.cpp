@@ -1,0 +1,16 @@
+#include "effect/manifest.h"
+
+#include <string>
+
+#include "fuzz/fuzz.h"
+
+// A manifest names files, which have to exist.
+void relevo::fuzz::read(std::string_view bytes) {
+    static const bool others [[maybe_unused]] = [] {
+        for (const char* const name : {"a.glsl", "b.glsl", "a.png", "b.png", "a.csv", "a.obj"})
+            file("", name);
+        return true;
+    }();
+    file(bytes, "plugin.json");
+    effect::load_manifest(folder(), folder());
+}

@@ -1,0 +1,9 @@
+#include "effect/preset.h"
+
+#include <string>
+
+#include "fuzz/fuzz.h"
+
+void relevo::fuzz::read(std::string_view bytes) {
+    effect::load_preset(file(bytes, "preset.json"));
+}
