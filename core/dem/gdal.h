@@ -161,7 +161,6 @@ RELEVO_GDAL(OGR_L_GetNextFeature);
 RELEVO_GDAL(OGR_L_GetSpatialRef);
 RELEVO_GDAL(OGR_L_ResetReading);
 RELEVO_GDAL(OSRDestroySpatialReference);
-RELEVO_GDAL(OSRExportToWkt);
 RELEVO_GDAL(OSRExportToWktEx);
 RELEVO_GDAL(OSRGetDataAxisToSRSAxisMapping);
 RELEVO_GDAL(OSRGetLinearUnits);

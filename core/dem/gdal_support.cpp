@@ -1,6 +1,7 @@
 #include "dem/gdal_support.h"
 
 #include <algorithm>
+#include <array>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -122,6 +123,17 @@ std::string GdalMessages::failure(const std::string& path) const {
     while (line.ends_with('.'))
         line.remove_suffix(1);
     return std::string(line);
+}
+
+std::string wkt_of(void* crs) {
+    if (!crs) return {};
+    // GDAL gives a text even where it fails.
+    char* text = nullptr;
+    constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
+    const bool written = OSRExportToWktEx(crs, &text, kForm.data()) == OGRERR_NONE && text;
+    std::string wkt = written ? text : "";
+    CPLFree(text);
+    return wkt;
 }
 
 }  // namespace relevo::dem

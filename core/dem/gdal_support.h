@@ -68,4 +68,7 @@ class GdalMessages {
     std::vector<std::string> failures_;
 };
 
+/// The text of an OGRSpatialReferenceH, WKT 2; empty where there is none, or GDAL cannot write it.
+std::string wkt_of(void* crs);
+
 }  // namespace relevo::dem

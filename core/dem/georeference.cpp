@@ -60,10 +60,7 @@ FileCrs crs_in(const std::string& path, GDALDatasetH dataset) {
     FileCrs found;
     GdalMessages messages;  // of keys that make no CRS; what counts is whether one comes out
     if (OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset)) {
-        char* wkt = nullptr;
-        constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
-        if (OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) found.wkt = wkt;
-        CPLFree(wkt);
+        found.wkt = wkt_of(srs);
         const char* name = OSRIsLocal(srs) ? OSRGetName(srs) : nullptr;
         found.name = name ? name : "";
     }

@@ -151,15 +151,12 @@ class LineReader {
     }
 
     geo::Crs crs_of(OGRLayerH layer) const {
-        const OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
-        char* wkt = nullptr;
-        if (!srs || OSRExportToWkt(srs, &wkt) != OGRERR_NONE || !wkt)
+        const std::string wkt = wkt_of(OGR_L_GetSpatialRef(layer));
+        if (wkt.empty())
             fail(
                 "it names no coordinate system, its place on the ground is unknown; add one with "
                 "ogr2ogr -a_srs EPSG:n");
-        const std::string text = wkt;
-        CPLFree(wkt);
-        return geo::Crs::parse(text, fmt::format("{}: {}", who_, printable(path_)));
+        return geo::Crs::parse(wkt, fmt::format("{}: {}", who_, printable(path_)));
     }
 
     /// Adds the vertices of all lines of a geometry to `parts_`.

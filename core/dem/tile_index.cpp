@@ -161,11 +161,7 @@ void collect(OGRGeometryH geometry, Outline& outline) {
 
 std::optional<geo::Crs> crs_of(OGRLayerH layer, TileCollector& tiles) {
     const OGRSpatialReferenceH srs = OGR_L_GetSpatialRef(layer);
-    char* wkt = nullptr;
-    constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
-    std::string text;
-    if (srs && OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) text = wkt;
-    CPLFree(wkt);
+    const std::string text = wkt_of(srs);
     // "Undefined Cartesian SRS" and its like of GeoPackages.
     if (text.empty() || OSRIsLocal(srs) || lower(OSRGetName(srs)).starts_with("undefined"))
         return std::nullopt;

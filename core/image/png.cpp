@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -28,6 +29,23 @@ namespace {
 }
 
 void on_warning(png_structp, png_const_charp) {}
+
+/// Bytes that libpng may still allocate for a picture that is read, pixels not among them. Of 8 kB
+/// a file may have 8 MB of text, a thousand times, or claim 2 GiB.
+struct Allowance {
+    std::size_t left = std::size_t{256} << 20;
+};
+
+png_voidp allocate(png_structp png, png_alloc_size_t bytes) {
+    std::size_t& left = static_cast<Allowance*>(png_get_mem_ptr(png))->left;
+    if (bytes > left) on_error(png, "has more than 256 MiB beside its pixels");
+    left -= bytes;
+    return std::malloc(bytes);
+}
+
+void release(png_structp, png_voidp memory) {
+    std::free(memory);
+}
 
 /// Gathers the small pieces in which libpng writes.
 struct Sink {
@@ -253,7 +271,9 @@ Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
         png_infop info = nullptr;
         ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
     } reader;
-    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &subject, on_error, on_warning);
+    Allowance allowance;
+    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &subject, on_error, on_warning,
+                                          &allowance, allocate, release);
     reader.info = png_create_info_struct(reader.png);
     int descriptor = input.descriptor();
     png_set_read_fn(reader.png, &descriptor, read_bytes);

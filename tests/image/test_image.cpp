@@ -3,8 +3,10 @@
 #include <fstream>
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "image/image.h"
 #include "support/support.h"
 
@@ -177,6 +179,47 @@ TEST_F(ImageFiles, APngThatClaimsMoreThanItHoldsTakesNoMemory) {
             ": expected 1 to 32768 pixels a side and at most 1024 MiB of them but got 40000 x "
             "10");
     EXPECT_EQ(error_of(32768, 32769, 1100000).substr(0, 8), "exit 3: ");
+}
+
+/// A chunk of a PNG with its checksum.
+std::string png_chunk(const std::string& name, const std::string& content) {
+    const auto word = [](std::uint32_t value) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8)
+            bytes += static_cast<char>(value >> shift & 0xff);
+        return bytes;
+    };
+    const std::string body = name + content;
+    const std::uint32_t sum = libdeflate_crc32(0, body.data(), body.size());
+    return word(static_cast<std::uint32_t>(content.size())) + body + word(sum);
+}
+
+TEST_F(ImageFiles, TextsOfAPngTakeBoundedMemory) {
+    // 7 MB of a text in 7 kB, 40 times.
+    const std::string text(7'000'000, 'x');
+    std::string packed(100'000, '\0');
+    libdeflate_compressor* const compressor = libdeflate_alloc_compressor(6);
+    packed.resize(libdeflate_zlib_compress(compressor, text.data(), text.size(), packed.data(),
+                                           packed.size()));
+    libdeflate_free_compressor(compressor);
+    const auto path = dir_ / "texts.png";
+    write(path, gradient(2, 2, 3));
+    const std::string plain = read_text(path, "test");
+    const auto with = [&](const std::string& chunks) {
+        std::string bytes = plain;
+        std::ofstream(path, std::ios::binary) << bytes.insert(33, chunks);  // behind the header
+    };
+    std::string chunks;
+    for (int i = 0; i < 40; ++i) {
+        chunks += png_chunk("zTXt", fmt::format("text{}", i) + std::string(2, '\0') + packed);
+        if (i == 4) {
+            with(chunks);
+            EXPECT_EQ(read_metadata(path).at("text4"), text);
+        }
+    }
+    with(chunks);
+    EXPECT_EQ(test::error_of([&] { read_metadata(path); }),
+              "exit 3: image: " + path.string() + ": has more than 256 MiB beside its pixels");
 }
 
 TEST_F(ImageFiles, ThatAreNoRegularFilesAreNotWaitedFor) {
