@@ -170,6 +170,7 @@ void run_hours(const HoursArguments& arguments) {
     warn_of_beyond(raster, posts, options, light::suns_of(posts.grid(), begin, end),
                    arguments.raster.highest_m);
     options.done = raster.done();
+    options.mixes_suns = arguments.raster.dry_run || arguments.raster.plan.on;
     Summary sum;
     const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
                               const dem::Window& window) -> PartMaker {

@@ -301,10 +301,14 @@ void RasterRun::choose_tiles() {
 
 std::function<void(double)> RasterRun::done() {
     return [this](double of_call) {
-        share_ += of_call * part_share_ / static_cast<double>(wanted_.calls);
+        const double step = of_call * part_share_ / static_cast<double>(wanted_.calls);
+        share_ += step;
         passed_s_ = seconds_since(began_);
+        sampled_.end_step(step, passed_s_);
         if (bar_) bar_->show(share_);
-        if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1) throw Enough();
+        if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1 &&
+            sampled_.suffices())
+            throw Enough();
     };
 }
 
@@ -364,6 +368,7 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
     PartFigures sum;
     for (const dem::Window& part : parts_of(raster)) {
         part_share_ = posts_of(part) / posts_;
+        sampled_.begin_part(part_share_, seconds_since(began_));
         PartFigures figures = make_part(part);
         sum.holes += figures.holes;
         sum.definition = std::move(figures.definition);
@@ -458,8 +463,7 @@ RasterEstimate RasterRun::estimate() const {
     found.ready_s = ready_s_;
     const double sites_s = sites_s_ / static_cast<double>(std::max<std::size_t>(1, sites_)) *
                            static_cast<double>(todo_.size());
-    found.computing_s =
-        ready_s_ + sites_s + (passed_s_ - ready_s_ - sites_s_) / std::max(share_, 1e-9);
+    found.computing_s = ready_s_ + sites_s + sampled_.all_s();
     found.sampled_share = share_;
     found.sampled_s = passed_s_;
     found.threads = thread_count();

@@ -149,6 +149,7 @@ class RasterRun {
     std::optional<output::RasterWriter> writer_;
     std::optional<ProgressBar> bar_;
     double share_ = 0, part_share_ = 0;
+    SampledTime sampled_;
     double passed_s_ = 0, ready_s_ = 0;  ///< until now, and until the work proper began
     double sites_s_ = 0;                 ///< of these, to make tiles with their halos ready
     std::size_t sites_ = 0;

@@ -12,6 +12,7 @@
 #include "light/fields.h"
 #include "light/point/direct_light.h"
 #include "light/point/horizon.h"
+#include "light/raster/hours_by_sun.h"
 #include "light/raster/sun_hours.h"
 #include "sun/zone.h"
 #include "support/support.h"
@@ -367,6 +368,26 @@ TEST(SunHours, WhatItCannotDoIsRefused) {
     EXPECT_EQ(
         test::error_of([&] { sun_hours(posts, begin, begin + 5 * 86400.0, {.spells = true}); }),
         "exit 3: sun hours: 5.0 days: first and last light are known of 4 days at most");
+}
+
+TEST(SunHours, SunsThatMeasureTheTimeAreMixed) {
+    EXPECT_EQ(order_of_suns(3, false), (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_TRUE(order_of_suns(0, true).empty());
+    for (const std::size_t count : {1, 2, 7, 193}) {
+        std::vector<std::size_t> order = order_of_suns(count, true);
+        if (count == 193) {
+            // In any five there are suns of the first and the last third of a day, and of noon.
+            for (std::size_t first = 0; first + 5 <= count; ++first) {
+                const auto [low, high] =
+                    std::minmax_element(order.begin() + static_cast<std::ptrdiff_t>(first),
+                                        order.begin() + static_cast<std::ptrdiff_t>(first) + 5);
+                EXPECT_LT(*low, count / 3) << first;
+                EXPECT_GT(*high, 2 * count / 3) << first;
+            }
+        }
+        std::ranges::sort(order);
+        EXPECT_EQ(order, order_of_suns(count, false));
+    }
 }
 
 }  // namespace

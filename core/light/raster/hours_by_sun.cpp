@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "base/units.h"
@@ -96,6 +97,22 @@ class LightSoFar {
 
 }  // namespace
 
+std::vector<std::size_t> order_of_suns(std::size_t count, bool mixed) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (!mixed || count == 0) return order;
+    constexpr double kGolden = 0.618033988749895, kMorning = 0.2;
+    std::vector<double> places(count);
+    for (std::size_t k = 0; k < count; ++k)
+        places[k] = std::fmod(kMorning + kGolden * static_cast<double>(k), 1.0);
+    // The rank of each place is its sun: a permutation.
+    std::vector<std::size_t> sorted = order;
+    std::ranges::sort(sorted, {}, [&](std::size_t k) { return places[k]; });
+    for (std::size_t rank = 0; rank < count; ++rank)
+        order[sorted[rank]] = rank;
+    return order;
+}
+
 void add_hours_by_sun(const SunPlan& plan, sun::Instant begin, double length_s, const Window& part,
                       const SunHoursOptions& options, SunHours& result) {
     if (options.spells) {
@@ -107,14 +124,14 @@ void add_hours_by_sun(const SunPlan& plan, sun::Instant begin, double length_s, 
     if (options.done) options.done(0);
     std::optional<sun::PositionTable> table;
     if (options.irradiation) table.emplace(begin, begin + length_s);
-    double before_s = 0;
-    for (const PlannedSun& sun : suns) {
+    for (const std::size_t k : order_of_suns(suns.size(), options.mixes_suns)) {
+        const PlannedSun& sun = suns[k];
+        const double before_s = k == 0 ? 0 : suns[k - 1].at_s;
         std::optional<SunBeams> beams;
         if (table && sun.at_s > before_s)
             beams.emplace(plan.terrain(), *table, before_s, sun.at_s, options.irradiation->linke);
         light.add(sun, before_s, beams ? &*beams : nullptr);
         if (sun.at_s == 0) light.begin();
-        before_s = sun.at_s;
         if (options.done) options.done(1.0 / static_cast<double>(suns.size()));
     }
     light.end(length_s / kHour_s);

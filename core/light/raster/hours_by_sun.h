@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "light/raster/sun_hours.h"
 #include "light/raster/sun_plan.h"
@@ -13,5 +15,9 @@ namespace relevo::light {
 /// @param part  of its window
 void add_hours_by_sun(const SunPlan& plan, sun::Instant begin, double length_s, const Window& part,
                       const SunHoursOptions& options, SunHours& result);
+
+/// The order in which suns are visited: theirs, or mixed as SunHoursOptions::mixes_suns has it, by
+/// golden sections from the morning on.
+std::vector<std::size_t> order_of_suns(std::size_t count, bool mixed);
 
 }  // namespace relevo::light

@@ -35,6 +35,9 @@ struct SunHoursOptions {
     const dem::Posts* around = nullptr;
     Window part{};                     ///< as in ShadowOptions
     std::function<void(double)> done;  ///< likewise
+    /// Only to measure the time: visits suns in an order of which any beginning has low and high
+    /// ones, as low ones take longer. Results are meaningless.
+    bool mixes_suns = false;
 
     /// Beyond this time, every post's horizon is found in directions that are 2 degrees apart, at a
     /// cost that does not grow with the time.
