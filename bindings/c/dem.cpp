@@ -57,7 +57,7 @@ dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
     json::Value own;
     own.kind = json::Value::Kind::Object;
     const auto is_own = [](const auto& member) {
-        return member.first == "scale" || member.first == "offset" || member.first == "voids_known";
+        return member.name == "scale" || member.name == "offset" || member.name == "voids_known";
     };
     std::ranges::copy_if(options.members, std::back_inserter(own.members), is_own);
     std::erase_if(options.members, is_own);
