@@ -231,6 +231,7 @@ class VrtWalk {
             refuse(given_, fmt::format("a virtual raster of the program's own memory ('{}'), "
                                        "expected files",
                                        text));
+        if (!folder.empty()) name = CPLProjectRelativeFilename(folder.c_str(), name.c_str());
         if (!name_.allows(name))
             refuse(given_, fmt::format("a virtual raster of '{}', expected files of this "
                                        "machine; the net is asked only by a name on the "

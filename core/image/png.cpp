@@ -38,7 +38,7 @@ struct Allowance {
 
 png_voidp allocate(png_structp png, png_alloc_size_t bytes) {
     std::size_t& left = static_cast<Allowance*>(png_get_mem_ptr(png))->left;
-    if (bytes > left) on_error(png, "has more than 256 MiB beside its pixels");
+    if (bytes > left) on_error(png, "has more than 256 MiB of texts and tables");
     left -= bytes;
     return std::malloc(bytes);
 }

@@ -6,10 +6,12 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal.h>
+#include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/allowed_name.h"
 #include "dem/fixture.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
@@ -56,6 +58,8 @@ std::string memory_at(const void* address) {
 TEST(Guard, NoFileReadsTheProgramsMemory) {
     const std::vector<float> secret(24, 4711.0f);
     const std::string name = memory_at(secret.data());
+    EXPECT_THAT(refusal(name), testing::HasSubstr("is not a file of this machine"));
+    allow_name(name);  // as one of the command line
     EXPECT_EQ(refusal(name), "names the program's own memory, expected a file");
     const std::string what =
         "a virtual raster of the program's own memory ('" + name + "'), expected files";
@@ -111,6 +115,21 @@ TEST(Guard, NoFileRunsCode) {
     EXPECT_FALSE(std::filesystem::exists(made));
 }
 
+/// A description of what is on the net.
+std::filesystem::path service() {
+    const std::filesystem::path file = folder() / "service.xml";
+    std::ofstream(file)
+        << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png"
+           "</ServerUrl></Service><DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>"
+           "20037508.34</UpperLeftY><LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34"
+           "</LowerRightY><TileLevel>3</TileLevel></DataWindow><BandsCount>3</BandsCount>"
+           "</GDAL_WMS>";
+    return file;
+}
+constexpr const char* kService =
+    "a description (WMS) of what is on the net, which is asked only by a name on the command line; "
+    "make a file of it with gdal_translate";
+
 TEST(Guard, NoFileGoesToTheNet) {
     for (const char* name :
          {"http://127.0.0.1:9/a.tif", "/vsicurl/http://127.0.0.1:9/a.tif", "/vsis3/bucket/a.tif",
@@ -126,16 +145,7 @@ TEST(Guard, NoFileGoesToTheNet) {
     for (const char* name : {"alps.tif", "/vsizip/a.zip/b.tif", "NETCDF:a.nc:z", "/data/vsix/a.tif",
                              "vrt://a.tif?bands=1", "/vsitar/{/x/a.tar}/b.tif"})
         EXPECT_FALSE(is_remote(name)) << name;
-    const std::filesystem::path service = folder() / "service.xml";
-    std::ofstream(service)
-        << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png"
-           "</ServerUrl></Service><DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>"
-           "20037508.34</UpperLeftY><LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34"
-           "</LowerRightY><TileLevel>3</TileLevel></DataWindow><BandsCount>3</BandsCount>"
-           "</GDAL_WMS>";
-    EXPECT_EQ(refusal(service),
-              "a description (WMS) of what is on the net, which is asked only by a name on the "
-              "command line; make a file of it with gdal_translate");
+    EXPECT_EQ(refusal(service()), kService);
     const GdalMessages messages;
     EXPECT_EQ(VSIFOpenL("/vsicurl/http://127.0.0.1:9/a.tif", "rb"), nullptr);
 }
@@ -248,15 +258,25 @@ TEST(Guard, AProcessWithoutFilesLeftSaysSo) {
 /// The last: the net is open from here on.
 TEST(Guard, TheNetOfOneNameIsNotThatOfAFile) {
     const std::string remote = "/vsicurl/http://127.0.0.1:9/a.tif";
+    EXPECT_FALSE(is_remote_allowed());
+    EXPECT_THAT(refusal(remote), testing::HasSubstr("is not a file of this machine"));
+    EXPECT_FALSE(is_remote_allowed());
+    allow_name(remote);
     EXPECT_NE(test::error_of([&] { load(remote); }), "no error");
-    EXPECT_EQ(refusal(vrt("late.vrt", source_of(remote))),
+    EXPECT_TRUE(is_remote_allowed());
+    EXPECT_EQ(refusal(service()), kService);
+    const std::string other = "/vsicurl/http://127.0.0.1:9/b.tif";
+    EXPECT_EQ(refusal(vrt("late.vrt", source_of(other))),
               fmt::format("a virtual raster of '{}', expected files of this machine; the net is "
                           "asked only by a name on the command line",
-                          remote));
+                          other));
     // As the text of a name, too.
-    EXPECT_EQ(refusal("<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><VRTRasterBand dataType="
-                      "\"Float32\" band=\"1\">" +
-                      source_of("WMTS:here") + "</VRTRasterBand></VRTDataset>"),
+    const std::string text =
+        "<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><VRTRasterBand dataType=\"Float32\" "
+        "band=\"1\">" +
+        source_of("WMTS:here") + "</VRTRasterBand></VRTDataset>";
+    allow_name(text);
+    EXPECT_EQ(refusal(text),
               "a virtual raster of 'WMTS:here', expected files of this machine; the net is asked "
               "only by a name on the command line");
 }

@@ -385,10 +385,11 @@ TEST(Places, ALineThatIsNoneIsSaid) {
 
 TEST(Places, OnlyFilesOfThisMachineAreRead) {
     EXPECT_EQ(error_of([] { read_points("https://example.org/a.gpx", "t"); }),
-              "exit 3: t: https://example.org/a.gpx: cannot be read, No such file or directory");
+              "exit 2: 'https://example.org/a.gpx' is not a file of this machine; name it on the "
+              "command line, or add --trust");
     EXPECT_EQ(error_of([] { read_points("/vsicurl/https://example.org/a.gpx", "t"); }),
-              "exit 3: t: /vsicurl/https://example.org/a.gpx: cannot be read, No such file or "
-              "directory");
+              "exit 2: '/vsicurl/https://example.org/a.gpx' is not a file of this machine; name it "
+              "on the command line, or add --trust");
     EXPECT_EQ(error_of([] { read_points("/dev/zero", "t"); }),
               "exit 3: t: /dev/zero: cannot be read, it is not a regular file");
     // A name that GDAL would take for the JSON itself is that of a file.

@@ -219,7 +219,7 @@ TEST_F(ImageFiles, TextsOfAPngTakeBoundedMemory) {
     }
     with(chunks);
     EXPECT_EQ(test::error_of([&] { read_metadata(path); }),
-              "exit 3: image: " + path.string() + ": has more than 256 MiB beside its pixels");
+              "exit 3: image: " + path.string() + ": has more than 256 MiB of texts and tables");
 }
 
 TEST_F(ImageFiles, ThatAreNoRegularFilesAreNotWaitedFor) {

@@ -154,8 +154,8 @@ TEST(EventTime, ErrorsSayWhatIsWrong) {
               "exit 3: time: first-light@46.55,8.56: first and last light depend on the terrain; "
               "name a DEM");
     EXPECT_EQ(message("2126-06-21 sunrise@46.55,8.56", std::nullopt),
-              "exit 3: time: 2126-06-21 sunrise@46.55,8.56: the sun is computed for "
-              "the years 1900 to 2100, but got 2126");
+              "exit 3: time: 2126-06-21 sunrise@46.55,8.56: sun and moon are computed "
+              "for the years 1900 to 2100, but got 2126");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_F(MetarFile, WithoutAReportIsAnError) {
               "exit 3: weather: " + empty + ": expected a METAR but found none");
     const std::string wrong = file("LSZB 011150Z BKNX40\n");
     EXPECT_EQ(error_of([&] { report_of(wrong); }),
-              "exit 3: weather: METAR LSZB: \"BKNX40\": it is no group of a METAR that has a "
+              "exit 3: weather: METAR: it is no group of a METAR that has a "
               "meaning here; "
               "in " +
                   wrong);
