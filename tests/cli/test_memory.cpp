@@ -62,10 +62,10 @@ class LargeDem : public testing::Test {
 };
 
 TEST_F(LargeDem, PicturesTakeWhatMemoryAllows) {
-    const std::string small = make(2), large = make(8000);
+    const std::string small = make(2), large = make(6000);
     relevo(capture(small, {"--allow-blank"}));  // the driver keeps its programs
     const int floor_mib = measured(capture(small, {"--allow-blank"})).peak_mib;
-    for (const int mib : {64, 128}) {
+    for (const int mib : {64, 96}) {
         const std::vector<std::string> memory{"--memory", std::to_string(mib), "--no-cache"};
         const Measured found = measured(capture(large, memory));
         ASSERT_EQ(found.run.status, 0) << found.run.err;
@@ -85,10 +85,10 @@ TEST_F(LargeDem, PicturesTakeWhatMemoryAllows) {
 
 TEST_F(LargeDem, FiguresTakeWhatMemoryAllows) {
     const int floor_mib = measured(sky_view(make(2))).peak_mib;
-    const std::string large = make(3000);
+    const std::string large = make(2000);
     std::string whole;
-    // Held whole from 206 on; below, posts are read where they are needed.
-    for (const int mib : {3072, 210, 200, 64, 1}) {
+    // Held whole from 92 on; below, posts are read where they are needed.
+    for (const int mib : {3072, 96, 88, 64, 1}) {
         const Measured found = measured(sky_view(large, {"--memory", std::to_string(mib)}));
         ASSERT_EQ(found.run.status, 0) << found.run.err;
         fmt::print("[ memory ] sky-view --memory {}: {} MiB above a floor of {}\n", mib,
