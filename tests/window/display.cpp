@@ -62,13 +62,6 @@ std::filesystem::path own_folder(std::string_view kind) {
     return scratch_dir(fmt::format("{}_{}_{}", kind, getpid(), ++count));
 }
 
-std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-    return value;
-}
-
 }  // namespace
 
 nlohmann::json answer_of(const std::string& arguments) {
@@ -112,20 +105,7 @@ void Display::vanish() {
 }
 
 image::Image8 Display::screen() const {
-    // The X window dump: sizes as big-endian words, a table of colours, then BGRX rows.
-    const std::string dump = read_text(folder_ / "Xvfb_screen0", "test");
-    const auto word = [&](std::size_t i) { return std::size_t{big_endian(dump, 4 * i)}; };
-    const std::size_t width = word(4), height = word(5), stride = word(12), colours = word(19);
-    constexpr std::size_t kBytesAColour = 12;
-    image::Image8 picture(static_cast<int>(width), static_cast<int>(height), 3);
-    for (std::size_t y = 0; y < height; ++y) {
-        const char* from = dump.data() + word(0) + colours * kBytesAColour + y * stride;
-        std::uint8_t* to = picture.row(static_cast<int>(y));
-        for (std::size_t x = 0; x < width; ++x, from += 4, to += 3)
-            for (int c = 0; c < 3; ++c)
-                to[c] = static_cast<std::uint8_t>(from[2 - c]);
-    }
-    return picture;
+    return picture_of_dump(read_text(folder_ / "Xvfb_screen0", "test"));
 }
 
 std::string Display::act(const std::vector<std::string>& arguments) const {
@@ -196,14 +176,6 @@ int WindowedProgram::status(double at_most_s) {
 
 std::string WindowedProgram::output() const {
     return read_text(output_, "test");
-}
-
-double difference(const image::Image8& a, const image::Image8& b, int by) {
-    if (a.width != b.width || a.height != b.height) return 1;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < a.values.size(); ++i)
-        count += std::abs(int{a.values[i]} - int{b.values[i]}) > by;
-    return static_cast<double>(count) / static_cast<double>(a.values.size());
 }
 
 }  // namespace relevo::test

@@ -79,6 +79,12 @@ class WindowedProgram {
     bool ended_ = false;
 };
 
+/// The picture in an X window dump of 32 bits a pixel, RGB.
+image::Image8 picture_of_dump(const std::string& dump);
+
+/// Mean of the values.
+double brightness(const image::Image8& picture);
+
 /// Share of the values that differ by more than `by` between two pictures of one size.
 double difference(const image::Image8& a, const image::Image8& b, int by = 2);
 

@@ -57,7 +57,8 @@ TEST_F(ViewPanel, LensExposureAndHeightsAreThoseOfTheScene) {
     const image::Image8 dark = display_.screen();
     slide(kExposure, 130, 200);
     EXPECT_GT(resting_scene()["picture"]["exposure"].get<double>(), 0.5);
-    EXPECT_TRUE(wait([&] { return brightness(display_.screen()) > brightness(dark) + 5; }));
+    EXPECT_TRUE(
+        wait([&] { return test::brightness(display_.screen()) > test::brightness(dark) + 5; }));
     const nlohmann::json flat = resting_scene();
     slide(kHeights, 80, 200);
     ASSERT_TRUE(wait([&] { return resting_scene()["exaggeration"].get<double>() > 1.5; }));

@@ -68,23 +68,18 @@ class Viewer : public testing::Test {
         return windows.substr(0, windows.find('\n'));
     }
     /// Waits until the screen shows something, and the same for a while.
-    /// @param looks  so many in a row, 60 ms apart
+    /// @param looks  so many in a row, 150 ms apart: a slow window has no frame every 60 ms
     bool settles(int looks = 6) {
         image::Image8 before = display_.screen();
         int same = 0;
         return wait([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            std::this_thread::sleep_for(std::chrono::milliseconds(150));
             image::Image8 now = display_.screen();
-            same = test::difference(now, before) < 1e-4 && brightness(now) > 30 ? same + 1 : 0;
+            same =
+                test::difference(now, before) < 1e-4 && test::brightness(now) > 30 ? same + 1 : 0;
             before = std::move(now);
             return same >= looks;
         });
-    }
-    static double brightness(const image::Image8& picture) {
-        double sum = 0;
-        for (const std::uint8_t value : picture.values)
-            sum += value;
-        return sum / static_cast<double>(picture.values.size());
     }
     /// Whether doing it makes another picture, of which this share differs at least.
     bool changes(const std::function<void()>& act, double share = 0.05) {
