@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@
 #include "dem/posts.h"
 #include "light/point/horizon.h"
 #include "scene/panorama.h"
+#include "session/effect_groups.h"
 #include "session/panorama_maker.h"
 #include "session/panorama_parts.h"
 #include "session/session.h"
@@ -200,14 +202,6 @@ TEST(Panorama, NamesStandOverTheirPlaces) {
     }
 }
 
-image::Image8 picture_with(const std::string& effect, scene::Panorama kind, double heading_deg) {
-    scene::Scene scene =
-        scene_of(kind, heading_deg, 4, kind == scene::Panorama::Cylindrical ? 240 : 480);
-    scene.stamps.legend = false;
-    if (!effect.empty()) scene.effects.switches.enable = {effect};
-    return std::get<image::Image8>(drawn(scene).picture.pixels);
-}
-
 /// Mean of a channel of a block of pixels, in columns that go on around.
 double mean(const image::Image8& image, int left, int top, int side, int channel) {
     double sum = 0;
@@ -217,40 +211,47 @@ double mean(const image::Image8& image, int left, int top, int side, int channel
     return sum / (side * side);
 }
 
-/// Pixels are those of a panorama whose parts begin half a part farther on.
-class PanoramaParts : public testing::TestWithParam<std::string> {};
-
-TEST_P(PanoramaParts, DoNotShow) {
-    for (const auto kind : {scene::Panorama::Cylindrical, scene::Panorama::Equirectangular}) {
-        constexpr int kSide = 24, kTurned_px = 4 * static_cast<int>(kPart_deg) / 2;
-        const image::Image8 one = picture_with(GetParam(), kind, 70);
-        const image::Image8 other = picture_with(GetParam(), kind, 70 + kPart_deg / 2);
-        double sum = 0, worst = 0;
-        int blocks = 0, over_4 = 0;
-        for (int y = 0; y + kSide <= one.height; y += kSide)
-            for (int x = 0; x < one.width; x += kSide)
-                for (int c = 0; c < 3; ++c) {
-                    const double off = std::abs(mean(one, x + kTurned_px, y, kSide, c) -
-                                                mean(other, x, y, kSide, c));
-                    sum += off;
-                    worst = std::max(worst, off);
-                    over_4 += off > 4 ? 1 : 0;
-                    ++blocks;
-                }
-        fmt::print(
-            "{}: blocks of {} px differ by {:.3f}/255, {:.3f} % by more than 4, worst {:.1f}\n",
-            GetParam(), kSide, sum / blocks, 100.0 * over_4 / blocks, worst);
-        EXPECT_LT(sum / blocks, 0.5);
-        EXPECT_LT(over_4, 0.005 * blocks);
-    }
+/// Prints and tests by how much blocks of two panoramas differ, of which the second is turned.
+void expect_alike(const image::Image8& one, const image::Image8& other, int turned_px) {
+    constexpr int kSide = 24;
+    double sum = 0, worst = 0;
+    int blocks = 0, over_4 = 0;
+    for (int y = 0; y + kSide <= one.height; y += kSide)
+        for (int x = 0; x < one.width; x += kSide)
+            for (int c = 0; c < 3; ++c) {
+                const double off =
+                    std::abs(mean(one, x + turned_px, y, kSide, c) - mean(other, x, y, kSide, c));
+                sum += off;
+                worst = std::max(worst, off);
+                over_4 += off > 4 ? 1 : 0;
+                ++blocks;
+            }
+    fmt::print("blocks of {} px differ by {:.3f}/255, {:.3f} % by more than 4, worst {:.1f}\n",
+               kSide, sum / blocks, 100.0 * over_4 / blocks, worst);
+    EXPECT_LT(sum / blocks, 0.5);
+    EXPECT_LT(over_4, 0.005 * blocks);
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, PanoramaParts,
-                         testing::Values("", "bloom", "occlusion", "grade", "contours", "snowfall",
-                                         "trees", "vsm", "avalanche", "wet", "tint"),
-                         [](const auto& effect) {
-                             return effect.param.empty() ? std::string("defaults") : effect.param;
-                         });
+class PanoramaParts : public testing::TestWithParam<EffectGroup> {};
+
+/// Pixels are those of a panorama whose parts begin half a part farther on.
+TEST_P(PanoramaParts, DoNotShow) {
+    constexpr int kPxPerDeg = 4;
+    std::vector<scene::Scene> scenes;
+    for (const auto kind : {scene::Panorama::Cylindrical, scene::Panorama::Equirectangular})
+        for (const double turned_deg : {0.0, kPart_deg / 2}) {
+            scene::Scene& scene =
+                scenes.emplace_back(scene_of(kind, 70 + turned_deg, kPxPerDeg,
+                                             kind == scene::Panorama::Cylindrical ? 240 : 480));
+            scene.stamps.legend = false;
+            scene.effects.switches.enable = GetParam();
+        }
+    const std::vector<image::Image8> pictures = pictures_of(scenes);
+    for (std::size_t i = 0; i < pictures.size(); i += 2)
+        expect_alike(pictures[i], pictures[i + 1], kPxPerDeg * static_cast<int>(kPart_deg) / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, PanoramaParts, testing::ValuesIn(kEffectGroups), name_of);
 
 }  // namespace
 }  // namespace relevo::session::test_panorama
