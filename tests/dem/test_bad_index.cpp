@@ -1,6 +1,6 @@
 // Indexes that name what no index should.
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -74,11 +74,11 @@ TEST(BadIndex, ThousandsOfReferenceSystemsAreRefused) {
         rows.push_back({fmt::format("{}.tif", i), kAt,
                         fmt::format("+proj=tmerc +lon_0=9 +x_0={} +ellps=WGS84 +type=crs", i)});
     const std::string index = write_index(folder() / "i.gpkg", "GPKG", rows);
-    const auto began = std::chrono::steady_clock::now();
+    const std::clock_t began = std::clock();  // of the processor: other work costs none of it
     EXPECT_EQ(refusal(index),
               "an index of tiles in more than 256 different coordinate reference systems; cut it "
               "up, for example with ogr2ogr -where");
-    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
+    EXPECT_LT(std::clock() - began, 10 * CLOCKS_PER_SEC);
 }
 
 TEST(BadIndex, LongitudesOfAnotherTurnAreTheSamePlace) {
