@@ -12,6 +12,7 @@
 #include "session/picture_maker.h"
 #include "session/standing.h"
 #include "session/stopwatch.h"
+#include "session/unseen_effects.h"
 #include "session/words.h"
 #include "sun/zone_of_place.h"
 
@@ -67,6 +68,13 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     warn_of_eye();
     set_time(time ? time->utc : state.default_time());
     if (state.weather) log::info(state.weather->notice(timed, is_seen_from_outside()));
+    say_unseen(scene.effects);
+}
+
+void Session::Impl::say_unseen(const scene::Effects& asked) const {
+    const bool outside = is_seen_from_outside();
+    const std::string text = unseen_text(unseen_effects(drawn->effects(), asked, outside), outside);
+    if (!text.empty()) log::info(text);
 }
 
 bool Session::Impl::is_seen_from_outside() const {
@@ -151,6 +159,7 @@ void Session::Impl::set_effects(const scene::Effects& asked) {
     switch_to(request(asked));
     take_effects();
     look(state.scene.view);  // displacement may move the ground under the eye
+    say_unseen(asked);
 }
 
 void Session::Impl::switch_to(const EffectsRequest& wanted) {

@@ -134,12 +134,53 @@ void check_unique(const Snippet& snippet) {
         add(varying.name, varying.line);
 }
 
+/// The words of a function's code where HAS_<word> is 0 or 1.
+std::vector<std::string_view> words_left(const Source& source, const Item& item,
+                                         std::string_view word, bool is_provided) {
+    const std::string has = fmt::format("{}{}", kHasPrefix, word);
+    const std::string met = (is_provided ? "#if " : "#if !") + has;
+    const std::string unmet = (is_provided ? "#if !" : "#if ") + has;
+    struct Condition {
+        bool omits, omits_else;
+    };
+    std::vector<Condition> around;
+    std::vector<std::string_view> words;
+    for (std::size_t i = item.first; i < item.last; ++i) {
+        const std::string_view text = source.str(source.tokens[i]);
+        if (source.tokens[i].kind != TokenKind::Directive) {
+            if (std::ranges::none_of(around, &Condition::omits)) words.push_back(text);
+        } else if (text.starts_with("#if")) {
+            around.push_back({text == unmet, text == met});
+        } else if (text.starts_with("#endif")) {
+            around.pop_back();
+        } else if (!around.empty()) {
+            around.back().omits = around.back().omits_else;
+        }
+    }
+    return words;
+}
+
 }  // namespace
 
 const HookFunction* Snippet::find(std::string_view hook_name) const {
     const auto found = std::ranges::find_if(
         hooks, [&](const HookFunction& function) { return function.hook->name == hook_name; });
     return found == hooks.end() ? nullptr : &*found;
+}
+
+bool changes_arguments(const Snippet& snippet, const HookFunction& function, std::string_view word,
+                       bool is_provided) {
+    for (const Item& item : snippet.source.items) {
+        if (item.kind != Item::Kind::Function || item.names[0] != function.name) continue;
+        const Signature signature = snippet.source.signature(item);
+        if (signature.type != "void") return true;
+        const auto words = words_left(snippet.source, item, word, is_provided);
+        return std::ranges::any_of(signature.arguments, [&](const Argument& argument) {
+            // Once in the head.
+            return argument.qualifier != "in" && std::ranges::count(words, argument.name) > 1;
+        });
+    }
+    return false;
 }
 
 Snippet parse_snippet(std::string_view id, std::string_view file, std::string_view text) {

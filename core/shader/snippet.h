@@ -54,6 +54,12 @@ struct Snippet {
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };
 
+/// Whether a hook function may change its arguments where a capability word is provided, or not:
+/// whether the code that `#if HAS_<word>` and `#if !HAS_<word>` in it leave names one of them.
+/// Functions with a result, and other conditions, are taken to.
+bool changes_arguments(const Snippet& snippet, const HookFunction& function, std::string_view word,
+                       bool is_provided);
+
 /// Reads a plugin's GLSL. The rules are docs/plugin-guide.md's; in short:
 /// - every global (function, constant, struct, macro, variable) begins with `<id>_`;
 /// - `<id>_on_<hook>` with the hook's exact types is the registration;
