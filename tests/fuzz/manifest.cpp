@@ -7,7 +7,8 @@
 // A manifest names files, which have to exist.
 void relevo::fuzz::read(std::string_view bytes) {
     static const bool others [[maybe_unused]] = [] {
-        for (const char* const name : {"a.glsl", "b.glsl", "a.png", "b.png", "a.csv", "a.obj"})
+        for (const char* const name :
+             {"haze.glsl", "a.glsl", "b.glsl", "a.png", "b.png", "a.csv", "a.obj"})
             file("", name);
         return true;
     }();

@@ -5,5 +5,6 @@
 #include "fuzz/fuzz.h"
 
 void relevo::fuzz::read(std::string_view bytes) {
+    attempt([&] { effect::parse_setting(bytes); });
     effect::load_preset(file(bytes, "preset.json"));
 }

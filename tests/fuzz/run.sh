@@ -18,7 +18,7 @@ cmake --build --preset fuzz --target $(printf 'fuzz_%s ' $targets) >build/fuzz/b
 
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.txt:print_suppressions=0
 # Freed memory is kept for 16 MiB only: it would count against the limit.
-export ASAN_OPTIONS=quarantine_size_mb=16:detect_stack_use_after_return=0
+export ASAN_OPTIONS=quarantine_size_mb=16:detect_stack_use_after_return=0:allocator_may_return_null=1
 export LLVM_PROFILE_FILE=/dev/null
 [ -d /dev/shm ] && export TMPDIR=/dev/shm
 
@@ -46,7 +46,7 @@ coverage() {
     rm "$raw"
     # shellcheck disable=SC2086
     llvm-cov-16 show "build/fuzz/bin/fuzz_$target" -instr-profile "$found/$target.profdata" $readers \
-        | awk '/^\/.*:$/ { file = $0 } /^ *[0-9]+\| +0\|/ { print file $0 }' >"$found/$target.missed"
+        | awk -v file="$PWD/$readers:" '/^\/.*:$/ { file = $0 } /^ *[0-9]+\| +0\|/ { print file $0 }' >"$found/$target.missed"
     # shellcheck disable=SC2086
     llvm-cov-16 report "build/fuzz/bin/fuzz_$target" -instr-profile "$found/$target.profdata" $readers \
         | awk '$1 == "TOTAL" { print $10 }'
