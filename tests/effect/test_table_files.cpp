@@ -57,10 +57,8 @@ TEST_F(TableFiles, TheFirstLineIsAHeadingOnlyWithoutNumbers) {
                   .height(),
               2);
     EXPECT_EQ(read_table(write("t.csv", "slope deg,factor\n0,1\n2,3\n")).width(), 2);
-    EXPECT_EQ(error_of_table("nan,1\n2,3\n"),
-              "exit 3: plugin: t.csv:1: expected numbers");
-    EXPECT_EQ(error_of_table("1,5;2,5\n"),
-              "exit 3: plugin: t.csv:1: expected numbers");
+    EXPECT_EQ(error_of_table("nan,1\n2,3\n"), "exit 3: plugin: t.csv:1: expected numbers");
+    EXPECT_EQ(error_of_table("1,5;2,5\n"), "exit 3: plugin: t.csv:1: expected numbers");
 }
 
 TEST_F(TableFiles, WithoutAFileThereIsOneTexel) {
@@ -69,15 +67,12 @@ TEST_F(TableFiles, WithoutAFileThereIsOneTexel) {
 }
 
 TEST_F(TableFiles, MistakesNameTheirLine) {
-    EXPECT_EQ(error_of_table("a,b\n1,2\n3,x\n"),
-              "exit 3: plugin: t.csv:3: expected numbers");
+    EXPECT_EQ(error_of_table("a,b\n1,2\n3,x\n"), "exit 3: plugin: t.csv:3: expected numbers");
     EXPECT_EQ(error_of_table("1,2\n3\n"),
               "exit 3: plugin: t.csv:2: expected 2 numbers as before but got 1");
     EXPECT_EQ(error_of_table("a,b\n"), "exit 3: plugin: t.csv:1: expected lines of numbers");
-    EXPECT_EQ(error_of_table("1,nan\n"),
-              "exit 3: plugin: t.csv:1: expected numbers");
-    EXPECT_EQ(error_of_table("1e40\n"),
-              "exit 3: plugin: t.csv:1: expected numbers");
+    EXPECT_EQ(error_of_table("1,nan\n"), "exit 3: plugin: t.csv:1: expected numbers");
+    EXPECT_EQ(error_of_table("1e40\n"), "exit 3: plugin: t.csv:1: expected numbers");
     std::string tall;
     for (int i = 0; i < kMaxTableSide + 1; ++i)
         tall += "1\n";
