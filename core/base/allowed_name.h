@@ -46,7 +46,8 @@ class AllowedName {
     /// add --trust`
     explicit AllowedName(std::string name);
 
-    /// A name that the program has made up, which no file contains: "/vsimem/index_1.gpkg".
+    /// A name that the program has made up, which no file contains: "/vsimem/index_1.gpkg"; or that
+    /// of a result.
     static AllowedName of_program(std::string name);
 
     const std::string& text() const { return text_; }

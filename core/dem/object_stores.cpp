@@ -30,6 +30,12 @@ constexpr std::array<std::string_view, 8> kReadOnly = {
 constexpr std::array<std::string_view, 2> kInParts = {"/vsis3/", "/vsioss/"};
 constexpr std::size_t kAtOnce = 1 << 20;  // bytes
 
+/// A result's name is a person's, or follows from one: a job's own outputs stay in its folder
+/// (scene/job).
+AllowedName result(const std::string& name) {
+    return AllowedName::of_program(name);
+}
+
 bool begins_with_one_of(std::string_view name, const auto& prefixes) {
     return std::ranges::any_of(prefixes,
                                [&](std::string_view prefix) { return name.starts_with(prefix); });
@@ -52,7 +58,7 @@ class GdalObjectStore : public ObjectStore {
     bool exists(const std::string& name) const override {
         prepare_gdal();
         allow_remote();
-        const AllowedName object(name);
+        const AllowedName object = result(name);
         VSICurlPartialClearCache(name.c_str());  // another process may have made it
         const Presence presence = remote_presence(object);
         if (presence == Presence::Hidden)
@@ -68,7 +74,7 @@ class GdalObjectStore : public ObjectStore {
         prepare_gdal();
         allow_remote();
         const GdalMessages messages;
-        VSILFILE* const object = create_by_vsi(AllowedName(name));
+        VSILFILE* const object = create_by_vsi(result(name));
         bool is_read = true;
         std::string fault = object ? copy(descriptor, object, is_read) : "";
         // What was not copied whole is not made an object: GDAL gives the parts up.
@@ -84,7 +90,7 @@ class GdalObjectStore : public ObjectStore {
     bool get(const std::string& name, int descriptor) const override {
         if (!exists(name)) return false;
         const GdalMessages messages;
-        const VsiFile open = open_vsi(AllowedName(name));
+        const VsiFile open = open_vsi(result(name));
         auto* const object = static_cast<VSILFILE*>(open.get());
         std::vector<char> buffer(kAtOnce);
         off_t at = 0;
@@ -102,13 +108,11 @@ class GdalObjectStore : public ObjectStore {
                         printable(name), messages.failure(name)));
     }
 
-    void remove(const std::string& name) const noexcept override {
-        if (is_allowed(name)) VSIUnlink(name.c_str());
-    }
+    void remove(const std::string& name) const noexcept override { VSIUnlink(name.c_str()); }
 
   private:
     static off_t size_of(const std::string& name) {
-        const std::optional<std::uint64_t> size = size_by_vsi(AllowedName(name));
+        const std::optional<std::uint64_t> size = size_by_vsi(result(name));
         return size ? static_cast<off_t>(*size) : -1;
     }
 

@@ -201,14 +201,20 @@ TEST_F(ObjectStore, AJobWritesItsPicturesThere) {
         "sweep": [{"times": {"from": "10:00", "to": "12:00", "step": "1h"}}],
         "output": "/vsis3/bucket/day/{time:%H%M}.png"})";
     const std::string job = (dir_ / "job.json").string();
-    const Result made = relevo({"run", job}, environment(store));
+    const Result refused = relevo({"run", job}, environment(store));
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_THAT(refused.err, HasSubstr("which is not below the job's own folder"));
+    EXPECT_TRUE(store.requests().empty());
+    const Result made = relevo({"run", job, "--trust"}, environment(store));
     ASSERT_EQ(made.status, 0) << made.err;
     EXPECT_EQ(store.objects().size(), 3u);
     EXPECT_EQ(store.objects().count("/bucket/day/1100.png"), 1u);
     EXPECT_FALSE(std::filesystem::exists("/vsis3"));
-    const Result again = relevo({"run", job}, environment(store));
+    const std::string there = "/vsis3/bucket/day/{time:%H%M}.png";
+    const Result again = relevo({"run", job, "-o", there}, environment(store));
     EXPECT_EQ(again.status, 3);
     EXPECT_THAT(again.err, HasSubstr("/vsis3/bucket/day/1000.png: exists, the first of 3"));
+    EXPECT_EQ(relevo({"run", job, "-o", there, "--overwrite"}, environment(store)).status, 0);
 }
 
 TEST_F(ObjectStore, TimingsCountWhatTheNetWasAsked) {
