@@ -3,7 +3,8 @@
 #
 # Begins with tests/fuzz/corpus/TARGET and build/fuzz/found/TARGET, where new inputs go. Prints a row of the table of
 # docs/fuzzing.md, and the lines that the inputs do not reach into build/fuzz/found/TARGET.missed. An input that is a
-# finding becomes build/fuzz/found/TARGET.crash-..., and the target ends.
+# finding becomes build/fuzz/found/TARGET.crash-..., and the target ends. A call that takes more than TIMEOUT_S of the
+# environment (10 s of wall-clock time) is one: give more where other processes leave little processor time.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 [ $# -ge 1 ] || { sed -n '2s/^# //p' "$0"; exit 2; }
@@ -29,18 +30,20 @@ words() {
 
 # Inputs that reach what all of them reach, as few and as short as can be.
 minimise() {
-    local corpus=$1 target=$2
-    rm -rf "$corpus.new"
-    mkdir "$corpus.new"
-    "build/fuzz/bin/fuzz_$target" -set_cover_merge=1 -use_counters=0 $options "$corpus.new" "$corpus" "$found/$target" \
+    local corpus=$1 target=$2 new=$found/$2.new
+    rm -rf "$new"
+    mkdir "$new"
+    # shellcheck disable=SC2086
+    "build/fuzz/bin/fuzz_$target" $options -set_cover_merge=1 -use_counters=0 "$new" "$corpus" "$found/$target" \
         >"$found/$target.merge" 2>&1
     rm -rf "$corpus"
-    mv "$corpus.new" "$corpus"
+    mv "$new" "$corpus"
 }
 
 # Prints the percentage of lines of the reader's own files that the corpus reaches.
 coverage() {
     local corpus=$1 target=$2 raw=$found/$2.profraw
+    # shellcheck disable=SC2086
     LLVM_PROFILE_FILE=$raw "build/fuzz/bin/fuzz_$target" -runs=0 $options "$corpus" >/dev/null 2>&1
     llvm-profdata-16 merge -sparse "$raw" -o "$found/$target.profdata"
     rm "$raw"
@@ -58,7 +61,7 @@ printf '| %-12s | %10s | %6s | %6s | %8s | %8s |\n' target executions edges inpu
 for target in $targets; do
     # shellcheck disable=SC1090
     . "build/fuzz/tests/fuzz/$target.sh"
-    options="-timeout=10 -malloc_limit_mb=272 -rss_limit_mb=448 -max_len=65536 $options"
+    options="-timeout=${TIMEOUT_S:-10} -malloc_limit_mb=272 -rss_limit_mb=448 -max_len=65536 $options"
     corpus=tests/fuzz/corpus/$target
     mkdir -p "$corpus" "$found/$target"
     # shellcheck disable=SC2086
