@@ -38,7 +38,7 @@ struct Allowance {
 
 png_voidp allocate(png_structp png, png_alloc_size_t bytes) {
     std::size_t& left = static_cast<Allowance*>(png_get_mem_ptr(png))->left;
-    if (bytes > left) on_error(png, "has more than 256 MiB of texts and tables");
+    if (bytes > left) on_error(png, "needs more than 256 MiB in addition to its pixels");
     left -= bytes;
     return std::malloc(bytes);
 }
@@ -265,7 +265,7 @@ void write_png(OutputFile& file, const Image16& image, const Metadata& metadata)
 
 Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
     std::string subject = path.string();
-    const InputFile input(AllowedName(path.string()), "image");
+    const InputFile input(path, "image");
     struct Reader {
         png_structp png = nullptr;
         png_infop info = nullptr;

@@ -218,8 +218,9 @@ TEST_F(ImageFiles, TextsOfAPngTakeBoundedMemory) {
         }
     }
     with(chunks);
-    EXPECT_EQ(test::error_of([&] { read_metadata(path); }),
-              "exit 3: image: " + path.string() + ": has more than 256 MiB of texts and tables");
+    EXPECT_EQ(
+        test::error_of([&] { read_metadata(path); }),
+        "exit 3: image: " + path.string() + ": needs more than 256 MiB in addition to its pixels");
 }
 
 TEST_F(ImageFiles, ThatAreNoRegularFilesAreNotWaitedFor) {
