@@ -179,7 +179,7 @@ void report_chosen(const session::Session& session) {
     if (!time && !view) return;
     const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
     const auto& overlay = session.overlay_time();
-    const char* const whose = overlay && overlay->instant() ? " (the overlay's)" : "";
+    const char* const whose = overlay && overlay->utc ? " (the overlay's)" : "";
     std::string text = "chosen: " + (time ? local_time(session) + whose : "");
     if (view && azimuth_deg)
         text += fmt::format("{}seen from the {}", time ? ", " : "",

@@ -137,7 +137,7 @@ std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
 
 std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene) {
     const std::optional<OverlayTime> time = scene.overlay ? time_of(*scene.overlay) : std::nullopt;
-    return time ? time->instant() : std::nullopt;
+    return time ? time->utc : std::nullopt;
 }
 
 Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {

@@ -46,7 +46,7 @@ void show_as_clock(const OverlayTime& time, chart::Legend& legend);
 /// Time of a scene's overlay, read from metadata only; nullopt if it is not a sun raster.
 /// @throws Error (BadInput) as dem::band_metadata()
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay);
-/// OverlayTime::instant() of the scene's overlay: the default time of its picture.
+/// OverlayTime::utc of the scene's overlay: the default time of its picture.
 std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene);
 
 /// Reads a scene's overlay: an image of 8 bits as a photo in its own colours, unless the scene has

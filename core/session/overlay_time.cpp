@@ -41,12 +41,6 @@ bool OverlayTime::is_day() const {
     return time_of(to)->utc - time_of(from)->utc == kDay_s;
 }
 
-std::optional<sun::Instant> OverlayTime::instant() const {
-    if (utc) return utc;
-    if (!is_day()) return std::nullopt;
-    return time_of(from)->utc + (time_of(to)->utc - time_of(from)->utc) / 2;
-}
-
 std::optional<OverlayTime> overlay_time(const std::map<std::string, std::string>& about) {
     OverlayTime time;
     if (const auto utc = time_of(value(about, "TIME_UTC"))) time.utc = utc->utc;

@@ -24,8 +24,6 @@ struct OverlayTime {
 
     /// Whether the period is one day of 24 hours, from midnight.
     bool is_day() const;
-    /// The time of a single sun, and the middle of a day; none of longer periods.
-    std::optional<sun::Instant> instant() const;
 };
 
 /// @param about  metadata of a raster and its band
