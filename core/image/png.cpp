@@ -265,7 +265,7 @@ void write_png(OutputFile& file, const Image16& image, const Metadata& metadata)
 
 Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
     std::string subject = path.string();
-    const InputFile input(path, "image");
+    const InputFile input(AllowedName(path.string()), "image");
     struct Reader {
         png_structp png = nullptr;
         png_infop info = nullptr;
