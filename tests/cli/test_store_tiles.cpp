@@ -139,18 +139,18 @@ TEST_F(StoreTiles, PicturesThatAreThereAreKept) {
         "sweep": [{"times": {"from": "10:00", "to": "12:00", "step": "1h"}}],
         "output": "/vsis3/bucket/day/{time:%H%M}.png"})";
     const std::string job = (dir_ / "job.json").string();
-    const Result part = run({"run", job, "--shard", "1/3", "--sidecar"});
+    const Result part = run({"run", job, "--shard", "1/3", "--sidecar", "--trust"});
     ASSERT_EQ(part.status, 0) << part.err;
-    const Result missing = run({"run", job, "--missing", "--sidecar"});
+    const Result missing = run({"run", job, "--missing", "--sidecar", "--trust"});
     EXPECT_EQ(missing.status, 1);
     EXPECT_THAT(missing.err, HasSubstr("2 of 3 pictures are missing or not whole"));
-    const Result resumed = run({"run", job, "--resume", "--sidecar"});
+    const Result resumed = run({"run", job, "--resume", "--sidecar", "--trust"});
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_THAT(resumed.err, HasSubstr("1 were there already"));
-    EXPECT_EQ(run({"run", job, "--missing", "--sidecar"}).status, 0);
+    EXPECT_EQ(run({"run", job, "--missing", "--sidecar", "--trust"}).status, 0);
     EXPECT_EQ(store_.objects().size(), 6u);
     store_.put("/bucket/day/1100.png", "no picture");
-    const Result other = run({"run", job, "--resume", "--sidecar"});
+    const Result other = run({"run", job, "--resume", "--sidecar", "--trust"});
     EXPECT_EQ(other.status, 3);
     EXPECT_THAT(other.err, HasSubstr("/vsis3/bucket/day/1100.png: it is not a complete picture"));
     EXPECT_EQ(left(), 0u);

@@ -207,8 +207,8 @@ TEST(SunHorizonVerb, WarnsWhereTheRidgeMayLieBeyondTheDem) {
         relevo({"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv"});
     EXPECT_EQ(near_edge.status, 0);
     EXPECT_TRUE(
-        near_edge.err.starts_with("relevo: warning: mountains of up to 1076 m outside the DEM "
-                                  "could raise the horizon: above "))
+        near_edge.err.starts_with("relevo: warning: mountains of up to 1076 m (the DEM's highest "
+                                  "post) outside the DEM could raise the horizon: above "))
         << near_edge.err;
     // Directions less than five degrees apart are one for a reader, not for a program.
     const Result broken =
@@ -216,10 +216,12 @@ TEST(SunHorizonVerb, WarnsWhereTheRidgeMayLieBeyondTheDem) {
     EXPECT_EQ(json::parse(broken.out)["open_sectors"].size(), 4U);
     EXPECT_EQ(
         broken.err,
-        "relevo: warning: mountains of up to 1076 m outside the DEM could raise the horizon: above "
-        "1037 m from azimuth 301 (WNW) to 307 (NW) as far as 14 km away, where the DEM reaches "
+        "relevo: warning: mountains of up to 1076 m (the DEM's highest post) outside the DEM could "
+        "raise the horizon: above 1037 m from azimuth 301 (WNW) to 307 (NW) as far as 14 km away, "
+        "where the DEM reaches "
         "11.9 km, and above 786 m from azimuth 328 (NNW) to 347 (NNW) as far as 57 km away, where "
-        "the DEM reaches 16.6 km; use a larger DEM, or bound them with --highest\n");
+        "the DEM reaches 16.6 km; those of up to 8850 m (the Earth's highest) as far as 329 km; "
+        "use a larger DEM, or bound them with --highest\n");
     const Result low = relevo(
         {"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv", "--highest", "200"});
     EXPECT_EQ(low.err, "");
