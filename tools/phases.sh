@@ -17,6 +17,6 @@ phase() {
 
 print_phases() {
     awk 'BEGIN { printf "%12s %12s  %s\n", "processor s", "wall-clock s", "phase" }
-         { printf "%12.0f %12.0f  ", $1, $2; sub(/^[^ ]+ [^ ]+ /, ""); print; processor += $1; wall += $2 }
+         { processor += $1; wall += $2; printf "%12.0f %12.0f  ", $1, $2; sub(/^[^ ]+ [^ ]+ /, ""); print }
          END { printf "%12.0f %12.0f  all\n", processor, wall }' FS=' ' "$PHASES"
 }

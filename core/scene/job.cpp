@@ -281,8 +281,7 @@ class Expansion {
             shot.number = static_cast<std::size_t>(&shot - result_.shots.data()) + 1;
             const fs::path name = names.name({shot.number, fs::path(shot.scene.dems.front()).stem(),
                                               shot.utc, shot.zone, shot.names});
-            if (job_.output_given && !job_.output_may_leave &&
-                !file_inside(job_.folder.empty() ? "." : job_.folder, name))
+            if (job_.output_given && !job_.output_may_leave && !is_in_folder(name))
                 bad_output(fmt::format(
                     "\"{}\" names {}, which is not below the job's own folder; name it with -o, or "
                     "add --trust",
@@ -297,6 +296,16 @@ class Expansion {
             bad_output(what);
         }
         if (job_.is_film()) check_film();
+    }
+
+    /// Whether a result, links followed, is below the job's own folder.
+    bool is_in_folder(const fs::path& name) const {
+        const fs::path folder = job_.folder.empty() ? "." : job_.folder;
+        if (name.is_relative()) return file_inside(folder, name).has_value();
+        std::error_code error;
+        const fs::path from = fs::canonical(folder, error);
+        const fs::path whole = error ? fs::path() : fs::weakly_canonical(name, error);
+        return !error && file_inside(folder, whole.lexically_relative(from)).has_value();
     }
 
     /// A film is one file, whatever its frames.

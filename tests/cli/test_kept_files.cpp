@@ -105,6 +105,10 @@ TEST_F(KeptFiles, AJobsOutputStaysBelowItsFolder) {
             << output;
     }
     EXPECT_TRUE(fs::is_empty(path("out")));
+    json inside = shot;
+    inside["output"] = path("in/a.png");  // the whole name of a file of its folder
+    EXPECT_EQ(relevo({"-q", "run", written("in/inside.json", inside)}).status, 0);
+    EXPECT_TRUE(fs::exists(path("in/a.png")));
     EXPECT_EQ(relevo({"-q", "run", path("in/job.json"), "-o", path("out/a.png")}).status, 0);
     EXPECT_TRUE(fs::exists(path("out/a.png")));
 }
