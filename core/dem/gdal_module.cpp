@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <cpl_http.h>
 #include <cpl_string.h>
@@ -58,22 +60,23 @@ std::atomic<bool> hdf5_is_used = false;
 
 /// A function of HDF5, whichever library GDAL or its plugins are linked with; null without one.
 void* hdf5_function(const char* name) {
-    struct Search {
-        const char* name;
-        void* found = nullptr;
-    } search{name};
+    std::vector<std::string> libraries;
+    // Only names are noted in here: dlopen would wait for a thread that loads a library, which
+    // waits for the list that is held here.
     dl_iterate_phdr(
-        [](dl_phdr_info* library, std::size_t, void* data) {
-            auto& wanted = *static_cast<Search*>(data);
-            if (!std::strstr(library->dlpi_name, "hdf5")) return 0;
-            void* const loaded = dlopen(library->dlpi_name, RTLD_LAZY | RTLD_NOLOAD);
-            if (!loaded) return 0;
-            wanted.found = dlsym(loaded, wanted.name);
-            dlclose(loaded);
-            return wanted.found ? 1 : 0;
+        [](dl_phdr_info* library, std::size_t, void* names) {
+            if (std::strstr(library->dlpi_name, "hdf5"))
+                static_cast<std::vector<std::string>*>(names)->push_back(library->dlpi_name);
+            return 0;
         },
-        &search);
-    return search.found;
+        &libraries);
+    for (const std::string& library : libraries)
+        if (void* const loaded = dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD)) {
+            void* const found = dlsym(loaded, name);
+            dlclose(loaded);
+            if (found) return found;
+        }
+    return nullptr;
 }
 
 /// HDF5 prints every error on standard error, also those that its callers expect. It is switched
