@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
-#include "sky/eye_tables.h"
 #include "sky/shipped.h"
 #include "sun/daylight.h"
 
@@ -60,11 +59,14 @@ void add_mean(std::span<const glm::vec4> from, int azimuths, const glm::vec3& fa
     }
 }
 
-sky::EyeTables tables_of(const sky::Air& air, double height_m, const AirLight& light) {
+sky::EyeTables tables_of(const sky::Air& air, const AirView& view) {
     const auto atmosphere = sky::atmosphere_of(air);
-    sky::EyeTables tables = eye_tables(*atmosphere, height_m, light.sun_sine);
-    const auto layer = static_cast<std::size_t>(EyeLayout::kAzimuths) *
-                       static_cast<std::size_t>(EyeLayout::kAbove + EyeLayout::kBelow);
+    const AirLight& light = view.light;
+    const auto lit_by = [&](double sine) {
+        return eye_tables(*atmosphere, view.height_m, sine, view.parts);
+    };
+    sky::EyeTables tables = lit_by(light.sun_sine);
+    const std::size_t layer = tables.sky.size() / EyeLayout::kLayers;
     tables.sky.resize((EyeLayout::kLayers + 1) * layer);
     const auto share = static_cast<float>(light.sun_share);
     if (share < 1)
@@ -72,7 +74,7 @@ sky::EyeTables tables_of(const sky::Air& air, double height_m, const AirLight& l
             for (glm::vec4& texel : *table)
                 texel = glm::vec4(share * glm::vec3(texel), texel.a);
     if (light.moon == glm::vec3(0)) return tables;
-    const sky::EyeTables moonlit = eye_tables(*atmosphere, height_m, light.moon_sine);
+    const sky::EyeTables moonlit = lit_by(light.moon_sine);
     const auto add_layer = [&](std::size_t from, std::size_t to) {
         add_mean(std::span(moonlit.sky).subspan(from * layer, layer), EyeLayout::kAzimuths,
                  light.moon, std::span(tables.sky).subspan(to * layer, layer));
@@ -136,13 +138,14 @@ AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up) {
     return light;
 }
 
-void AirTextures::update(const sky::Air& air, const AirLight& light, FrameBlock& block) {
-    const double eye_height_m = std::max(block.eye_m.w, 0.0f);
-    Of wanted{air, sky::nearest_eye_height_m(eye_height_m), light};
-    wanted.light.sun_sine = sky::nearest_sun_sine(light.sun_sine);
-    wanted.light.moon_sine = sky::nearest_sun_sine(light.moon_sine);
+void AirTextures::update(const sky::Air& air, const AirView& view, FrameBlock& block) {
+    const double eye_height_m = std::max(view.height_m, 0.0);
+    Of wanted{air, view};
+    wanted.view.height_m = sky::nearest_eye_height_m(eye_height_m);
+    wanted.view.light.sun_sine = sky::nearest_sun_sine(view.light.sun_sine);
+    wanted.view.light.moon_sine = sky::nearest_sun_sine(view.light.moon_sine);
     if (of_ != wanted) {
-        const sky::EyeTables tables = tables_of(air, wanted.height_m, wanted.light);
+        const sky::EyeTables tables = tables_of(air, wanted.view);
         if (!of_) {
             sky_ =
                 gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA32F, kSky, 1, kAirSkyTexture);
@@ -151,8 +154,9 @@ void AirTextures::update(const sky::Air& air, const AirLight& light, FrameBlock&
             for (gl::Texture* const texture : {&sky_, &between_})
                 texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
         }
-        sky_.write(0, {0, 0, 0}, kSky, std::as_bytes(std::span(tables.sky)));
-        between_.write(0, {0, 0, 0}, kBetween, std::as_bytes(std::span(tables.between)));
+        if (view.parts.sky) sky_.write(0, {0, 0, 0}, kSky, std::as_bytes(std::span(tables.sky)));
+        if (view.parts.between)
+            between_.write(0, {0, 0, 0}, kBetween, std::as_bytes(std::span(tables.between)));
         const EyeLayout& layout = tables.layout;
         mapping_ = glm::vec4(layout.above_band, layout.below_band, layout.farthest_m,
                              sky::white_extinction(air));

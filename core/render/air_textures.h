@@ -9,6 +9,7 @@
 #include "render/frame_block.h"
 #include "shader/param_store.h"
 #include "sky/air.h"
+#include "sky/eye_tables.h"
 
 namespace relevo::sky {
 class Atmosphere;
@@ -38,14 +39,21 @@ struct AirLight {
 /// @param eye_up  vertical at the eye
 AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up);
 
+/// Where air is seen from, and what of it.
+struct AirView {
+    double height_m = 0;  ///< of the eye
+    AirLight light{};
+    sky::EyeParts parts{};  ///< what the frame's programs read: other tables keep what they have
+    bool operator==(const AirView&) const = default;
+};
+
 /// What the eye of a frame sees of the air, on the device: sky::EyeTables for lib/air.glsl.
 class AirTextures {
   public:
     /// Computes them again if the air, the eye's height or the light have changed noticeably
-    /// (sky::nearest_eye_height_m()), and writes their coordinates. 15 ms on two processors, 30 at
-    /// night with the moon.
-    /// @param block  has the eye
-    void update(const sky::Air& air, const AirLight& light, FrameBlock& block);
+    /// (sky::nearest_eye_height_m()), and writes their coordinates into the block. 10 ms on two
+    /// processors for both parts, 20 at night with the moon.
+    void update(const sky::Air& air, const AirView& view, FrameBlock& block);
 
     /// Null for another name, and before update().
     const gl::Texture* texture(std::string_view name) const;
@@ -53,8 +61,7 @@ class AirTextures {
   private:
     struct Of {
         sky::Air air;
-        double height_m;
-        AirLight light;
+        AirView view;
         bool operator==(const Of&) const = default;
     };
     std::optional<Of> of_;

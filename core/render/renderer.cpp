@@ -26,6 +26,7 @@
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "render/readback.h"
+#include "sky/path.h"
 #include "sun/time.h"
 
 namespace relevo::render {
@@ -244,12 +245,23 @@ struct Renderer::Impl : FrameServices {
         terrain.write(block);
         write_places(terrain);
         if (reads(kLightByHeightTexture)) light.update(inputs, block);
-        if (reads(kAirSkyTexture) || reads(kAirBetweenTexture))
-            air.update(air_of(values), air_light(inputs, glm::dvec3(block.eye_up)), block);
+        update_air(inputs, block);
         if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};
+    }
+
+    /// Makes the tables of the air that programs read. Of a block the sky is seen in water alone,
+    /// which mirrors what is over the ground and not what is over an eye beyond the air.
+    void update_air(const FrameInputs& inputs, FrameBlock& block) {
+        AirView view{.height_m = outside ? inputs.sun.ground_height_m : double{block.eye_m.w},
+                     .parts = {.sky = reads(kAirSkyTexture), .between = reads(kAirBetweenTexture)}};
+        if (!view.parts.sky && !view.parts.between) return;
+        view.light = air_light(inputs, outside ? glm::dvec3(0, 0, 1) : glm::dvec3(block.eye_up));
+        air.update(air_of(values), view, block);
+        if (outside)
+            block.eye_up.w = static_cast<float>(sky::horizon_sine(std::max(view.height_m, 0.0)));
     }
 
     /// Writes where effects' rasters and fields lie, for the functions of effect::raster_glsl() and

@@ -20,23 +20,6 @@ int view_steps(double height_m) {
     return 24 + static_cast<int>(48 * std::clamp(height_m / 40e3, 0.0, 1.0));
 }
 
-/// colour_of() in single precision.
-glm::vec3 colour(const Values& values) {
-    static const std::array<glm::vec3, kWavelengths> kWeights = [] {
-        std::array<glm::vec3, kWavelengths> weights{};
-        for (std::size_t k = 0; k < kWavelengths; ++k) {
-            Spectrum one{};
-            one[k] = 1;
-            weights[k] = glm::vec3(colour_of(one));
-        }
-        return weights;
-    }();
-    glm::vec3 sum(0);
-    for (std::size_t k = 0; k < kWavelengths; ++k)
-        sum += values[k] * kWeights[k];
-    return sum;
-}
-
 std::vector<Sun> suns_around(int azimuths, double sun_sine) {
     std::vector<Sun> suns;
     for (int i = 0; i < azimuths; ++i)
@@ -54,11 +37,11 @@ void write_row(const Atmosphere& air, const EyeLayout& layout, int row, std::spa
     const double sine = above ? std::max(layout.sine_above(v), layout.horizon + 1e-9)
                               : std::min(layout.sine_below(v), layout.horizon - 1e-9);
     const Path path = path_of(layout.height_m, sine);
-    std::vector<Brought> brought(suns.size(), Brought{.through = filled(1)});
+    std::vector<BroughtColour> brought(suns.size(), BroughtColour{.through = filled(1)});
     integrate(air.coefficients(), {.sun = true, .diffuse = &air.diffuse()},
               {layout.height_m, sine, suns}, step_ends(path, view_steps(layout.height_m)),
               path.ground, brought);
-    const glm::vec3 through = colour(brought.front().through);
+    const glm::vec3 through(colour(brought.front().through));
     const glm::vec3 night(night_radiance(layout.height_m, sine, double{through.g}));
     const glm::vec3 ground = path.ground ? glm::vec3(night_irradiance()) * through : glm::vec3(0);
     constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
@@ -66,10 +49,10 @@ void write_row(const Atmosphere& air, const EyeLayout& layout, int row, std::spa
     for (int i = 0; i < EyeLayout::kAzimuths; ++i) {
         const auto at = static_cast<std::size_t>(row * EyeLayout::kAzimuths + i);
         constexpr auto kLayer = static_cast<std::size_t>(kRows * EyeLayout::kAzimuths);
-        const Brought& one = brought[static_cast<std::size_t>(i)];
-        to[at] = glm::vec4(pi * colour(one.air) + night, 0);
-        to[kLayer + at] = glm::vec4(pi * colour(one.aerosol), 0);
-        to[2 * kLayer + at] = glm::vec4(pi * colour(one.ground) + ground, 0);
+        const BroughtColour& one = brought[static_cast<std::size_t>(i)];
+        to[at] = pi * one.air + glm::vec4(night, 0);
+        to[kLayer + at] = pi * one.aerosol;
+        to[2 * kLayer + at] = pi * one.ground + glm::vec4(ground, 0);
     }
 }
 
@@ -85,8 +68,8 @@ class Between {
         // The ground does not end the rays: DEMs have ground below the sea, too.
         const double begin = path_of(layout_.height_m, sine).begin_m;
         const Sources once{.sun = true}, further{.sun = false, .diffuse = &air_.diffuse()};
-        std::vector<Brought> sunlight(suns_.size(), Brought{.through = filled(1)});
-        std::vector<Brought> diffuse = sunlight;
+        std::vector<BroughtColour> sunlight(suns_.size(), BroughtColour{.through = filled(1)});
+        std::vector<BroughtColour> diffuse = sunlight;
         double before = 0;
         for (int slice = 0; slice < EyeLayout::kDistances; ++slice) {
             const double distance =
@@ -113,10 +96,11 @@ class Between {
                suns_.size();
     }
 
-    glm::vec4 texel(const Brought& brought, double sine, const Sun& sun, double distance) const {
+    glm::vec4 texel(const BroughtColour& brought, double sine, const Sun& sun,
+                    double distance) const {
         const auto phase = static_cast<float>(aerosol_phase(ray_sun_cosine(sine, sun)));
         const glm::vec3 scattered =
-            static_cast<float>(kPi) * (colour(brought.air) + phase * colour(brought.aerosol));
+            static_cast<float>(kPi) * glm::vec3(brought.air + phase * brought.aerosol);
         const double through = std::clamp<double>(colour(brought.through).g, 1e-20, 1.0);
         const auto depth = static_cast<float>(std::max(-std::log(through), 1e-9));
         const glm::vec3 taken(-std::expm1(-depth * extinction_.r),
@@ -197,23 +181,24 @@ double EyeLayout::sine_between(double v) const {
     return v > 0.5 ? sine_above(2 * v - 1) : sine_below(1 - 2 * v);
 }
 
-EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine) {
+EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine,
+                     const EyeParts& parts) {
     EyeTables made{.layout = EyeLayout(height_m), .sky = {}, .between = {}, .colour = {}};
     made.colour = extinction_colour(air, made.layout);
-    constexpr int kRows = EyeLayout::kAbove + EyeLayout::kBelow;
-    made.sky.resize(static_cast<std::size_t>(EyeLayout::kAzimuths * kRows * EyeLayout::kLayers));
-    made.between.resize(
-        static_cast<std::size_t>(EyeLayout::kBetweenAzimuths * EyeLayout::kBetweenElevations *
-                                 EyeLayout::kDistances * EyeTables::kOrders));
+    const int rows = parts.sky ? EyeLayout::kAbove + EyeLayout::kBelow : 0;
+    const int between_rows = parts.between ? EyeLayout::kBetweenElevations : 0;
+    made.sky.resize(static_cast<std::size_t>(EyeLayout::kAzimuths * rows * EyeLayout::kLayers));
+    made.between.resize(static_cast<std::size_t>(EyeLayout::kBetweenAzimuths * between_rows *
+                                                 EyeLayout::kDistances * EyeTables::kOrders));
     const std::vector<Sun> around = suns_around(EyeLayout::kAzimuths, sun_sine);
     const std::vector<Sun> between_around = suns_around(EyeLayout::kBetweenAzimuths, sun_sine);
     const Between between(air, made.layout, made.colour, between_around);
-    parallel_for(0, kRows + EyeLayout::kBetweenElevations, 1, [&](int first, int last) {
+    parallel_for(0, rows + between_rows, 1, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
-            if (row < kRows)
+            if (row < rows)
                 write_row(air, made.layout, row, around, made.sky);
             else
-                between.write(row - kRows, made.between);
+                between.write(row - rows, made.between);
         }
     });
     return made;

@@ -49,6 +49,12 @@ struct EyeLayout {
     double reach_m(double sine) const;
 };
 
+/// Which tables are made: the other ones are empty.
+struct EyeParts {
+    bool sky = true, between = true;
+    bool operator==(const EyeParts&) const = default;
+};
+
 struct EyeTables {
     EyeLayout layout;
     /// By layer, elevation, azimuth; rgb. Layers:
@@ -69,7 +75,8 @@ struct EyeTables {
 
 /// @param sun_sine  of the sun's geometric elevation at the eye: most light of dusk comes from air
 ///                  so high that it hardly bends light
-EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine);
+EyeTables eye_tables(const Atmosphere& air, double height_m, double sun_sine,
+                     const EyeParts& parts = {});
 
 /// The eye's height [m] and the sine of the sun's elevation that tables are made for instead of
 /// others near them, so that a camera on its way needs new ones a few times a second only. They

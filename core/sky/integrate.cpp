@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "base/units.h"
 #include "sky/columns.h"
@@ -27,8 +28,25 @@ struct Step {
     Values rayleigh{}, aerosol{};
 };
 
+/// Adds a * light_a + b * light_b.
+void add(float a, const Values& light_a, float b, const Values& light_b, Values& to) {
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        to[k] += a * light_a[k] + b * light_b[k];
+}
+void add(float a, const glm::vec4& light_a, float b, const glm::vec4& light_b, glm::vec4& to) {
+    to += a * light_a + b * light_b;
+}
+
+void assign(const Values& light, Values& to) {
+    to = light;
+}
+void assign(const Values& light, glm::vec4& to) {
+    to = colour(light);
+}
+
 /// Diffuse light of a height, by the sun: with all that a step does to it. Made where it is asked
 /// for.
+template <class Light>
 class Scattered {
   public:
     Scattered(const Coefficients& air, const DiffuseTable& table, const Step& step)
@@ -41,7 +59,7 @@ class Scattered {
     }
 
     /// @param cosine  ray_sun_cosine()
-    void add(Brought& to, double sun_sine, double cosine) {
+    void add_to(BroughtAs<Light>& to, double sun_sine, double cosine) {
         const double sun_level = std::sqrt(std::max(1 - sun_sine * sun_sine, 1e-12));
         const double level = std::sqrt(std::max(1 - step_.sine * step_.sine, 0.0));
         const double across =
@@ -51,9 +69,7 @@ class Scattered {
         const auto& a = node(at.first);
         const auto& b = node(at.first + 1);
         for (std::size_t c = 0; c < harmonics_; ++c) {
-            const float first = (1 - at.share) * direction[c], second = at.share * direction[c];
-            for (std::size_t k = 0; k < kWavelengths; ++k)
-                to.air[k] += first * a[c][k] + second * b[c][k];
+            add((1 - at.share) * direction[c], a[c], at.share * direction[c], b[c], to.air);
         }
     }
 
@@ -63,7 +79,7 @@ class Scattered {
     static constexpr std::size_t kOfAir = 6;
     static constexpr double kHighestAerosol_m = 15e3;
 
-    const std::array<Values, kHarmonics>& node(int column) {
+    const std::array<Light, kHarmonics>& node(int column) {
         auto& values = nodes_[static_cast<std::size_t>(column)];
         if (made_[static_cast<std::size_t>(column)]) return values;
         made_[static_cast<std::size_t>(column)] = true;
@@ -71,10 +87,12 @@ class Scattered {
         const auto& high = table_.at(row_.first + 1, column).moments;
         for (std::size_t c = 0; c < harmonics_; ++c) {
             const auto l = static_cast<std::size_t>(kDegree[c]);
+            Values light;
             for (std::size_t k = 0; k < kWavelengths; ++k)
-                values[c][k] =
+                light[k] =
                     (low[c][k] + row_.share * (high[c][k] - low[c][k])) *
                     (kRayleighMoments[l] * step_.rayleigh[k] + aerosol_[l] * step_.aerosol[k]);
+            assign(light, values[c]);
         }
         return values;
     }
@@ -84,7 +102,7 @@ class Scattered {
     const Step& step_;
     DiffuseTable::Place row_;
     std::size_t harmonics_;  // that count
-    std::array<std::array<Values, kHarmonics>, DiffuseTable::kSuns> nodes_;
+    std::array<std::array<Light, kHarmonics>, DiffuseTable::kSuns> nodes_;
     std::array<bool, DiffuseTable::kSuns> made_;
 };
 
@@ -123,18 +141,82 @@ double local_sun(const Rays& rays, const Sun& sun, double cosine, double distanc
     return std::clamp((at_eye + distance_m * cosine) / radius_m, -1.0, 1.0);
 }
 
-void add_sunlight(const Coefficients& air, const Step& step, double sun_sine, double cosine,
-                  Brought& to) {
-    const Values light = sunlight(air, air.aerosol_taken, step.height_m, sun_sine);
-    const auto phase = static_cast<float>(rayleigh_phase(cosine));
-    for (std::size_t k = 0; k < kWavelengths; ++k) {
-        to.air[k] += phase * light[k] * step.rayleigh[k];
-        to.aerosol[k] += light[k] * step.aerosol[k];
-    }
-}
+/// Sunlight that a step scatters, without phase functions.
+template <class Light>
+struct Sunlit {
+    Light air, aerosol;
 
+    Sunlit() = default;
+    Sunlit(const Coefficients& coefficients, const Step& step, double sun_sine) {
+        const Values light =
+            sunlight(coefficients, coefficients.aerosol_taken, step.height_m, sun_sine);
+        Values by_air, by_aerosol;
+        for (std::size_t k = 0; k < kWavelengths; ++k) {
+            by_air[k] = light[k] * step.rayleigh[k];
+            by_aerosol[k] = light[k] * step.aerosol[k];
+        }
+        assign(by_air, air);
+        assign(by_aerosol, aerosol);
+    }
+};
+
+/// Sunlit by the sine of the sun's elevation, which differs little among the rays of a step: as
+/// spectra for each ray, as colours between a few sines where the whole disc is up.
+template <class Light>
+class SunlitRays {
+  public:
+    SunlitRays(const Coefficients& air, const Step& step, std::span<const double> sun_sines)
+        : air_(air), step_(step) {
+        if (std::is_same_v<Light, Values>) return;
+        const auto [lowest, highest] = std::ranges::minmax(sun_sines);
+        if (disc_above_horizon(step.height_m, lowest) < 1) return;
+        const Sunlit<Light> first(air, step, lowest), last(air, step, highest);
+        // A line between two sines is off by an eighth of the square of the logarithm's change.
+        constexpr float kChange = 0.09f;
+        const float change = std::abs(std::log(blue(last) / std::max(blue(first), 1e-30f)));
+        // Light changes most at the lowest sines.
+        const float intervals = std::ceil(2 * change / kChange);
+        if (!(intervals <= static_cast<float>(kMost))) return;
+        count_ = std::max(static_cast<int>(intervals), 1);
+        lowest_ = lowest;
+        per_sine_ = count_ / std::max(highest - lowest, 1e-12);
+        nodes_[0] = first;
+        for (int i = 1; i < count_; ++i)
+            nodes_[static_cast<std::size_t>(i)] = Sunlit<Light>(air, step, lowest + i / per_sine_);
+        nodes_[static_cast<std::size_t>(count_)] = last;
+    }
+
+    void add_to(BroughtAs<Light>& to, double sun_sine, double cosine) const {
+        const auto phase = static_cast<float>(rayleigh_phase(cosine));
+        if (count_ == 0) {
+            const Sunlit<Light> here(air_, step_, sun_sine);
+            add(phase, here.air, 0, here.air, to.air);
+            add(1, here.aerosol, 0, here.aerosol, to.aerosol);
+            return;
+        }
+        const double at = (sun_sine - lowest_) * per_sine_;
+        const int first = std::clamp(static_cast<int>(at), 0, count_ - 1);
+        const auto share = static_cast<float>(at - first);
+        const Sunlit<Light>*const a = &nodes_[static_cast<std::size_t>(first)], *const b = a + 1;
+        add(phase * (1 - share), a->air, phase * share, b->air, to.air);
+        add(1 - share, a->aerosol, share, b->aerosol, to.aerosol);
+    }
+
+  private:
+    static constexpr int kMost = 8;  // intervals, with fewer than rays
+
+    static float blue(const Sunlit<Light>& light) { return light.air[2]; }
+
+    const Coefficients& air_;
+    const Step& step_;
+    int count_ = 0;  // of intervals; 0: none
+    double lowest_ = 0, per_sine_ = 0;
+    std::array<Sunlit<Light>, kMost + 1> nodes_;
+};
+
+template <class Light>
 void add_ground(const Coefficients& air, const Sources& sources, const Rays& rays, double end_m,
-                const Values& through, std::size_t ray, Brought& to) {
+                const Values& through, std::size_t ray, BroughtAs<Light>& to) {
     const Sun& at_eye = rays.suns[ray];
     const double sun =
         local_sun(rays, at_eye, ray_sun_cosine(rays.sine, at_eye), end_m, kEarthRadius_m);
@@ -150,7 +232,36 @@ void add_ground(const Coefficients& air, const Sources& sources, const Rays& ray
             light[k] += level[k];
     }
     for (std::size_t k = 0; k < kWavelengths; ++k)
-        to.ground[k] = through[k] * light[k] * static_cast<float>(1 / kPi);
+        light[k] *= through[k] * static_cast<float>(1 / kPi);
+    assign(light, to.ground);
+}
+
+template <class Light>
+void follow(const Coefficients& air, const Sources& sources, const Rays& rays,
+            std::span<const double> ends, bool ground, std::span<BroughtAs<Light>> onwards) {
+    if (onwards.empty()) return;
+    Values through = onwards[0].through;
+    std::vector<double> cosines(onwards.size()), sun_sines(onwards.size());
+    for (std::size_t ray = 0; ray < onwards.size(); ++ray)
+        cosines[ray] = ray_sun_cosine(rays.sine, rays.suns[ray]);
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        const Step step = step_of(air, rays, ends[i - 1], ends[i], through);
+        for (std::size_t ray = 0; ray < onwards.size(); ++ray)
+            sun_sines[ray] =
+                local_sun(rays, rays.suns[ray], cosines[ray], step.distance_m, step.radius_m);
+        std::optional<SunlitRays<Light>> sunlit;
+        if (sources.sun) sunlit.emplace(air, step, sun_sines);
+        std::optional<Scattered<Light>> scattered;
+        if (sources.diffuse) scattered.emplace(air, *sources.diffuse, step);
+        for (std::size_t ray = 0; ray < onwards.size(); ++ray) {
+            if (sunlit) sunlit->add_to(onwards[ray], sun_sines[ray], cosines[ray]);
+            if (scattered) scattered->add_to(onwards[ray], sun_sines[ray], cosines[ray]);
+        }
+    }
+    for (std::size_t ray = 0; ray < onwards.size(); ++ray) {
+        if (ground) add_ground(air, sources, rays, ends.back(), through, ray, onwards[ray]);
+        onwards[ray].through = through;
+    }
 }
 
 }  // namespace
@@ -187,29 +298,30 @@ Values sunlight(const Coefficients& air, const Values& aerosol, double height_m,
     return light;
 }
 
+glm::vec4 colour(const Values& light) {
+    static const std::array<glm::vec4, kWavelengths> kWeights = [] {
+        std::array<glm::vec4, kWavelengths> weights{};
+        for (std::size_t k = 0; k < kWavelengths; ++k) {
+            Spectrum one{};
+            one[k] = 1;
+            weights[k] = glm::vec4(glm::vec3(colour_of(one)), 0);
+        }
+        return weights;
+    }();
+    glm::vec4 sum(0);
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        sum += light[k] * kWeights[k];
+    return sum;
+}
+
 void integrate(const Coefficients& air, const Sources& sources, const Rays& rays,
                std::span<const double> ends, bool ground, std::span<Brought> onwards) {
-    if (onwards.empty()) return;
-    Values through = onwards[0].through;
-    std::vector<double> cosines(onwards.size());
-    for (std::size_t ray = 0; ray < onwards.size(); ++ray)
-        cosines[ray] = ray_sun_cosine(rays.sine, rays.suns[ray]);
-    for (std::size_t i = 1; i < ends.size(); ++i) {
-        const Step step = step_of(air, rays, ends[i - 1], ends[i], through);
-        std::optional<Scattered> scattered;
-        if (sources.diffuse) scattered.emplace(air, *sources.diffuse, step);
-        for (std::size_t ray = 0; ray < onwards.size(); ++ray) {
-            const Sun& sun = rays.suns[ray];
-            const double cosine = cosines[ray];
-            const double sun_sine = local_sun(rays, sun, cosine, step.distance_m, step.radius_m);
-            if (sources.sun) add_sunlight(air, step, sun_sine, cosine, onwards[ray]);
-            if (scattered) scattered->add(onwards[ray], sun_sine, cosine);
-        }
-    }
-    for (std::size_t ray = 0; ray < onwards.size(); ++ray) {
-        if (ground) add_ground(air, sources, rays, ends.back(), through, ray, onwards[ray]);
-        onwards[ray].through = through;
-    }
+    follow(air, sources, rays, ends, ground, onwards);
+}
+
+void integrate(const Coefficients& air, const Sources& sources, const Rays& rays,
+               std::span<const double> ends, bool ground, std::span<BroughtColour> onwards) {
+    follow(air, sources, rays, ends, ground, onwards);
 }
 
 }  // namespace relevo::sky

@@ -1,5 +1,5 @@
 // Maps have the water that the DEM has: sea and lakes are blue in every preset that colours ground,
-// whatever the noise of their heights.
+// whatever the noise of their heights. Models have water that mirrors the sky over it.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -20,15 +20,15 @@ namespace relevo::session::test_water_tints {
 namespace {
 
 constexpr int kPosts = 150;
-constexpr double kSpacing_m = 90;
 
 /// Sea in the west with the noise of radar, a lake in the north-east, and a polder: dry ground
 /// below 0 in the south-east. The floor of none is known.
-std::filesystem::path coast() {
-    const std::filesystem::path file = test::scratch_dir("coast") / "coast.asc";
+std::filesystem::path coast(double spacing_m = 90) {
+    const std::filesystem::path file =
+        test::scratch_dir("coast") / fmt::format("coast{}.asc", spacing_m);
     std::ofstream out(file);
     out << fmt::format("ncols {0}\nnrows {0}\nxllcorner 500000\nyllcorner 5000000\ncellsize {1}\n",
-                       kPosts, kSpacing_m);
+                       kPosts, spacing_m);
     std::mt19937 random(5);
     std::uniform_int_distribution<int> noise(-5, 0);
     for (int row = 0; row < kPosts; ++row) {
@@ -44,11 +44,21 @@ std::filesystem::path coast() {
     return file;
 }
 
-/// What a map shows at posts, as it is seen, 0 to 255.
-class Map {
+scene::Scene coast_seen_from(const char* view, double spacing_m = 90) {
+    scene::Scene scene;
+    scene.dems = {coast(spacing_m).string()};
+    scene.dem.crs = "EPSG:32633";
+    scene.view = scene::parse_view(view);
+    scene.time.at = "2026-06-21T12:00Z";
+    scene.width_px = scene.height_px = 400;
+    return scene;
+}
+
+/// What a picture shows at posts, as it is seen, 0 to 255.
+class Seen {
   public:
-    explicit Map(const std::string& preset)
-        : session_(scene(preset), {.device = test::gl_device()}, files_) {
+    explicit Seen(const scene::Scene& scene)
+        : session_(scene, {.device = test::gl_device()}, files_) {
         session_.draw();
         picture_ = session_.picture();
         std::vector<float> depths_m;
@@ -65,19 +75,6 @@ class Map {
     }
 
   private:
-    static scene::Scene scene(const std::string& preset) {
-        scene::Scene scene;
-        scene.dems = {coast().string()};
-        scene.dem.crs = "EPSG:32633";
-        scene.view = scene::parse_view("top");
-        scene.time.at = "2026-06-21T12:00Z";
-        scene.width_px = scene.height_px = 400;
-        scene.stamps.legend = false;
-        scene.effects.presets = {preset};
-        scene.effects.settings = {{"tint.lit", "false"}};
-        return scene;
-    }
-
     FilesInUse files_;
     Session session_;
     image::Image8 picture_;
@@ -92,7 +89,11 @@ void expect_colour(const glm::ivec3& found, const glm::ivec3& expected, const st
 TEST(WaterTints, SeaAndLakesAreWaterAndPoldersAreLand) {
     const glm::ivec3 water(159, 200, 220);  // tint_water
     for (const std::string preset : {"relief", "slope", "aspect"}) {
-        Map map(preset);
+        scene::Scene scene = coast_seen_from("top");
+        scene.stamps.legend = false;
+        scene.effects.presets = {preset};
+        scene.effects.settings = {{"tint.lit", "false"}};
+        Seen map(scene);
         for (const int row : {10, 45, 75, 100, 140})
             for (const int column : {5, 20, 40, 57})
                 expect_colour(map.colour(column, row), water,
@@ -102,6 +103,17 @@ TEST(WaterTints, SeaAndLakesAreWaterAndPoldersAreLand) {
         const glm::ivec3 polder = map.colour(90, 110);
         EXPECT_LT(polder.b, polder.g) << preset;
         if (preset == "relief") expect_colour(polder, {121, 164, 132}, "polder");
+    }
+}
+
+TEST(WaterOfABlock, MirrorsTheSkyOverItHoweverFarTheEyeIs) {
+    // Of 13 and of 130 km: the eye is 12 km up, and beyond the air, where the sky is black.
+    Seen near(coast_seen_from("az=180,el=12")), far(coast_seen_from("az=180,el=12", 900));
+    for (const int row : {30, 75, 120}) {
+        const glm::ivec3 here = near.colour(25, row), there = far.colour(25, row);
+        EXPECT_GT(here.b, here.r + 10) << row;
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(here[i], there[i], 6) << row << ", channel " << i;
     }
 }
 

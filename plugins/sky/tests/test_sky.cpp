@@ -300,7 +300,7 @@ void look(test::GpuSnippet& gpu, render::AirTextures& air, double height_m, doub
     frame.eye_up = {0, 0, 1, sky::horizon_sine(height_m)};
     frame.eye_sun = {0, std::cos(sun), std::sin(sun), sun};
     frame.sun_direction = frame.eye_sun;
-    air.update(sky::Air{}, {.sun_sine = std::sin(sun)}, frame);
+    air.update(sky::Air{}, {.height_m = height_m, .light = {.sun_sine = std::sin(sun)}}, frame);
     gpu.bind("air_sky", *air.texture("air_sky"));
     gpu.bind("air_between", *air.texture("air_between"));
 }
@@ -402,10 +402,12 @@ TEST(SkyAir, TheMoonHasTheAureoleOfItsLight) {
     look(gpu, air, 2, -40);
     gpu.frame().eye_moon = glm::vec4(std::cos(radians(40.0)), 0, moon_sine, 0.0045);
     gpu.frame().eye_moon_light = glm::vec4(glm::vec3(1e-6f), 1);
-    air.update(
-        sky::Air{},
-        {.sun_sine = std::sin(radians(-40.0)), .moon_sine = moon_sine, .moon = glm::vec3(1e-6f)},
-        gpu.frame());
+    air.update(sky::Air{},
+               {.height_m = 2,
+                .light = {.sun_sine = std::sin(radians(-40.0)),
+                          .moon_sine = moon_sine,
+                          .moon = glm::vec3(1e-6f)}},
+               gpu.frame());
     const auto results = gpu.run(
         "float elevation = radians(40.0 + 2.0 * float(x));\n"
         "vec3 view = vec3(cos(elevation), 0.0, sin(elevation));\n"
