@@ -55,7 +55,7 @@ void SceneState::set_time(sun::Instant utc) {
     inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
     const sun::MoonPosition moon = sun::moon_position(utc, place);
     inputs.moon = render::make_moon(moon, position_, inputs.stars);
-    inputs.sun_visible = sun::sun_visible_fraction(utc, place);
+    inputs.sun_visible = sun::sun_visible_fraction(position_, moon);
     inputs.sun.strength = glm::dvec3(inputs.sun_visible);
     render::choose_direct_light(inputs,
                                 render::make_sun_light(moon, air_, *ground_, dem_->field.grid));

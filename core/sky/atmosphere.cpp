@@ -53,7 +53,8 @@ float smooth_phase(const Coefficients& air, double cosine) {
 /// Adds what a ray brings to the light of a place.
 void add(const Coefficients& air, const Brought& brought, double sine, const Sun& sun,
          double solid_angle, Diffuse& to) {
-    const auto direction = harmonics(sine, std::sqrt(1 - sine * sine) * sun.azimuth_cos);
+    const auto direction =
+        harmonics(harmonic_powers(sine), std::sqrt(1 - sine * sine) * sun.azimuth_cos);
     const float phase = smooth_phase(air, ray_sun_cosine(sine, sun));
     const auto weight = static_cast<float>(solid_angle);
     const auto level = static_cast<float>(std::max(sine, 0.0));

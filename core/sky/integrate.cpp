@@ -54,7 +54,8 @@ class Scattered {
           table_(table),
           step_(step),
           row_(DiffuseTable::row_of(step.height_m)),
-          harmonics_(step.height_m > kHighestAerosol_m ? kOfAir : kHarmonics) {
+          harmonics_(step.height_m > kHighestAerosol_m ? kOfAir : kHarmonics),
+          powers_(harmonic_powers(step.sine)) {
         made_.fill(false);
     }
 
@@ -64,12 +65,13 @@ class Scattered {
         const double level = std::sqrt(std::max(1 - step_.sine * step_.sine, 0.0));
         const double across =
             std::clamp((cosine - step_.sine * sun_sine) / sun_level, -level, level);
-        const std::array<float, kHarmonics> direction = harmonics(step_.sine, across);
         const DiffuseTable::Place at = DiffuseTable::column_of(sun_sine);
         const auto& a = node(at.first);
         const auto& b = node(at.first + 1);
-        for (std::size_t c = 0; c < harmonics_; ++c) {
-            add((1 - at.share) * direction[c], a[c], at.share * direction[c], b[c], to.air);
+        float power = 1;
+        for (std::size_t p = 0; p < kPowers; ++p) {
+            add((1 - at.share) * power, a[p], at.share * power, b[p], to.air);
+            power *= static_cast<float>(across);
         }
     }
 
@@ -79,12 +81,14 @@ class Scattered {
     static constexpr std::size_t kOfAir = 6;
     static constexpr double kHighestAerosol_m = 15e3;
 
-    const std::array<Light, kHarmonics>& node(int column) {
+    /// Light of the harmonics together, by power of `across`.
+    const std::array<Light, kPowers>& node(int column) {
         auto& values = nodes_[static_cast<std::size_t>(column)];
         if (made_[static_cast<std::size_t>(column)]) return values;
         made_[static_cast<std::size_t>(column)] = true;
         const auto& low = table_.at(row_.first, column).moments;
         const auto& high = table_.at(row_.first + 1, column).moments;
+        std::array<Values, kPowers> sums{};
         for (std::size_t c = 0; c < harmonics_; ++c) {
             const auto l = static_cast<std::size_t>(kDegree[c]);
             Values light;
@@ -92,8 +96,13 @@ class Scattered {
                 light[k] =
                     (low[c][k] + row_.share * (high[c][k] - low[c][k])) *
                     (kRayleighMoments[l] * step_.rayleigh[k] + aerosol_[l] * step_.aerosol[k]);
-            assign(light, values[c]);
+            for (std::size_t p = 0; p < kPowers; ++p)
+                if (powers_[c][p] != 0)
+                    for (std::size_t k = 0; k < kWavelengths; ++k)
+                        sums[p][k] += powers_[c][p] * light[k];
         }
+        for (std::size_t p = 0; p < kPowers; ++p)
+            assign(sums[p], values[p]);
         return values;
     }
 
@@ -102,7 +111,8 @@ class Scattered {
     const Step& step_;
     DiffuseTable::Place row_;
     std::size_t harmonics_;  // that count
-    std::array<std::array<Light, kHarmonics>, DiffuseTable::kSuns> nodes_;
+    HarmonicPowers powers_;
+    std::array<std::array<Light, kPowers>, DiffuseTable::kSuns> nodes_;
     std::array<bool, DiffuseTable::kSuns> made_;
 };
 

@@ -18,26 +18,49 @@ inline constexpr int kHarmonics = 15, kDegrees = 5;
 /// Degree l of each harmonic; its order m goes from 0 to l.
 inline constexpr std::array<int, kHarmonics> kDegree{0, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4};
 
-/// The real, orthonormal harmonics of a direction.
-/// @param sine    of its elevation
+/// Harmonics of one elevation are polynomials of `across`: coefficients by power, 0 to 4.
+inline constexpr int kPowers = 5;
+using HarmonicPowers = std::array<std::array<float, kPowers>, kHarmonics>;
+
+/// The real, orthonormal harmonics of an elevation. @param sine  of it
+inline HarmonicPowers harmonic_powers(double sine) {
+    const double s = sine, s2 = s * s, level2 = 1 - s2;
+    const auto powers = [](double c0, double c1, double c2 = 0, double c3 = 0, double c4 = 0) {
+        return std::array<float, kPowers>{static_cast<float>(c0), static_cast<float>(c1),
+                                          static_cast<float>(c2), static_cast<float>(c3),
+                                          static_cast<float>(c4)};
+    };
+    // Of degree 2 and more: sectoral parts, 2 x^2 - level2 and x (4 x^2 - 3 level2).
+    const auto two = [&](double c) { return powers(-c * level2, 0, 2 * c); };
+    const auto three = [&](double c) { return powers(0, -3 * c * level2, 0, 4 * c); };
+    constexpr double kFour = 0.625836;
+    return {powers(0.282095, 0),
+            powers(0.488603 * s, 0),
+            powers(0, 0.488603),
+            powers(0.315392 * (3 * s2 - 1), 0),
+            powers(0, 1.092548 * s),
+            two(0.546274),
+            powers(0.373176 * s * (5 * s2 - 3), 0),
+            powers(0, 0.457046 * (5 * s2 - 1)),
+            two(1.445306 * s),
+            three(0.590044),
+            powers(0.105786 * (s2 * (35 * s2 - 30) + 3), 0),
+            powers(0, 0.669047 * s * (7 * s2 - 3)),
+            two(0.473087 * (7 * s2 - 1)),
+            three(1.770131 * s),
+            powers(kFour * level2 * level2, 0, -8 * kFour * level2, 0, 8 * kFour)};
+}
+
+/// The harmonics of a direction.
 /// @param across  length of its horizontal part times the cosine of its azimuth from the sun's
-inline std::array<float, kHarmonics> harmonics(double sine, double across) {
-    const double sine2 = sine * sine, across2 = across * across, level2 = 1 - sine2;
-    return {0.282095f,
-            static_cast<float>(0.488603 * sine),
-            static_cast<float>(0.488603 * across),
-            static_cast<float>(0.315392 * (3 * sine2 - 1)),
-            static_cast<float>(1.092548 * sine * across),
-            static_cast<float>(0.546274 * (2 * across2 - level2)),
-            static_cast<float>(0.373176 * sine * (5 * sine2 - 3)),
-            static_cast<float>(0.457046 * across * (5 * sine2 - 1)),
-            static_cast<float>(1.445306 * sine * (2 * across2 - level2)),
-            static_cast<float>(0.590044 * across * (4 * across2 - 3 * level2)),
-            static_cast<float>(0.105786 * (sine2 * (35 * sine2 - 30) + 3)),
-            static_cast<float>(0.669047 * sine * across * (7 * sine2 - 3)),
-            static_cast<float>(0.473087 * (2 * across2 - level2) * (7 * sine2 - 1)),
-            static_cast<float>(1.770131 * sine * across * (4 * across2 - 3 * level2)),
-            static_cast<float>(0.625836 * (8 * across2 * (across2 - level2) + level2 * level2))};
+inline std::array<float, kHarmonics> harmonics(const HarmonicPowers& of_elevation, double across) {
+    const auto x = static_cast<float>(across);
+    std::array<float, kHarmonics> result;
+    for (std::size_t c = 0; c < kHarmonics; ++c) {
+        const std::array<float, kPowers>& p = of_elevation[c];
+        result[c] = p[0] + x * (p[1] + x * (p[2] + x * (p[3] + x * p[4])));
+    }
+    return result;
 }
 
 /// Diffuse light at a height under a sun: radiance moments and irradiance of level ground, for an

@@ -216,13 +216,7 @@ double visible_fraction(double sun_rad, double moon_rad, double separation_rad) 
     return std::clamp(1 - covered / (kPi * s * s), 0.0, 1.0);
 }
 
-double sun_visible_fraction(Instant utc, const geo::Geodetic& place) {
-    constexpr double kParallaxAndDiscs_rad = radians(1.7);
-    const Syzygy geocentric(utc);
-    if (std::hypot(geocentric.longitude_rad, geocentric.latitude_rad) > kParallaxAndDiscs_rad)
-        return 1;
-    const Position sun = position(utc, place);
-    const MoonPosition moon = moon_position(utc, place);
+double sun_visible_fraction(const Position& sun, const MoonPosition& moon) {
     return Discs(sun.direction * sun.distance_au, moon.direction * moon.distance_au).visible();
 }
 

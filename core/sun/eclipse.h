@@ -6,6 +6,7 @@
 
 #include "geo/geodetic.h"
 #include "sun/earth_rotation.h"
+#include "sun/moon.h"
 #include "sun/time.h"
 #include "sun/zone.h"
 
@@ -18,9 +19,8 @@ namespace relevo::sun {
 /// @param separation_rad     of the centres
 double visible_fraction(double sun_rad, double moon_rad, double separation_rad);
 
-/// The same for a place and time; 1 without an eclipse, and fast then.
-/// @throws Error (BadInput) outside 1900-2100 and for an impossible place
-double sun_visible_fraction(Instant utc, const geo::Geodetic& place);
+/// The same of positions at one time, from one place; 1 without an eclipse.
+double sun_visible_fraction(const Position& sun, const MoonPosition& moon);
 
 enum class EclipseKind { Partial, Annular, Total };
 

@@ -30,8 +30,8 @@ double longitude_rad(const glm::dvec3& cirs, const Epoch& epoch, const SolarEphe
         std::cos(ra) * std::cos(dec));
 }
 
-double phase_longitude_rad(const Epoch& epoch, const SolarEphemeris& axes) {
-    const glm::dvec3 moon = apparent_moon_m(epoch.tt_jd[0], epoch.tt_jd[1], axes);
+/// @param moon  apparent, from the Earth's centre
+double phase_longitude_rad(const Epoch& epoch, const SolarEphemeris& axes, const glm::dvec3& moon) {
     return eraAnp(longitude_rad(moon, epoch, axes) -
                   longitude_rad(axes.apparent_au(), epoch, axes));
 }
@@ -42,7 +42,8 @@ double phase_longitude_rad(Instant utc) {
     Epoch epoch;
     epoch.tt_jd[0] = kUnixEpoch_jd;
     epoch.tt_jd[1] = (utc_s + EarthRotation::built_in().at(utc).tt_minus_utc_s) / kDay_s;
-    return phase_longitude_rad(epoch, SolarEphemeris(epoch.tt_jd[0], epoch.tt_jd[1]));
+    const SolarEphemeris axes(epoch.tt_jd[0], epoch.tt_jd[1]);
+    return phase_longitude_rad(epoch, axes, apparent_moon_m(epoch.tt_jd[0], epoch.tt_jd[1], axes));
 }
 
 /// When the phase longitude is `wanted`, within half a month of `near`.
@@ -71,8 +72,8 @@ MoonPosition moon_position(const Epoch& epoch, const geo::Geodetic& place) {
     const TurnedEarth earth(epoch);
     const TurnedEarth::Motion motion = earth.motion(place);
     const glm::dvec3 sun = axes.apparent_au(motion.position_m, motion.velocity_m_s);
-    glm::dvec3 moon =
-        (apparent_moon_m(epoch.tt_jd[0], epoch.tt_jd[1], axes) - motion.position_m) / ERFA_DAU;
+    const glm::dvec3 from_centre_m = apparent_moon_m(epoch.tt_jd[0], epoch.tt_jd[1], axes);
+    glm::dvec3 moon = (from_centre_m - motion.position_m) / ERFA_DAU;
     // Diurnal aberration, which the length does not have.
     const double distance_au = glm::length(moon);
     moon = distance_au * glm::normalize(moon / distance_au + motion.velocity_m_s / ERFA_CMPS);
@@ -87,7 +88,7 @@ MoonPosition moon_position(const Epoch& epoch, const geo::Geodetic& place) {
     result.bright_limb_rad = angle_at(to_moon, to_sun, {0, 0, 1});
     result.bright_limb_from_zenith_rad = angle_at(
         result.direction, glm::normalize(observer.enu(earth.itrs(sun))), glm::dvec3(0, 0, 1));
-    result.phase_longitude_rad = phase_longitude_rad(epoch, axes);
+    result.phase_longitude_rad = phase_longitude_rad(epoch, axes, from_centre_m);
     return result;
 }
 

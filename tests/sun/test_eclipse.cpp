@@ -149,15 +149,19 @@ TEST(Eclipse, LeavesOfTheDiscWhatTheMoonDoesNotCover) {
 }
 
 TEST(Eclipse, IsInTheLightOfAPlace) {
+    const auto visible = [](const char* utc, const geo::Geodetic& place) {
+        const Instant at = instant_of(utc);
+        return sun_visible_fraction(position(at, place), moon_position(at, place));
+    };
     const geo::Geodetic ohio = place_of(41.0341, -83.6523);
-    EXPECT_EQ(sun_visible_fraction(instant_of("2024-04-08T17:50:00"), ohio), 1);
-    EXPECT_EQ(sun_visible_fraction(instant_of("2024-04-08T19:12:34"), ohio), 0);
-    const double half = sun_visible_fraction(instant_of("2024-04-08T18:34:00"), ohio);
+    EXPECT_EQ(visible("2024-04-08T17:50:00", ohio), 1);
+    EXPECT_EQ(visible("2024-04-08T19:12:34", ohio), 0);
+    const double half = visible("2024-04-08T18:34:00", ohio);
     EXPECT_GT(half, 0.4);
     EXPECT_LT(half, 0.7);
-    EXPECT_EQ(sun_visible_fraction(instant_of("2024-04-20T19:12:34"), ohio), 1);
+    EXPECT_EQ(visible("2024-04-20T19:12:34", ohio), 1);
     // Total there, nothing of it in Patagonia.
-    EXPECT_EQ(sun_visible_fraction(instant_of("2024-04-08T19:12:34"), place_of(-50, -70)), 1);
+    EXPECT_EQ(visible("2024-04-08T19:12:34", place_of(-50, -70)), 1);
 }
 
 TEST(Eclipse, IsGreatestWhereTheSunIsUp) {
