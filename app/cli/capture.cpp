@@ -2,7 +2,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -10,7 +9,6 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/folder_watch.h"
@@ -19,10 +17,9 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/format_arguments.h"
-#include "cli/memory_use.h"
 #include "cli/scene_arguments.h"
+#include "cli/timings.h"
 #include "dem/files_of.h"
-#include "dem/remote.h"
 #include "effect/search_path.h"
 #include "geo/format.h"
 #include "scene/panorama.h"
@@ -75,92 +72,6 @@ Wanted wanted(const CaptureArguments& arguments) {
         result.compared = split(compared->second, ',');
     return result;
 }
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point began) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
-
-/// What each stage of the run took, and the further frames of --repeat.
-class Timings {
-  public:
-    explicit Timings(OutputFile* file) : file_(file) {}
-
-    bool wanted() const { return file_ != nullptr; }
-    render::PassTimes* passes() { return file_ ? &passes_ : nullptr; }
-    void add(const std::string& stage, double took_ms) { stages_[stage] = took_ms; }
-
-    /// Of the whole picture: its first frame's passes, and what comes after them.
-    void add_picture(double took_ms) {
-        double passes_ms = 0;
-        for (const auto& [name, ms] : passes_)
-            passes_ms += ms;
-        add("passes", passes_ms);
-        add("readback", std::max(took_ms - passes_ms, 0.0));
-    }
-
-    void write(session::Session& session, int repeat) {
-        if (!file_) return;
-        nlohmann::ordered_json json;
-        json["device"] = session.device().renderer;
-        json["triangles"] = session.triangles();
-        json["stages_ms"] = stages_;
-        json["whole_ms"] = milliseconds_since(began_);
-        json["ev100"] = session.ev100();
-        json["memory_mib"] = memory_of(session.scene().dem.memory);
-        if (const auto net = dem::network_use())
-            json["net"] = {{"requests", net->requests}, {"read_bytes", net->read_bytes}};
-        nlohmann::ordered_json& passes = json["passes_ms"] = nlohmann::ordered_json::object();
-        for (const auto& [name, ms] : passes_)
-            passes[name] = ms;
-        if (repeat > 0) {
-            json["frames"] = frames(session, repeat, 0);
-            json["frames_with_sun_moved"] = frames(session, repeat, kSunStep_s);
-        }
-        file_->write(json_text(json));
-    }
-
-  private:
-    static constexpr double kSunStep_s = 60;
-
-    /// What parts of the run may take, and the peak of the process.
-    static nlohmann::ordered_json memory_of(const MemoryBudget& memory) {
-        const auto mib = [](std::int64_t bytes) {
-            return static_cast<double>(bytes) / static_cast<double>(MemoryBudget::kMiB);
-        };
-        return {{"allowed", memory.mib()},
-                {"tiles", mib(memory.view_bytes)},
-                {"blocks", mib(memory.block_bytes)},
-                {"work", mib(memory.work_bytes)},
-                {"peak", peak_memory_mib()}};
-    }
-
-    /// @param step_s  by which the sun moves before each frame
-    static nlohmann::ordered_json frames(session::Session& session, int repeat, double step_s) {
-        std::vector<double> frames_ms;
-        const std::clock_t processor_began = std::clock();
-        for (int i = 0; i < repeat; ++i) {
-            const auto began = Clock::now();
-            if (step_s > 0) session.set_time(session.time() + step_s);
-            session.draw_alone();
-            frames_ms.push_back(milliseconds_since(began));
-        }
-        const double processor_ms =
-            1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
-        std::ranges::sort(frames_ms);
-        return {{"count", frames_ms.size()},
-                {"min_ms", frames_ms.front()},
-                {"median_ms", frames_ms[frames_ms.size() / 2]},
-                {"max_ms", frames_ms.back()},
-                {"processor_ms", processor_ms / static_cast<double>(frames_ms.size())}};
-    }
-
-    OutputFile* file_;
-    Clock::time_point began_ = Clock::now();
-    nlohmann::ordered_json stages_ = nlohmann::ordered_json::object();
-    render::PassTimes passes_;
-};
 
 /// "21 June 2026 16:34", local time of the scene's zone.
 std::string local_time(const session::Session& session) {

@@ -20,7 +20,7 @@ void PassTimers::begin(const std::string& pass, bool on_host) {
         query = Query(name);
         glQueryCounter(name, GL_TIMESTAMP);
     }
-    marks_.push_back({pass, on_host, Clock::now(), std::move(query)});
+    marks_.push_back({pass, on_host, Clock::now(), std::clock(), std::move(query)});
 }
 
 PassTimes PassTimers::end() {
@@ -35,7 +35,8 @@ PassTimes PassTimers::end() {
             glGetQueryObjectui64v(to.stamp.name(), GL_QUERY_RESULT, &ended);
             ms = static_cast<double>(ended - began) * 1e-6;
         }
-        times.emplace_back(from.pass, ms);
+        const auto ticks = static_cast<double>(to.processor - from.processor);
+        times.push_back({from.pass, ms, 1e3 * ticks / CLOCKS_PER_SEC});
     }
     marks_.clear();
     return times;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gl/context.h"
@@ -10,8 +10,13 @@
 
 namespace relevo::render {
 
-/// Durations of a frame's passes [ms] by name, in order.
-using PassTimes = std::vector<std::pair<std::string, double>>;
+struct PassTime {
+    std::string pass;
+    double ms = 0;            ///< by the clock, or the device's
+    double processor_ms = 0;  ///< of all threads of the process
+};
+/// Of a frame's passes, in order.
+using PassTimes = std::vector<PassTime>;
 
 /// Measures passes. On hardware uses the device's time stamps, which need no waiting. On software
 /// renderers waits for the device after each pass, because their time stamps exclude vertex work.
@@ -32,6 +37,7 @@ class PassTimers {
         std::string pass;
         bool on_host;
         Clock::time_point at;
+        std::clock_t processor;
         Query stamp;
     };
 

@@ -173,9 +173,9 @@ bool Session::is_loading() const {
     return impl_->terrain->is_making_pages();
 }
 
-void Session::draw_alone() {
+void Session::draw_alone(render::PassTimes* times) {
     impl_->context->make_current();
-    impl_->drawn->renderer().render_frame(*impl_->terrain, ground(), impl_->state.inputs);
+    impl_->drawn->renderer().render_frame(*impl_->terrain, ground(), impl_->state.inputs, times);
     impl_->context->finish();
 }
 

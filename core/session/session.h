@@ -199,7 +199,7 @@ class Session {
     /// True if terrain is loading, so that a later frame has more detail.
     bool is_loading() const;
     /// Draws only the left half's effects of a comparison, and waits for the device.
-    void draw_alone();
+    void draw_alone(render::PassTimes* times = nullptr);
 
     /// Draws the scene as its picture file has it: with all samples, transparency, layers, in tiles
     /// if it is larger than a frame, with marks and stamps. Requires Options::format.

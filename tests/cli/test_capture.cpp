@@ -257,6 +257,9 @@ TEST_F(Capture, TimingsNameEveryStage) {
     EXPECT_EQ(json["frames"]["count"], 3);
     EXPECT_LE(json["frames"]["min_ms"], json["frames"]["median_ms"]);
     EXPECT_LE(json["frames"]["median_ms"], json["frames"]["max_ms"]);
+    EXPECT_GT(json["frames"]["passes"]["terrain"]["processor_ms"].get<double>(), 0);
+    EXPECT_FALSE(json["frames"]["passes"].contains("sun"));
+    EXPECT_GT(json["frames_with_sun_moved"]["passes"]["sun"]["ms"].get<double>(), 0);
 }
 
 TEST_F(Capture, DumpsTheProgramsItCompiled) {

@@ -188,7 +188,7 @@ TEST(PluginPass, WhatNobodyReadsIsNotComputed) {
     PassTimes times;
     drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame(), &times);
     const auto is_run = [&](std::string_view name) {
-        return std::ranges::any_of(times, [&](const auto& time) { return time.first == name; });
+        return std::ranges::any_of(times, [&](const auto& time) { return time.pass == name; });
     };
     EXPECT_TRUE(is_run("probe.used"));
     EXPECT_FALSE(is_run("probe.unused"));
