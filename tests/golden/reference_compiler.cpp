@@ -8,6 +8,7 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 #include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
 
 namespace relevo::test {
 namespace {
@@ -80,6 +81,24 @@ void each_operation(std::span<const std::uint32_t> code, const Visit& visit) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> optimised(const std::vector<std::uint32_t>& code) {
+    spvtools::Optimizer optimizer(SPV_ENV_OPENGL_4_5);
+    optimizer.RegisterPerformancePasses();
+    std::vector<std::uint32_t> result;
+    return optimizer.Run(code.data(), code.size(), &result) ? result : code;
+}
+
+int count_operations(const std::vector<std::uint32_t>& code) {
+    constexpr std::uint32_t kFunction = 54;
+    bool in_functions = false;
+    int count = 0;
+    each_operation(code, [&](const auto& words) {
+        in_functions = in_functions || (words[0] & 0xffff) == kFunction;
+        count += in_functions;
+    });
+    return count;
+}
 
 int count_operations(const std::vector<std::uint32_t>& code, std::uint32_t operation) {
     int count = 0;

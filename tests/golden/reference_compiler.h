@@ -14,6 +14,11 @@ struct ReferenceProgram {
     std::vector<std::uint32_t> compute;           ///< of a compute program
 };
 
+/// SPIR-V as an optimiser leaves it, without what cannot be reached.
+std::vector<std::uint32_t> optimised(const std::vector<std::uint32_t>& code);
+
+/// How many operations SPIR-V has in its functions.
+int count_operations(const std::vector<std::uint32_t>& code);
 /// How often SPIR-V has an operation, or a decoration, by its number there.
 int count_operations(const std::vector<std::uint32_t>& code, std::uint32_t operation);
 int count_decorations(const std::vector<std::uint32_t>& code, std::uint32_t decoration);

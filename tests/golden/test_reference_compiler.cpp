@@ -17,6 +17,7 @@
 #include "effect/registry.h"
 #include "effect/selection.h"
 #include "golden/reference_compiler.h"
+#include "golden/shipped.h"
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "render/renderer.h"
@@ -27,8 +28,6 @@
 
 namespace relevo::test::test_reference_compiler {
 namespace {
-
-using Ids = std::vector<std::string>;
 
 /// With any native effect there is the program "depth".
 const std::vector<std::string> kNatives{"native"};
@@ -70,15 +69,7 @@ class Programs {
     void add(const effect::Selection& selection, const shader::ParamStore& values,
              const std::string& what, const std::string& with,
              const render::ProgramOptions& options) {
-        shader::StitchInput input;
-        input.snippets = selection.snippets();
-        input.passes = selection.passes();
-        input.instances = selection.instances();
-        input.capabilities = selection.capabilities;
-        input.values = &values;
-        input.max_texture_units = 32;
-        input.same_textures = same_textures(selection);
-        for (render::ProgramText& text : render::stitch_frames(core_, input, options).programs)
+        for (render::ProgramText& text : stitched(selection, values, options).programs)
             add({fmt::format("{} of {}, {}", text.name, what, with), text.stitched.vertex.text,
                  text.stitched.fragment.text, text.stitched.compute.text});
     }
@@ -94,83 +85,7 @@ class Programs {
     }
 
   private:
-    static std::map<std::string, std::string> same_textures(const effect::Selection& selection) {
-        std::map<std::string, std::string> same;
-        std::vector<const effect::TextureSpec*> known;
-        for (const effect::Effect* effect : selection.effects) {
-            for (const effect::TextureSpec& spec : effect->manifest.textures) {
-                const auto first = std::ranges::find_if(
-                    known, [&](const auto* other) { return other->same_texels(spec); });
-                if (first == known.end())
-                    known.push_back(&spec);
-                else
-                    same.emplace(spec.resource, (*first)->resource);
-            }
-        }
-        return same;
-    }
-
-    shader::FolderTexts core_{share_dir() / "shaders"};
     std::map<std::string, Program> programs_;
-};
-
-/// Every effect of the plugins' folder, and every selection of them whose programs are tried.
-class Shipped {
-  public:
-    const effect::Registry registry = effect::Registry::load_installed();
-
-    shader::ParamStore values() const {
-        std::vector<shader::Param> params = registry.params();
-        for (const shader::Param& param : render::core_params())
-            params.push_back(param);
-        shader::ParamStore store;
-        store.declare(params, registry.texts());
-        return store;
-    }
-
-    /// None, each alone with what it requires, all that may be on at once, and those but one.
-    std::map<std::string, effect::Switches> selections() const {
-        std::map<std::string, effect::Switches> result{{"core", {.only = Ids{}}}};
-        for (const effect::Effect& effect : registry.effects()) {
-            result.emplace(effect.id() + " alone", effect::Switches{.only = Ids{effect.id()}});
-            for (const Ids& ids : everything()) {
-                result.emplace(fmt::format("{}", fmt::join(ids, ",")),
-                               effect::Switches{.only = ids});
-                if (!contains(ids, effect.id())) continue;
-                effect::Switches but{.only = ids, .disable = {effect.id()}};
-                std::erase(*but.only, effect.id());
-                result.emplace(fmt::format("all but {}", effect.id()), but);
-            }
-        }
-        return result;
-    }
-
-    /// With all others on, both need more than the 32 textures of a device: an error says so.
-    static bool too_many_textures(const Ids& ids, const std::string& id) {
-        return (id == "clouds" && contains(ids, std::string("drape"))) ||
-               (id == "drape" && contains(ids, std::string("clouds")));
-    }
-
-    /// As many effects as may be on at once, in every way: with each the others that no word of it
-    /// excludes.
-    std::set<Ids> everything() const {
-        std::set<Ids> result;
-        for (const effect::Effect& first : registry.effects()) {
-            Ids ids{first.id()};
-            std::vector<std::string> taken = first.manifest.exclusive;
-            for (const effect::Effect& effect : registry.effects()) {
-                const std::vector<std::string>& words = effect.manifest.exclusive;
-                if (contains(ids, effect.id()) || too_many_textures(ids, effect.id()) ||
-                    std::ranges::any_of(words, [&](const auto& w) { return contains(taken, w); }))
-                    continue;
-                ids.push_back(effect.id());
-                taken.insert(taken.end(), words.begin(), words.end());
-            }
-            std::ranges::sort(ids);
-            result.insert(ids);
-        }
-        return result;
-    }
 };
 
 /// What the reference compiler does not take, each text once.
