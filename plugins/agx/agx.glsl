@@ -20,24 +20,24 @@ const float agx_slope = 2.0;
 const float agx_toe = 3.0, agx_shoulder = 3.25;  // powers: higher ones bend more sharply
 const float agx_display = 2.2;        // the curve's values are for a display of this exponent
 
-/// One side of the curve: a sigmoid from the middle that begins with the slope and ends at the edge.
-/// @param x      from the middle, 0 to `width`
+/// How far a side of the curve would reach if it went on without an end: it begins with the slope and ends at the edge.
 /// @param width  from the middle to the edge
-/// @returns from one half, 0 to 0.5
-float agx_side(in float x, in float width, in float power) {
-    float reach = pow(pow(agx_slope * width, -power) * (pow(2.0 * agx_slope * width, power) - 1.0), -1.0 / power);
-    float t = agx_slope * x / reach;
-    return reach * t * pow(1.0 + pow(t, power), -1.0 / power);
+float agx_reach(in float width, in float power) {
+    return pow(pow(agx_slope * width, -power) * (pow(2.0 * agx_slope * width, power) - 1.0), -1.0 / power);
 }
 
+/// A sigmoid of two sides. Which one it is decides numbers, not code: pow() is what it costs.
 /// @param light  linear, exposed
 /// @returns 0 to 1, for a display
 float agx_tone(in float light) {
+    const float range = agx_stops_below + agx_stops_above;
     float stops = log2(max(light, 1e-10) / agx_grey);
-    float range = agx_stops_below + agx_stops_above;
-    return stops < 0.0
-        ? 0.5 - agx_side(min(-stops, agx_stops_below) / range, agx_stops_below / range, agx_toe)
-        : 0.5 + agx_side(min(stops, agx_stops_above) / range, agx_stops_above / range, agx_shoulder);
+    bool below = stops < 0.0;
+    float power = below ? agx_toe : agx_shoulder;
+    float reach = below ? agx_reach(agx_stops_below / range, agx_toe) : agx_reach(agx_stops_above / range, agx_shoulder);
+    float t = agx_slope * min(abs(stops), below ? agx_stops_below : agx_stops_above) / range / reach;
+    float side = reach * t * pow(1.0 + pow(t, power), below ? -1.0 / agx_toe : -1.0 / agx_shoulder);
+    return below ? 0.5 - side : 0.5 + side;
 }
 
 /// @param colour  linear, exposed

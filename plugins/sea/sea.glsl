@@ -130,17 +130,13 @@ const float sea_fetch_m = 5000.0;  // of lakes; the sea is fully risen
 const float sea_unresolved = 0.3;  // of a wave in a pixel, and none of it is seen
 const float sea_period_s = 512.0;  // after which all waves are as they were
 
-// Of each train its direction from the wind's, to the right of it, and its phase: by chance, the longer the nearer to
-// the wind, neighbours apart.
-const vec3 sea_train[sea_trains] = vec3[](
-    vec3(0.9386, 0.3451, 0.555), vec3(0.9973, -0.0732, 0.909), vec3(0.8453, -0.5343, 0.256), vec3(0.9801, 0.1983, 0.653),
-    vec3(0.6813, 0.7320, 0.597), vec3(0.9992, 0.0412, 0.729), vec3(0.9510, -0.3091, 0.919), vec3(0.8786, 0.4776, 0.082),
-    vec3(0.7150, 0.6991, 0.291), vec3(0.9426, 0.3339, 0.557), vec3(0.9955, 0.0944, 0.587), vec3(0.8863, -0.4632, 0.433),
-    vec3(0.2598, 0.9657, 0.311), vec3(0.9504, -0.3112, 0.599), vec3(0.7796, 0.6262, 0.631), vec3(0.9986, -0.0530, 0.470),
-    vec3(0.8923, 0.4515, 0.187), vec3(0.8877, -0.4605, 0.234), vec3(1.0000, 0.0000, 0.105), vec3(0.9848, 0.1737, 0.736),
-    vec3(0.7820, -0.6232, 0.071), vec3(0.5071, -0.8619, 0.367), vec3(0.9277, 0.3734, 0.436), vec3(0.9680, -0.2511, 0.768),
-    vec3(0.1736, -0.9848, 0.582), vec3(0.9655, 0.2604, 0.274), vec3(0.9431, -0.3324, 0.038), vec3(0.5368, 0.8437, 0.465),
-    vec3(0.9787, -0.2052, 0.277), vec3(0.6158, -0.7879, 0.543), vec3(0.1736, -0.9848, 0.783));
+/// Of a train, its direction from the wind's, to the right of it, as cosine and sine, and its phase: the longer the nearer
+/// to the wind, neighbours apart. Irrational steps leave no two alike; a table would be stored again for every pixel.
+vec3 sea_train(in int i) {
+    float aside = 2.0 * fract(0.754878 * float(i) + 0.5) - 1.0;
+    float angle = (0.6 + 0.03 * float(i)) * aside * (0.5 + aside * aside);
+    return vec3(cos(angle), sin(angle), fract(0.569840 * float(i) + 0.1));
+}
 
 /// Waves at a point.
 struct sea_Waves {
@@ -178,7 +174,7 @@ sea_Waves sea_waves(in vec2 anchored_m, in vec2 dx_m, in vec2 dy_m, in float ope
     float wander = 0.0;
     for (int i = 0; i < sea_trains; ++i) {
         if (length_m < finest_m) break;
-        vec3 train = sea_train[i];
+        vec3 train = sea_train(i);
         vec2 way = mat2(train.x, -train.y, train.y, train.x) * downwind;
         vec2 k = way / length_m;
         float over_peak = length_m / peak_m;

@@ -63,8 +63,10 @@ vec3 moon_disc(in vec3 direction) {
 /// The corona, which the light of the sky hides but for a total eclipse.
 vec3 moon_corona(in vec3 direction, in vec3 to_sun) {
     const float sun_rad = 0.004652;
-    float r = max(length(direction - to_sun) / sun_rad, 1.0);
-    float of_sun = 1e-6 * (2.565 * pow(r, -17.0) + 1.425 * pow(r, -7.0) + 0.0532 * pow(r, -2.5));
+    float near = min(sun_rad / length(direction - to_sun), 1.0);
+    float near2 = near * near, near4 = near2 * near2, near8 = near4 * near4;
+    // Baumbach's powers 17, 7 and 2.5.
+    float of_sun = 1e-6 * (2.565 * near8 * near8 * near + 1.425 * near4 * near2 * near + 0.0532 * near2 * sqrt(near));
     // The sun's disc has the radiance of its irradiance times pi over its solid angle.
     return frame.corona.rgb * of_sun / (sun_rad * sun_rad);
 }
