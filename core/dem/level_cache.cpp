@@ -17,7 +17,7 @@
 namespace relevo::dem {
 namespace {
 
-constexpr int kFormat = 1;  ///< of the files; another one is not read
+constexpr int kFormat = 2;  ///< of the files; another one is not read
 constexpr std::int64_t kMostBytes = std::int64_t{4} << 30;
 constexpr std::size_t kLongestKey = std::size_t{1} << 26;
 

@@ -18,10 +18,11 @@ using Voids = dem::Pyramid::Voids;
 LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes, dem::Water* known) {
     LoadedDem::Drawn drawn;
     if (field.about.statistics.holes > 0) {
-        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, holes);
+        dem::FilledHoles filled =
+            dem::fill_small_holes(field.height_m, holes, dem::ThinGround::Dropped);
         drawn.holes_text = filled.text(holes);
         drawn.has_covers = filled.covered_posts > 0;
-        if (filled.filled_posts + filled.covered_posts > 0) {
+        if (!filled.height_m.empty()) {
             drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
                                                   field.about, field.reduction});
             drawn.is_filled = std::move(filled.filled);

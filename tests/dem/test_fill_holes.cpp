@@ -35,17 +35,30 @@ TEST(FillHoles, AVoidAmongGroundIsFilledFromAroundIt) {
 }
 
 TEST(FillHoles, AVoidThatReachesAnEdgeIsCutOut) {
-    for (const Window& hole : {Window{0, 8, 4, 3}, Window{10, 0, 4, 3},
-                               Window{kColumns - 4, 8, 4, 3}, Window{10, kRows - 3, 4, 3}}) {
+    for (const Window& hole : {Window{0, 8, 4, 9}, Window{10, 0, 12, 3},
+                               Window{kColumns - 4, 8, 4, 9}, Window{10, kRows - 3, 12, 3}}) {
         const FilledHoles filled = fill_small_holes(slope_without(hole), Holes::Fill);
         EXPECT_EQ(filled.filled_posts, 0) << hole.column << " " << hole.row;
         EXPECT_EQ(filled.covered_posts, 0);
-        EXPECT_EQ(filled.cut_posts, 12);
+        EXPECT_EQ(filled.cut_posts, 36);
     }
     // One post from each edge it is a void among ground.
-    for (const Window& hole : {Window{1, 8, 4, 3}, Window{10, 1, 4, 3},
-                               Window{kColumns - 5, 8, 4, 3}, Window{10, kRows - 4, 4, 3}})
-        EXPECT_EQ(fill_small_holes(slope_without(hole), Holes::Fill).filled_posts, 12);
+    for (const Window& hole : {Window{1, 8, 4, 9}, Window{10, 1, 12, 3},
+                               Window{kColumns - 5, 8, 4, 9}, Window{10, kRows - 4, 12, 3}})
+        EXPECT_EQ(fill_small_holes(slope_without(hole), Holes::Fill).filled_posts, 36);
+}
+
+TEST(FillHoles, ANarrowNotchInOneEdgeIsFilledSoThatNoSlitIsInTheWall) {
+    for (const Window& hole : {Window{0, 8, 9, 3}, Window{10, 0, 5, 9},
+                               Window{kColumns - 9, 8, 9, 3}, Window{10, kRows - 9, 5, 9}}) {
+        const Array2d<float> given = slope_without(hole);
+        const FilledHoles filled = fill_small_holes(given, Holes::Fill);
+        EXPECT_EQ(filled.filled_posts, hole.columns * hole.rows);
+        EXPECT_EQ(filled.cut_posts, 0);
+        EXPECT_NEAR(filled.height_m.at(hole.column, hole.row), 100 + hole.column + 2 * hole.row, 9);
+        EXPECT_EQ(fill_small_holes(given, Holes::Cut).cut_posts, hole.columns * hole.rows);
+    }
+    EXPECT_EQ(fill_small_holes(slope_without({0, 0, 3, 3}), Holes::Fill).cut_posts, 9) << "corner";
 }
 
 /// A slope with voids where a function says so.
@@ -91,6 +104,76 @@ TEST(FillHoles, WideVoidsWithinEachOtherAreCoveredOnce) {
     for (const FilledHoles* filled : {&rings, &one})
         for (const int column : {120, 150, 280})
             EXPECT_NEAR(filled->height_m.at(column, 120), 100 + column + 2 * 120, 2) << column;
+}
+
+TEST(FillHoles, AVoidAmongPostsOfOneHeightHasThatHeightHoweverWideItIs) {
+    constexpr float kLake_m = 512.37f;
+    for (const int side : {3, 40, 100}) {
+        const auto is_void = [&](int c, int r) {
+            return c >= 30 && c < 30 + side && r >= 30 && r < 30 + side;
+        };
+        Array2d<float> height_m = slope_with(160, is_void);
+        for (int row = 25; row < 135; ++row)
+            for (int column = 25; column < 135; ++column)
+                if (!is_void(column, row)) height_m.at(column, row) = kLake_m;
+        height_m.at(29, 31) = kLake_m + 0.0005f;
+        const FilledHoles level = fill_small_holes(height_m, Holes::Fill);
+        EXPECT_EQ(level.filled_posts, side * side);
+        for (int row = 30; row < 30 + side; ++row)
+            for (int column = 30; column < 30 + side; ++column) {
+                ASSERT_EQ(level.height_m.at(column, row), kLake_m) << column << ' ' << row;
+                ASSERT_EQ(level.filled.at(column, row), kFilled);
+            }
+        height_m.at(29, 31) = kLake_m + 10;
+        const FilledHoles sloping = fill_small_holes(height_m, Holes::Fill);
+        EXPECT_GT(sloping.height_m.at(30, 31), kLake_m);
+        EXPECT_EQ(sloping.covered_posts, side > kSmallHole_posts ? side * side : 0);
+    }
+}
+
+/// A DEM of 200 posts a side with a void in the south. In it are a post, a line two posts wide and
+/// a square of three posts a side.
+bool is_bay(int column, int row) {
+    const bool post = column == 60 && row == 150;
+    const bool line = column >= 80 && column < 82 && row >= 130;
+    const bool square = column >= 120 && column < 123 && row >= 150 && row < 153;
+    return row >= 120 && column >= 40 && column < 160 && !post && !line && !square;
+}
+
+TEST(FillHoles, PostsAndLinesWithinVoidsAreDroppedOnlyIfAskedFor) {
+    const Array2d<float> given = slope_with(200, is_bay);
+    for (const Holes holes : {Holes::Fill, Holes::Cut}) {
+        EXPECT_TRUE(fill_small_holes(given, holes).height_m.empty());
+        const FilledHoles drawn = fill_small_holes(given, holes, ThinGround::Dropped);
+        EXPECT_EQ(drawn.dropped_posts, 1 + 2 * 70);
+        ASSERT_FALSE(drawn.height_m.empty());
+        for (int row = 0; row < 200; ++row)
+            for (int column = 0; column < 200; ++column) {
+                const bool kept = row < 120 || column < 40 || column >= 160 ||
+                                  (column >= 120 && column < 123 && row >= 150 && row < 153);
+                ASSERT_EQ(!std::isnan(drawn.height_m.at(column, row)), kept)
+                    << column << ' ' << row;
+            }
+        EXPECT_NE(drawn.text(holes).find(", without 141 posts of narrow ground"),
+                  std::string::npos);
+    }
+}
+
+TEST(FillHoles, AnIsolatedPostDoesNotPullACoverUp) {
+    // A level membrane over a wide void, were it not for one post of a tower's height.
+    Array2d<float> height_m = slope_with(
+        200, [](int c, int r) { return std::max(std::abs(c - 100), std::abs(r - 100)) <= 50; });
+    height_m.at(100, 100) = 5000;
+    const FilledHoles drawn = fill_small_holes(height_m, Holes::Fill, ThinGround::Dropped);
+    EXPECT_EQ(drawn.dropped_posts, 1);
+    EXPECT_EQ(drawn.covered_posts, 101 * 101 - 1);
+    EXPECT_NEAR(drawn.height_m.at(100, 100), 100 + 100 + 200, 8);
+    EXPECT_GT(fill_small_holes(height_m, Holes::Fill).height_m.at(101, 100), 2000);
+}
+
+TEST(FillHoles, ScatteredPostsStay) {
+    const auto scattered = slope_with(200, [](int c, int r) { return (c + r) % 2 == 0; });
+    EXPECT_EQ(fill_small_holes(scattered, Holes::Cut, ThinGround::Dropped).dropped_posts, 0);
 }
 
 }  // namespace

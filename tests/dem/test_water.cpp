@@ -241,7 +241,7 @@ TEST(FillHoles, SmallOnesAreFilledLargeOnesCoveredAndThoseAtTheEdgeStay) {
                 h.at(x, y) = kHole;
     };
     cut(10, 10, 5, 5);
-    cut(0, 50, 3, 3);
+    cut(0, 0, 3, 3);
     cut(100, 40, 65, 10);
     const auto before = h;
     const FilledHoles found = fill_small_holes(h, Holes::Fill);
@@ -263,6 +263,22 @@ TEST(FillHoles, SmallOnesAreFilledLargeOnesCoveredAndThoseAtTheEdgeStay) {
     EXPECT_EQ(found.text(Holes::Fill),
               "voids: 2.28 % of the DEM, 0.0833 % drawn filled (--holes mark shows them), 2.17 % "
               "covered in grey (wider than 64 posts), 0.03 % cut out (at the edge)");
+}
+
+TEST(Water, ALakeWithAVoidIsOneLake) {
+    auto h = ground(200, 160, [](int x, int y) {
+        return std::hypot(x - 100, y - 80) < 60 ? 431.27 : 440 + hills(x, y);
+    });
+    const std::int64_t lake = find_water(h, alps(h)).lake_posts;
+    for (int y = 40; y < 120; ++y)
+        for (int x = 60; x < 130; ++x)
+            if (std::hypot(x - 95, y - 80) < 35) h.at(x, y) = kHole;
+    EXPECT_LT(find_water(h, alps(h)).lake_posts, lake);
+    const FilledHoles drawn = fill_small_holes(h, Holes::Fill, ThinGround::Dropped);
+    EXPECT_EQ(drawn.covered_posts, 0);
+    const Water water = find_water(drawn.height_m, alps(h));
+    EXPECT_EQ(water.lakes, 1);
+    EXPECT_EQ(water.lake_posts, lake);
 }
 
 TEST(FillHoles, ACoverSpansFromRimToRimWithoutAStep) {
