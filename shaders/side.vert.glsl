@@ -126,11 +126,18 @@ void main() {
             first = crossing(a, b);
             last = crossing(a, c);
         } else if (in_b != in_a && in_b != in_c) {
-            first = crossing(b, a);
-            last = crossing(b, c);
+            first = crossing(b, c);
+            last = crossing(b, a);
         } else {
             first = crossing(c, a);
             last = crossing(c, b);
+        }
+        // Against the ground's order, where two corners have ground.
+        bool alone = int(in_a) + int(in_b) + int(in_c) == 1;
+        if (alone) {
+            SideCorner swapped = first;
+            first = last;
+            last = swapped;
         }
     }
     bool down = third.w > 0.5;

@@ -404,6 +404,7 @@ class Declaration {
                   .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
                   .after = {covering_},
+                  .culls = true,  // no walls behind a void are seen through it
                   .body = [](PassContext& frame) {
                       if (frame.inputs.camera.map) return;  // nothing of them is seen from above
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);

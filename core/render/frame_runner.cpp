@@ -145,9 +145,11 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
         if (const auto& clear = pass.colours[i].clear)
             target->clear_colour(static_cast<int>(i),
                                  {(*clear)[0], (*clear)[1], (*clear)[2], (*clear)[3]});
-    const DrawScope scope(*target, {.depth = pass.depth,
-                                    .stencil = pass.stencil,
-                                    .clips_voids = pass.clips_voids && frame.terrain.has_voids()});
+    DrawState state{.depth = pass.depth,
+                    .stencil = pass.stencil,
+                    .clips_voids = pass.clips_voids && frame.terrain.has_voids()};
+    if (pass.culls) state.winds_counterclockwise = frame.terrain.winds_counterclockwise();
+    const DrawScope scope(*target, state);
     draw(pass, program, *target, frame);
 }
 

@@ -1,6 +1,7 @@
 // What a picture shows for which nothing is asked: where the DEM lies in it, and in which light.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include "base/paths.h"
 #include "base/units.h"
 #include "dem/fixture.h"
+#include "dem/load.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
@@ -308,6 +310,63 @@ TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {
         }
         EXPECT_LE(gaps, 3) << name;
     }
+}
+
+/// A plain on 300 posts a side that has voids where a function says so.
+template <typename IsVoid>
+scene::Scene plain_without(const char* name, const IsVoid& is_void) {
+    test::Raster raster;
+    raster.columns = raster.rows = 300;
+    raster.nodata = -9999;
+    raster.value = [&](int column, int row, int) {
+        return is_void(column, row) ? -9999.0 : 500 + 0.01 * column + 0.02 * row;
+    };
+    return scene_of(test::write_raster(test::scratch_dir(name) / "dem.tif", raster), {"block"});
+}
+
+double share_of(const scene::Scene& scene) {
+    FilesInUse files;
+    Session session(scene, {.device = test::gl_device()}, files);
+    session.draw();
+    return covered(session).share;
+}
+
+TEST(Frame, NothingIsSeenThroughAVoidButTheBackdrop) {
+    SKIP_WITHOUT_BLOCK;
+    const auto share = [](scene::Scene scene, bool with_walls) {
+        scene.holes = dem::Holes::Cut;
+        scene.view.orbit.azimuth_deg = 160;
+        scene.view.orbit.elevation_deg = 12;
+        if (!with_walls) scene.effects.switches.only = std::vector<std::string>();
+        return share_of(scene);
+    };
+    const auto distance = [](int x, int y) { return std::hypot(x - 150, y - 150); };
+    const scene::Scene whole = plain_without("whole.tif", [](int, int) { return false; });
+    const scene::Scene ring =
+        plain_without("ring.tif", [&](int x, int y) { return distance(x, y) < 100; });
+    const scene::Scene disc =
+        plain_without("disc.tif", [&](int x, int y) { return distance(x, y) > 145; });
+    const double wholes = share(whole, true), rings = share(ring, true), discs = share(disc, true);
+    std::printf("[ picture  ] whole %.3f and %.3f, ring %.3f and %.3f, disc %.3f and %.3f\n",
+                wholes, share(whole, false), rings, share(ring, false), discs, share(disc, false));
+    // Of the ground of the ring a third is missing, and no wall is in its place.
+    EXPECT_NEAR(wholes - rings, share(whole, false) - share(ring, false), 0.01);
+    EXPECT_GT(wholes - rings, 0.03);
+    EXPECT_GT(discs, 1.15 * share(disc, false)) << "walls below a round outline";
+}
+
+TEST(Frame, IsolatedPostsAreFiguresButNotDrawn) {
+    const auto is_void = [](int x, int y) { return y > 200 && (x != 150 || y != 250); };
+    const scene::Scene scene = plain_without("post.tif", is_void);
+    const auto source =
+        std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
+    const auto dem = load_dem(source, scene);
+    EXPECT_TRUE(std::isnan(dem->to_draw().height_m.at(150, 250)));
+    EXPECT_NEAR(dem->field.height_m.at(150, 250), 506.5, 0.01);
+    const dem::Heightfield read = dem::load(scene.dems, scene.dem);
+    EXPECT_EQ(std::memcmp(read.height_m.data(), dem->field.height_m.data(),
+                          read.height_m.size() * sizeof(float)),
+              0);
 }
 
 TEST(Frame, TheSunOfTheDefaultHourRakesTheGround) {

@@ -130,9 +130,10 @@ struct Pass {
     std::vector<std::string> writes{};
     /// Updated otherwise than as targets.
     std::vector<std::string> updates{};
-    std::vector<std::string> after{};    ///< names of earlier passes; unknown names are ignored
-    bool clips_voids = false;            ///< enables GL_CLIP_DISTANCE0 if the DEM has voids
-    std::optional<Dispatch> dispatch{};  ///< of a compute pass, and only there
+    std::vector<std::string> after{};  ///< names of earlier passes; unknown names are ignored
+    bool clips_voids = false;          ///< enables GL_CLIP_DISTANCE0 if the DEM has voids
+    bool culls = false;                ///< triangles that wind otherwise than the ground from above
+    std::optional<Dispatch> dispatch{};        ///< of a compute pass, and only there
     std::function<void(PassContext&)> body{};  ///< of a geometry or host pass, and only there
 };
 
