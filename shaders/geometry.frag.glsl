@@ -1,13 +1,14 @@
 //! provides  the geometry pass: what is where, for terrain.frag.glsl to shade each visible pixel once
 //! writes    gbuffer: column and row of the post, height [m], view depth [m]; with HEIGHT_STEPS, the number
-//!           of an output, also how the height changes from pixel to pixel [m/px]; with ORTHOGRAPHIC, another
-//!           one, its position [m, relative to the eye], and 1
+//!           of an output, also how the height changes from pixel to pixel [m/px], the DEM's own height and its
+//!           change [m]; with ORTHOGRAPHIC, another one, its position [m, relative to the eye], and 1
 //!
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
 
 //@ include lib/finite.glsl
 //@ include lib/octahedral.glsl
+//@ include lib/surface.glsl
 
 flat in vec4 post_limits;
 in vec2 post_of_tile;
@@ -18,17 +19,22 @@ in vec3 place_m;
 
 layout(location = 0) out uvec4 gbuffer_out;
 #ifdef HEIGHT_STEPS
-layout(location = HEIGHT_STEPS) out vec2 height_steps_out;
+layout(location = HEIGHT_STEPS) out vec4 height_steps_out;
 
-/// How the height changes from this pixel to the next one right and up, on this triangle [m/px].
-/// Heights divided by the depth are linear in the picture, as is 1 / depth: their differences are
+/// How a varying changes from this pixel to the next one right and up, on this triangle.
+/// Varyings divided by the depth are linear in the picture, as is 1 / depth: their differences are
 /// those of the whole triangle's plane, also where the triangle ends between two pixels.
-/// 0 on level ground, where the differences are those of rounding: up to 64 of a float's steps, but for slivers.
+vec2 steps_of(in float varying_here) {
+    float near = gl_FragCoord.w;
+    float scaled = varying_here * near;
+    return (vec2(dFdx(scaled), dFdy(scaled)) - varying_here * vec2(dFdx(near), dFdy(near))) / near;
+}
+
+/// Of the height [m/px]: 0 on level ground, where the differences are those of rounding: up to 64 of a float's steps,
+/// but for slivers.
 vec2 height_steps() {
     const float rounding = 4e-6;
-    float near = gl_FragCoord.w;
-    float scaled = height_in_tile_m * near;
-    vec2 steps = (vec2(dFdx(scaled), dFdy(scaled)) - height_in_tile_m * vec2(dFdx(near), dFdy(near))) / near;
+    vec2 steps = steps_of(height_in_tile_m);
     return length(steps) > rounding * abs(height_in_tile_m) ? steps : vec2(0.0);
 }
 #endif
@@ -49,7 +55,8 @@ void main() {
     uvec2 normal_source = floatBitsToUint(post);
 #endif
 #ifdef HEIGHT_STEPS
-    height_steps_out = height_steps();
+    precise vec2 rounding = (post - post_limits.xy) - post_of_tile;  // of large columns and rows
+    height_steps_out = vec4(height_steps(), surface_height(post, rounding, steps_of(post_of_tile.x), steps_of(post_of_tile.y)));
 #endif
 #ifdef NAN_SLIVERS
     // A sliver that the near plane has cut to nothing has NaN for its inputs in llvmpipe; its neighbours

@@ -50,7 +50,8 @@ void main() {
     s.post = clamp(vec2(share.x, 1.0 - share.y), 0.0, 1.0) * (frame.posts.xy - 1.0);
     s.pixel_posts = max(length(dFdx(s.post)), length(dFdy(s.post)));
     s.texture_at = s.texture_dx = s.texture_dy = vec2(0.0);
-    s.height_dx_m = s.height_dy_m = 0.0;
+    s.height_dx_m = s.height_dy_m = s.dem_step_m = 0.0;
+    s.dem_height_m = s.height_m;
     s.above_ground_m = side_height_m - side_ground_m;
     s.gloss = 1.0;
     s.material = ivec2(0);

@@ -19,7 +19,7 @@
 //@ include lib/srgb.glsl
 //@ include lib/tangent.glsl
 
-uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
+uniform sampler2D height_steps;  // from geometry.frag.glsl, where a hook reads heights that change from pixel to pixel
 uniform sampler2D instance_look;  // from instance.frag.glsl, where a plugin has instances
 uniform sampler2D ground_place;  // from geometry.frag.glsl, of a map
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
@@ -154,12 +154,15 @@ void main() {
     s.ground_dy_m = unexaggerated(dy * min(1.0, most / length(dy)), s.up);
     // Between the pixel's sides across the view and along it, which a slant makes longer.
     s.pixel_posts = across * sqrt(min(longest / shortest, frame.footprint_limit));
-    s.height_dx_m = s.height_dy_m = 0.0;
+    s.height_dx_m = s.height_dy_m = s.dem_step_m = 0.0;
+    s.dem_height_m = s.height_m;
     s.above_ground_m = 0.0;
 #ifdef HEIGHT_STEPS
-    vec2 steps = texelFetch(height_steps, pixel, 0).rg;
+    vec4 steps = texelFetch(height_steps, pixel, 0);
     s.height_dx_m = steps.x;
     s.height_dy_m = steps.y;
+    s.dem_height_m = steps.z;
+    s.dem_step_m = steps.w;
 #endif
 
     s.texture_at = s.ground_m.xy;

@@ -142,7 +142,7 @@ class Declaration {
                          .format = RGBA32F,
                          .size = {.depth = facts_.varying_targets}});
         if (!facts_.instances.empty()) add(Resource{.name = "instance_look", .format = RGBA16});
-        if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
+        if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RGBA32F});
         if (facts_.orthographic) add(Resource{.name = kGroundPlaceTexture, .format = RGBA32F});
         if (facts_.radiance)
             add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});

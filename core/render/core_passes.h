@@ -52,7 +52,7 @@ struct FrameFacts {
     bool vertex_normals = false;         ///< computed per vertex, not per fragment
     bool displaced = false;              ///< effects displace the ground
     bool software = false;               ///< the device is a software renderer
-    bool height_steps = false;           ///< hooks read height_dx_m or height_dy_m
+    bool height_steps = false;           ///< hooks read what is stored for contours
     bool orthographic = false;           ///< frames are of Camera::map
     int varying_targets = 0;             ///< layers of stored varyings (shader::Stitched)
     std::vector<std::string> natives{};  ///< ids of native effects, in their order

@@ -43,13 +43,14 @@ bool wants(const shader::StitchInput& input, std::string_view word) {
     });
 }
 
-/// True if an effect reads screen-space derivatives of height.
+/// True if an effect reads screen-space derivatives of height, or the DEM's height.
 bool reads_height_steps(const shader::StitchInput& input) {
     for (const shader::Snippet* snippet : input.snippets) {
         const shader::Source& source = snippet->source;
         for (std::size_t i = 1; i < source.tokens.size(); ++i) {
             const std::string_view word = source.str(source.tokens[i]);
-            if ((word == "height_dx_m" || word == "height_dy_m") &&
+            if ((word == "height_dx_m" || word == "height_dy_m" || word == "dem_height_m" ||
+                 word == "dem_step_m") &&
                 source.str(source.tokens[i - 1]) == ".")
                 return true;
         }

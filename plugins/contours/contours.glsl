@@ -1,6 +1,6 @@
 //! provides  contour lines of constant width in the picture
 //! hook      display
-//! reads     height and how it changes from pixel to pixel [m]
+//! reads     height of the DEM and how it changes from pixel to pixel [m]
 //! writes    overlay, premultiplied sRGB; the module and core place the heights on index lines
 
 uniform float contours_interval_m = 0.0; //@ range(0, 2000) unit(m) label("Interval") description("Height between two lines; 0: by the DEM's relief, about 25 lines")
@@ -41,9 +41,8 @@ float contours_line(in float height_m, in float step_m, in float interval_m, in 
 
 void contours_on_display(in Surface s, inout vec4 overlay) {
     float interval_m = contours_interval();
-    float step_m = length(vec2(s.height_dx_m, s.height_dy_m));
-    float line = contours_line(s.height_m, step_m, interval_m, contours_width_px);
-    float bold = contours_line(s.height_m, step_m, interval_m * float(contours_index),
+    float line = contours_line(s.dem_height_m, s.dem_step_m, interval_m, contours_width_px);
+    float bold = contours_line(s.dem_height_m, s.dem_step_m, interval_m * float(contours_index),
                                contours_bold * contours_width_px);
     float alpha = contours_opacity * max(line, bold);
     overlay = overlay * (1.0 - alpha) + vec4(contours_colour, 1.0) * alpha;

@@ -48,6 +48,8 @@ struct Surface {
     float pixel_posts;        // posts along a side of the pixel on the ground
     vec2 anchored_m;          // ground_m.xy from a point near the eye, exact there: for lib/repeats.glsl [m]
     float above_ground_m;     // of a cut side: above the DEM's ground, in water that effects have raised it by; else 0 or below
+    float dem_height_m;       // of the DEM's posts, also where coarser ground is drawn; with dem_step_m for contours [m]
+    float dem_step_m;         // how dem_height_m changes from a pixel to the next one uphill [m/px]; 0 on level ground
 };
 
 /// A pixel of the picture, whatever it shows.
