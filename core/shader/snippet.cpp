@@ -150,7 +150,7 @@ std::vector<std::string_view> words_left(const Source& source, const Item& item,
         if (source.tokens[i].kind != TokenKind::Directive) {
             if (std::ranges::none_of(around, &Condition::omits)) words.push_back(text);
         } else if (text.starts_with("#if")) {
-            around.push_back({text == unmet, text == met});
+            around.push_back({text == unmet, text == met || text.starts_with(met + " ||")});
         } else if (text.starts_with("#endif")) {
             around.pop_back();
         } else if (!around.empty()) {
@@ -174,7 +174,10 @@ bool changes_arguments(const Snippet& snippet, const HookFunction& function, std
         if (item.kind != Item::Kind::Function || item.names[0] != function.name) continue;
         const Signature signature = snippet.source.signature(item);
         if (signature.type != "void") return true;
-        const auto words = words_left(snippet.source, item, word, is_provided);
+        auto words = words_left(snippet.source, item, word, is_provided);
+        // Core's own function does what is done without the effect.
+        const auto core = std::ranges::find(words, fmt::format("core_on_{}", function.hook->name));
+        words.erase(core, std::ranges::find(core, words.end(), ")"));
         return std::ranges::any_of(signature.arguments, [&](const Argument& argument) {
             // Once in the head.
             return argument.qualifier != "in" && std::ranges::count(words, argument.name) > 1;

@@ -55,8 +55,8 @@ struct Snippet {
 };
 
 /// Whether a hook function may change its arguments where a capability word is provided, or not:
-/// whether the code that `#if HAS_<word>` and `#if !HAS_<word>` in it leave names one of them.
-/// Functions with a result, and other conditions, are taken to.
+/// whether the code that `#if HAS_<word>` and `#if !HAS_<word>` in it leave names one of them, but
+/// for a call of core's own function. Functions with a result, and other conditions, are taken to.
 bool changes_arguments(const Snippet& snippet, const HookFunction& function, std::string_view word,
                        bool is_provided);
 

@@ -3,8 +3,6 @@
 //! writes    colour, linear, 0 to 1
 //! source    T. Sobotka, AgX (2022): matrix, range of stops and the curve's slope and powers
 
-//@ include lib/neutral.glsl
-
 uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
 uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
 uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
@@ -53,7 +51,7 @@ vec3 agx_tones(in vec3 colour) {
 void agx_on_tonemap(inout vec3 colour) {
     // Models and maps have colours that are compared with legends and photographs.
 #if HAS_outside || HAS_tint || HAS_drape
-    colour = neutral_tones(colour);
+    core_on_tonemap(colour);
 #else
     colour = agx_tones(colour);
 #endif

@@ -68,34 +68,41 @@ TEST(UnseenEffects, ChangeThePictureOrSayWhyNot) {
         {"a view from within", ground}};
     FilesInUse files;
     Session session(scene, {.device = test::gl_device()}, files);
+    scene.ortho = true;
+    Session map(scene, {.device = test::gl_device()}, files);
+    std::vector<std::uint8_t> base_top;
     const auto pictures = [&](const Ids& ids, Said* said) {
         std::vector<image::Image8> shown;
-        for (const auto& [name, view] : views) {
-            session.look(view);
+        const auto show = [&](Session& of) {
             scene::Effects effects = scene.effects;
             effects.switches.only = ids;
             if (said) said->begin();
-            session.set_effects(effects);
-            session.draw();
-            shown.push_back(session.picture());
+            of.set_effects(effects);
+            of.draw();
+            shown.push_back(of.picture());
+        };
+        for (const auto& [name, view] : views) {
+            session.look(view);
+            show(session);
         }
+        // Programs of maps take long to compile: those that a top view does not show.
+        if (!said || shown[1].values == base_top) show(map);
         return shown;
     };
     const std::vector<image::Image8> base = pictures(kBase, nullptr);
+    base_top = base[1].values;
     Ids installed;
     for (const effect::Effect& effect : session.effects().registry.effects())
         installed.push_back(effect.id());
     for (const std::string& id : installed) {
         if (contains(kBase, id)) continue;
-        // From outside its tones are the usual ones.
-        if (id == "agx") continue;
         Ids ids = kBase;
         ids.push_back(id);
         Said said;
         const std::vector<image::Image8> shown = pictures(ids, &said);
-        for (std::size_t i = 0; i < views.size(); ++i)
+        for (std::size_t i = 0; i < shown.size(); ++i)
             EXPECT_TRUE(shown[i].values != base[i].values || said.about(i, id))
-                << id << " in " << views[i].first;
+                << id << " in " << (i < views.size() ? views[i].first : "a map");
     }
 }
 
