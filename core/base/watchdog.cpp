@@ -1,5 +1,6 @@
 #include "base/watchdog.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -19,6 +20,7 @@ namespace relevo {
 namespace {
 
 constexpr double kPatience_s = 20;
+constexpr int kSleeping = 6;  // a process may have little processor time for so many limits
 
 void write_all(const char* text) noexcept {
     std::size_t left = std::strlen(text);
@@ -73,7 +75,11 @@ void Watchdog::start(std::chrono::milliseconds limit, std::string message) {
     {
         const std::lock_guard lock(mutex_);
         message_ = std::move(message);
+        limit_ = limit;
         deadline_ = Clock::now() + limit;
+        latest_ = deadline_ + (kSleeping - 1) * limit_;
+        used_before_ = std::clock();
+        paused_.reset();
     }
     changed_.notify_one();
 }
@@ -81,22 +87,23 @@ void Watchdog::start(std::chrono::milliseconds limit, std::string message) {
 void Watchdog::stop() {
     const std::lock_guard lock(mutex_);
     deadline_ = kNever;
-    left_.reset();
+    paused_.reset();
 }
 
 void Watchdog::pause() {
     const std::lock_guard lock(mutex_);
-    if (deadline_ == kNever) return;
-    left_ = deadline_ - Clock::now();
-    deadline_ = kNever;
+    if (deadline_ != kNever && !paused_) paused_.emplace(Clock::now(), std::clock());
 }
 
 void Watchdog::go_on() {
     {
         const std::lock_guard lock(mutex_);
-        if (!left_) return;
-        deadline_ = Clock::now() + *left_;
-        left_.reset();
+        if (!paused_) return;
+        const Clock::duration away = Clock::now() - paused_->first;
+        deadline_ += away;
+        latest_ += away;
+        used_before_ += std::clock() - paused_->second;
+        paused_.reset();
     }
     changed_.notify_one();
 }
@@ -104,11 +111,19 @@ void Watchdog::go_on() {
 void Watchdog::watch() {
     std::unique_lock lock(mutex_);
     while (!over_) {
-        if (deadline_ == kNever)
+        if (deadline_ == kNever || paused_) {
             changed_.wait(lock);
-        else if (changed_.wait_until(lock, deadline_) == std::cv_status::timeout &&
-                 Clock::now() >= deadline_)
-            end_program(message_.c_str());
+            continue;
+        }
+        // A copy: the member may change while this waits.
+        const Clock::time_point deadline = deadline_;
+        changed_.wait_until(lock, deadline);
+        const Clock::time_point now = Clock::now();
+        if (over_ || paused_ || now < deadline_) continue;
+        const std::chrono::duration<double> used(double(std::clock() - used_before_) /
+                                                 CLOCKS_PER_SEC);
+        if (used >= limit_ || now >= latest_) end_program(message_.c_str());
+        deadline_ = std::min(latest_, now + limit_ / 20);
     }
 }
 

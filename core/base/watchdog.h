@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace relevo {
 
@@ -25,7 +27,9 @@ class Watchdog {
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Unless stop() follows within the limit, end_program(message).
+    /// Unless stop() follows within the limit, end_program(message). The limit is wall-clock time
+    /// and also the process's processor time, which a busy machine may not give. Code that sleeps
+    /// ends after six times the limit.
     void start(std::chrono::milliseconds limit, std::string message);
     void stop();
     /// The time between the two does not count.
@@ -40,8 +44,10 @@ class Watchdog {
     std::condition_variable changed_;
     std::string message_;
     static constexpr Clock::time_point kNever = Clock::time_point::max();
-    Clock::time_point deadline_ = kNever;
-    std::optional<Clock::duration> left_;  // while paused
+    Clock::duration limit_{};
+    Clock::time_point deadline_ = kNever, latest_ = kNever;
+    std::clock_t used_before_ = 0;  // processor time of the process at the start
+    std::optional<std::pair<Clock::time_point, std::clock_t>> paused_;  // since when
     bool over_ = false;
     std::thread thread_;
 };
