@@ -4,6 +4,10 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kCameraPhoto("camera_photo", [](std::string_view bytes) {
     dem::camera_photo(file(bytes, "photo.jpg"));
-}
+});
+
+}  // namespace relevo::fuzz

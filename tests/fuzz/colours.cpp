@@ -3,6 +3,10 @@
 #include "chart/ramp.h"
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kColours("colours", [](std::string_view bytes) {
     chart::read_ramp(file(bytes, "colours.txt"), 0, 100);
-}
+});
+
+}  // namespace relevo::fuzz

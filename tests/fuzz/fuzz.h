@@ -6,12 +6,20 @@
 
 #include "base/error.h"
 
-/// What the targets share. A target is a file here with one read(): docs/fuzzing.md.
+/// What the targets share. A target is a file here with one Target: docs/fuzzing.md.
 namespace relevo::fuzz {
 
-/// Gives the bytes to a reader. Throwing Error is right; a crash, a leak, any other exception and a
+/// Gives bytes to a reader. Throwing Error is right; a crash, a leak, any other exception and a
 /// call of more than 10 s are findings.
-void read(std::string_view bytes);
+struct Target {
+    using Read = void (*)(std::string_view bytes);
+    Target(std::string name, Read read);
+};
+
+/// Names the target that LLVMFuzzerTestOneInput() runs; of a program with one target it is that
+/// one.
+/// @returns false if the program has no such target
+bool choose_target(const std::string& name);
 
 /// Calls one of several readers that get the same bytes.
 template <typename Reader>

@@ -4,6 +4,10 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kGuard("guard", [](std::string_view bytes) {
     dem::refuse_unsafe_vrt(AllowedName(file(bytes, "mosaic.vrt").string()));
-}
+});
+
+}  // namespace relevo::fuzz

@@ -4,6 +4,10 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kLandCover("land_cover", [](std::string_view bytes) {
     climate::LandCoverTable::read(file(bytes, "classes.csv"));
-}
+});
+
+}  // namespace relevo::fuzz

@@ -4,8 +4,10 @@
 
 #include "fuzz/fuzz.h"
 
+namespace relevo::fuzz {
+
 // A manifest names files, which have to exist.
-void relevo::fuzz::read(std::string_view bytes) {
+const Target kManifest("manifest", [](std::string_view bytes) {
     static const bool others [[maybe_unused]] = [] {
         for (const char* const name :
              {"haze.glsl", "a.glsl", "b.glsl", "a.png", "b.png", "a.csv", "a.obj"})
@@ -14,4 +16,6 @@ void relevo::fuzz::read(std::string_view bytes) {
     }();
     file(bytes, "plugin.json");
     effect::load_manifest(folder(), folder());
-}
+});
+
+}  // namespace relevo::fuzz

@@ -3,6 +3,8 @@
 #include "fuzz/fuzz.h"
 #include "mesh/mesh.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
-    mesh::parse_obj("mesh.obj", bytes);
-}
+namespace relevo::fuzz {
+
+const Target kObj("obj", [](std::string_view bytes) { mesh::parse_obj("mesh.obj", bytes); });
+
+}  // namespace relevo::fuzz

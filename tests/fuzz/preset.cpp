@@ -4,7 +4,11 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kPreset("preset", [](std::string_view bytes) {
     attempt([&] { effect::parse_setting(bytes); });
     effect::load_preset(file(bytes, "preset.json"));
-}
+});
+
+}  // namespace relevo::fuzz

@@ -1,4 +1,4 @@
-// Instead of libFuzzer: feeds a target with the files of folders, each once.
+// Instead of libFuzzer: feeds a target with the files of folders, each once. In: target, folders.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -26,8 +28,12 @@ void replay(const std::filesystem::path& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc < 2 || !relevo::fuzz::choose_target(argv[1])) {
+        std::printf("no such target\n");
+        return 1;
+    }
     std::vector<std::filesystem::path> paths;
-    for (int i = 1; i < argc; ++i)
+    for (int i = 2; i < argc; ++i)
         for (const auto& entry : std::filesystem::recursive_directory_iterator(argv[i]))
             if (entry.is_regular_file()) paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());

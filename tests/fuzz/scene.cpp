@@ -5,7 +5,9 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kScene("scene", [](std::string_view bytes) {
     const scene::Scene scene = scene::read_scene_text(std::string(bytes), "scene.json", folder());
     const std::string written = scene::scene_text(scene, folder());
     try {
@@ -14,4 +16,6 @@ void relevo::fuzz::read(std::string_view bytes) {
         throw std::logic_error("a scene as it was written cannot be read: " +
                                std::string(error.what()));
     }
-}
+});
+
+}  // namespace relevo::fuzz

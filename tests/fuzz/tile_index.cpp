@@ -4,8 +4,10 @@
 
 #include "fuzz/fuzz.h"
 
+namespace relevo::fuzz {
+
 // Indexes are told apart by the endings of their names.
-void relevo::fuzz::read(std::string_view bytes) {
+const Target kTileIndex("tile_index", [](std::string_view bytes) {
     const bool is_database = bytes.starts_with("SQLite format 3");
     const bool is_flat = bytes.starts_with("fgb\x03");
     const std::string path = file(bytes, is_database ? "index.gpkg"
@@ -14,4 +16,6 @@ void relevo::fuzz::read(std::string_view bytes) {
     attempt([&] { dem::why_no_index(path); });
     attempt([&] { dem::tile_locations(path); });
     dem::refuse_remote_tiles(dem::read_tile_index(path));
-}
+});
+
+}  // namespace relevo::fuzz

@@ -4,7 +4,11 @@
 
 #include "fuzz/fuzz.h"
 
-void relevo::fuzz::read(std::string_view bytes) {
+namespace relevo::fuzz {
+
+const Target kTilePlan("tile_plan", [](std::string_view bytes) {
     file(bytes, output::kPlanFile);
     output::read_plan(folder());
-}
+});
+
+}  // namespace relevo::fuzz
