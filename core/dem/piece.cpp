@@ -94,6 +94,23 @@ std::vector<double> sample_of(GDALRasterBandH band, int pieces) {
     return stored;
 }
 
+/// Reports numbers that are no heights where others are declared to be voids. Not of files on the
+/// net, where a sample takes requests, or of marks that programs make of the largest floats.
+void report_impossible(GDALRasterBandH band, int sampled_pieces, Piece& piece) {
+    constexpr double kMarks = 1e38;
+    const GDALDataType type = GDALGetRasterDataType(band);
+    if (is_remote(piece.path.text()) || (fits_float(type) && type != GDT_Float32)) return;
+    Description& about = piece.about;
+    for (const double stored : sample_of(band, sampled_pieces))
+        if (std::abs(stored) > piece.band_scale.beyond && std::abs(stored) < kMarks &&
+            stored != about.nodata) {
+            guess(about, fmt::format("{:g} is taken as a void, as the declared {} is: no height is "
+                                     "beyond 10 000 km; --nodata none keeps both",
+                                     stored, about.nodata_text()));
+            return;
+        }
+}
+
 /// Which stored numbers are holes: given, else declared, else found out.
 void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled_pieces,
                    Piece& piece) {
@@ -128,6 +145,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         holes_by("option");
     } else if (declared) {
         holes_by(piece.encoding != Encoding::None ? "encoding" : "nodata");
+        if (piece.encoding == Encoding::None) report_impossible(band, sampled_pieces, piece);
     } else if (!piece.has_mask && piece.alpha_band == 0) {
         const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), band_scale.scale);
         if (found.beyond)

@@ -103,6 +103,25 @@ TEST(Unearthly, GivenNodataThatReplacesTheDeclaredOneIsSaid) {
                 testing::IsEmpty());
 }
 
+TEST(Unearthly, ImpossibleNumbersBesideDeclaredVoidsAreNamed) {
+    const auto guesses = [](double odd, const LoadOptions& options = {}) {
+        Raster raster = rising(100, 900);
+        raster.nodata = -9999;
+        raster.value = [value = raster.value, odd](int column, int row, int band) {
+            return column == 1 ? -9999 : column == 2 && row == 2 ? odd : value(column, row, band);
+        };
+        const std::string path = write_raster(folder() / "odd.tif", raster);
+        return Posts::load(std::span(&path, 1), options).about().guesses;
+    };
+    EXPECT_THAT(guesses(1e9),
+                testing::ElementsAre("1e+09 is taken as a void, as the declared -9999 is: no "
+                                     "height is beyond 10 000 km; --nodata none keeps both"));
+    EXPECT_THAT(guesses(800), testing::IsEmpty());
+    // Programs mark voids by the largest floats.
+    EXPECT_THAT(guesses(-3.4e38), testing::IsEmpty());
+    EXPECT_THAT(guesses(1e9, {.nodata = -9999}), testing::IsEmpty());
+}
+
 // As in a hostile file.
 TEST(Unearthly, ADemOfTenThousandKilometresHeightNamesFileAndOption) {
     const std::string path = write_raster(folder() / "high.tif", rising(100, 9.99e6));
