@@ -131,11 +131,11 @@ const float sea_unresolved = 0.3;  // of a wave in a pixel, and none of it is se
 const float sea_period_s = 512.0;  // after which all waves are as they were
 
 /// Of a train, its direction from the wind's, to the right of it, as cosine and sine, and its phase: the longer the nearer
-/// to the wind, neighbours apart. Irrational steps leave no two alike; a table would be stored again for every pixel.
+/// to the wind, neighbours apart. Steps of the golden ratio leave no two alike; a table would be stored again for every pixel.
 vec3 sea_train(in int i) {
-    float aside = 2.0 * fract(0.754878 * float(i) + 0.5) - 1.0;
-    float angle = (0.6 + 0.03 * float(i)) * aside * (0.5 + aside * aside);
-    return vec3(cos(angle), sin(angle), fract(0.569840 * float(i) + 0.1));
+    float aside = 2.0 * fract(0.618034 * float(i) + 0.25) - 1.0;
+    float angle = (0.4 + 0.03 * float(i)) * aside * (0.35 + 0.65 * aside * aside);
+    return vec3(cos(angle), sin(angle), fract(0.754878 * float(i) + 0.1));
 }
 
 /// Waves at a point.
