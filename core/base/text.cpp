@@ -145,6 +145,9 @@ std::optional<std::string> nearest(std::string_view word,
     std::optional<std::string> best;
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
+        const std::size_t longer = std::max(word.size(), candidate.size());
+        // Also keeps long texts of others from being compared letter by letter.
+        if (longer - std::min(word.size(), candidate.size()) >= best_distance) continue;
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;

@@ -29,6 +29,8 @@ TEST(Text, NearestSuggestsOnlyCloseWords) {
     EXPECT_EQ(nearest("haez", words), "haze");
     EXPECT_EQ(nearest("layerin", words), "layering");
     EXPECT_FALSE(nearest("vsm", words));
+    // Minutes, if its letters were compared.
+    EXPECT_FALSE(nearest(std::string(100'000'000, 'h'), words));
 }
 
 TEST(Text, ReadingAMissingFileNamesIt) {
