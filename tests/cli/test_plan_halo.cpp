@@ -58,7 +58,7 @@ TEST(PlanOfAHalo, MemoryIsNoLessThanATaskTakes) {
     const fs::path where = scratch_dir("memory");
     const std::string dem = wide_hills(where);
     for (const Words& memory : {Words{"--memory", "48"}, Words{"--memory", "200"}}) {
-        Words more{"--halo", "2", "--clip", "503000,5294000,506000,5297000"};
+        Words more{"--halo", "2", "--clip", "503000,5295500,504500,5297000"};
         more.insert(more.end(), memory.begin(), memory.end());
         const fs::path folder = where / memory[1];
         const Result plan = relevo(planned(hours_of(dem, folder, more)));
