@@ -109,11 +109,9 @@ std::string file_in(std::string_view name) {
             if (fs::is_directory(status)) break;  // of which there is no such file
             if (fs::exists(status)) return std::string(rest.substr(0, end));
         }
-        if (rest.starts_with("/vsi"))
-            from = name.find('/', from + 1) + 1;
-        else
-            from = name.find(':', from) == std::string_view::npos ? name.size()
-                                                                  : name.find(':', from) + 1;
+        const std::size_t end =
+            rest.starts_with("/vsi") ? name.find('/', from + 1) : name.find(':', from);
+        from = end == std::string_view::npos ? end : end + 1;
     }
     return {};
 }

@@ -183,6 +183,9 @@ TEST(Guard, PipesAndDevicesAreNotWaitedFor) {
     EXPECT_EQ(refusal("NETCDF:\"" + pipe + "\":z"), std::string("a pipe") + kRemedy);
     EXPECT_EQ(refusal(vrt("of_pipe.vrt", source_of(pipe))),
               "a virtual raster of '" + pipe + "', a pipe, expected files");
+    // Names of file systems that GDAL might have end the search.
+    for (const char* name : {"/vsi", "/vsinowhere", "/vsinowhere/", "NETCDF:\"/vsix"})
+        EXPECT_NO_THROW(refuse_unreadable(name)) << name;
     std::filesystem::create_symlink("/dev/zero", folder() / "zero.tif");
     EXPECT_EQ(refusal((folder() / "zero.tif").string()), std::string("a device") + kRemedy);
 }
