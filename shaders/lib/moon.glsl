@@ -4,15 +4,6 @@
 //! source    law of Lommel and Seeliger; corona: S. Baumbach (1937) in C. W. Allen, Astrophysical
 //!           Quantities, 1976, 176; maria: IAU Gazetteer of Planetary Nomenclature
 
-const int moon_maria_count = 14;
-/// Large maria; xy: selenographic longitude and latitude, z: radius [deg], w: darkness.
-const vec4 moon_maria[moon_maria_count] = vec4[](
-    vec4(-15.6, 32.8, 18.9, 0.9), vec4(17.5, 28.0, 11.1, 0.9), vec4(31.4, 8.5, 14.4, 1.0),
-    vec4(59.1, 17.0, 9.2, 1.0), vec4(51.3, -7.8, 13.8, 0.9), vec4(35.5, -15.2, 5.6, 0.8),
-    vec4(-16.6, -21.3, 11.8, 0.8), vec4(-38.6, -24.4, 6.4, 0.9), vec4(-50.0, 22.0, 17.0, 0.9),
-    vec4(-56.0, 4.0, 14.0, 0.9), vec4(-31.0, 7.5, 8.5, 0.7), vec4(-23.0, -10.0, 5.8, 0.8),
-    vec4(3.6, 13.3, 4.0, 0.7), vec4(1.4, 56.0, 7.0, 0.5));
-
 /// Of a direction, how far outside of the moon's limb it is, in pixels there; below 0: inside.
 float moon_outside_px(in vec3 direction) {
     vec3 apart = direction - frame.eye_moon.xyz;
@@ -29,16 +20,34 @@ float moon_uncovered(in vec3 direction) {
     return clamp(0.5 + moon_outside_px(direction), 0.0, 1.0);
 }
 
+/// Darkness of a large mare at a point, 0 outside of it. Without a table: software renderers would store that again for
+/// every block of pixels.
+/// @param longitude_deg, latitude_deg  selenographic, of its middle
+float moon_mare(in vec3 normal, in float longitude_deg, in float latitude_deg, in float radius_deg, in float darkness) {
+    vec2 at = radians(vec2(longitude_deg, latitude_deg));
+    vec3 centre = vec3(cos(at.y) * cos(at.x), cos(at.y) * sin(at.x), sin(at.y));
+    float radius = 2.0 * sin(radians(0.5 * radius_deg)), apart2 = 2.0 - 2.0 * dot(normal, centre);  // chords
+    return darkness * (1.0 - smoothstep(0.4, 1.2, apart2 / (radius * radius)));
+}
+
 /// Reflectance of the surface, 1 on the average of highlands.
 /// @param normal  of the moon at a point, in axes whose z is its own axis and whose x is towards us
 float moon_albedo(in vec3 normal) {
     float dark = 0.0;
-    for (int i = 0; i < moon_maria_count; ++i) {
-        vec2 at = radians(moon_maria[i].xy);
-        vec3 centre = vec3(cos(at.y) * cos(at.x), cos(at.y) * sin(at.x), sin(at.y));
-        float apart = degrees(2.0 * asin(0.5 * length(normal - centre)));
-        dark = max(dark, moon_maria[i].w * (1.0 - smoothstep(0.65, 1.1, apart / moon_maria[i].z)));
-    }
+    dark = max(dark, moon_mare(normal, -15.6, 32.8, 18.9, 0.9));
+    dark = max(dark, moon_mare(normal, 17.5, 28.0, 11.1, 0.9));
+    dark = max(dark, moon_mare(normal, 31.4, 8.5, 14.4, 1.0));
+    dark = max(dark, moon_mare(normal, 59.1, 17.0, 9.2, 1.0));
+    dark = max(dark, moon_mare(normal, 51.3, -7.8, 13.8, 0.9));
+    dark = max(dark, moon_mare(normal, 35.5, -15.2, 5.6, 0.8));
+    dark = max(dark, moon_mare(normal, -16.6, -21.3, 11.8, 0.8));
+    dark = max(dark, moon_mare(normal, -38.6, -24.4, 6.4, 0.9));
+    dark = max(dark, moon_mare(normal, -50.0, 22.0, 17.0, 0.9));
+    dark = max(dark, moon_mare(normal, -56.0, 4.0, 14.0, 0.9));
+    dark = max(dark, moon_mare(normal, -31.0, 7.5, 8.5, 0.7));
+    dark = max(dark, moon_mare(normal, -23.0, -10.0, 5.8, 0.8));
+    dark = max(dark, moon_mare(normal, 3.6, 13.3, 4.0, 0.7));
+    dark = max(dark, moon_mare(normal, 1.4, 56.0, 7.0, 0.5));
     return 1.12 - 0.5 * dark;
 }
 
