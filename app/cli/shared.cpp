@@ -149,9 +149,10 @@ std::string RefractionArguments::name() const {
 }
 
 void ViewArguments::add_to(Verb verb) {
-    verb.add_option("--view", view,
-                    "Camera as seen from the DEM's centre: az=210,el=30,zoom=1, or top, north, "
-                    "north-east, ...; default: where relief shows best")
+    verb.add_option(
+            "--view", view,
+            "Camera as seen from the DEM's centre: az=210,el=30,zoom=1, or whole, top, north, "
+            "north-east, ...; default: from the air, where relief shows best")
         .group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")

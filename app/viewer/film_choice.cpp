@@ -20,6 +20,7 @@ namespace {
 /// The angles of a view of the whole DEM from where a camera stands.
 scene::View around_dem(const scene::View& view) {
     scene::View orbit;
+    orbit.orbit.aerial = false;
     orbit.orbit.azimuth_deg = std::remainder(view.heading_deg + 180, 360.0);
     orbit.orbit.elevation_deg = std::clamp(-view.pitch_deg, 10.0, 80.0);
     orbit.fov_y_rad = view.fov_y_rad;

@@ -183,6 +183,34 @@ class Collector {
     double exaggeration_;
 };
 
+/// Where this share of the posts is a level sea, aerial views frame the land alone.
+constexpr double kMostlySea = 0.6, kLevelSea_m = 0.5, kLand_m = 1;
+/// Less land than this share of the posts is framed with its sea.
+constexpr double kLeastLand = 0.002;
+/// Of long DEMs fewer posts have to be in the picture, so that enough of it is ground.
+constexpr double kElongated = 1.8, kLeastOfElongated = 0.77;
+
+scene::AerialGround aerial_ground(const scene::GroundNet& net, const Ground& ground,
+                                  double exaggeration) {
+    scene::AerialGround all, land;
+    std::size_t sea = 0;
+    for (const glm::dvec3& post : net) {
+        if (std::isnan(post.x)) continue;
+        all.posts.push_back(post);
+        const double height_m = ground.frame.to_geodetic(post).height_m / exaggeration;
+        if (std::abs(height_m) <= kLevelSea_m) ++sea;
+        if (height_m > kLand_m) land.posts.push_back(post);
+    }
+    const auto count = static_cast<double>(all.posts.size());
+    land.land_alone = static_cast<double>(sea) > kMostlySea * count &&
+                      static_cast<double>(land.posts.size()) > kLeastLand * count;
+    if (land.land_alone) return land;
+    const scene::GroundBox box = scene::box_of(net);
+    const auto [shorter_m, longer_m] = std::minmax(box.size_m.x, box.size_m.y);
+    if (longer_m >= kElongated * shorter_m) all.least_in_picture = kLeastOfElongated;
+    return all;
+}
+
 }  // namespace
 
 GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
@@ -224,6 +252,7 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
     });
     for (const std::vector<glm::dvec3>& points : rows)
         result.points.insert(result.points.end(), points.begin(), points.end());
+    result.aerial = aerial_ground(result.net, ground, exaggeration);
     collector.add_ends(result.rim);
     result.points.insert(result.points.end(), result.rim.begin(), result.rim.end());
     return result;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -26,7 +27,7 @@ struct Camera {
     double map_aspect = 0;  ///< of a map: width / height of the ground that it shows
 };
 
-inline constexpr double kDefaultFov_deg = 40;
+inline constexpr double kDefaultFov_deg = 40, kAerialFov_deg = 50;
 
 /// The share of the picture's width or height that the ground's outline fills in an orbit of
 /// zoom 1.
@@ -46,7 +47,23 @@ struct Orbit {
     std::optional<double> elevation_deg{};  ///< how high it stands, -90 to 90; none: likewise
     /// 1 shows the whole of the ground; 2 shows what is in the picture's middle from half as far.
     double zoom = 1;
+    /// Framed as from an aeroplane above the near edge (scene/aerial.h); else all of the ground is
+    /// in the picture.
+    bool aerial = false;
 };
+
+/// What of the ground orbits show, in the local frame [m].
+struct AerialGround {
+    /// Evenly spread posts; of the land alone where most of the DEM is a level sea.
+    std::vector<glm::dvec3> posts;
+    bool land_alone = false;
+    /// Fraction of the posts that is in the picture at least.
+    double least_in_picture = 0.82;
+};
+
+/// Vertical field of view of aerial views for which none is given: kAerialFov_deg, in very wide
+/// pictures less, in tall ones more.
+double aerial_fov_rad(double aspect);
 
 /// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long
 /// side of the picture. @param focal_length_mm  above 0
@@ -63,6 +80,17 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect);
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
                     double aspect, std::span<const glm::dvec3> also = {},
                     const Insets& insets = {});
+
+/// As from an aeroplane above the near edge: the nearest place from which most of the posts are in
+/// the picture, with the near corners beyond its sides, the near edge below it and the far edge
+/// whole. Land alone is in the picture as a whole, with the sea around it.
+/// @param orbit  with both angles. Its elevation is the pitch downwards at kAerialFov_deg; with
+///     other fields of view the pitch is such that the horizon stays where it is in the picture
+Camera aerial_camera(const Orbit& orbit, const AerialGround& ground, double fov_y_rad,
+                     double aspect, const Insets& insets = {});
+
+/// Fraction of the points that is in a picture.
+double share_in_picture(const Camera& camera, std::span<const glm::dvec3> points, double aspect);
 
 /// Stands at `eye_m` and looks along a compass heading.
 /// @param axes         east, north and up at the eye

@@ -32,72 +32,22 @@ constexpr double kCountry_m = 300e3, kSouthernOfCountry = 0.4, kFirstOfCountry_d
 constexpr double kPictureAspect = 1.25;
 /// A globe is seen from straight above the middle of its map, north up.
 constexpr double kGlobeAzimuth_deg = 180, kGlobeElevation_deg = 90;
-constexpr int kMostNodes = 36;  // of a net along a side that are looked at
 
-struct Node {
-    glm::dvec3 at_m, normal;  // as long as its area [m2]
+struct Node : GroundNode {
     double right, up, nearness;
 };
 
-glm::dvec3 towards(double azimuth_deg, double elevation_deg) {
-    const double azimuth = radians(azimuth_deg), elevation = radians(elevation_deg);
-    return {std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
-            std::sin(elevation)};
-}
-
-/// Nodes with their normals, which are turned away from the Earth.
-std::vector<Node> nodes_of(const GroundNet& net, double azimuth_deg, const glm::dvec3& to_camera) {
-    const int step = std::max({1, (net.width() + kMostNodes - 1) / kMostNodes,
-                               (net.height() + kMostNodes - 1) / kMostNodes});
+/// Nodes from a direction, in parallel rays.
+std::vector<Node> nodes_from(const GroundNet& net, double azimuth_deg,
+                             const glm::dvec3& to_camera) {
     const double azimuth = radians(azimuth_deg);
     const glm::dvec3 right{-std::cos(azimuth), std::sin(azimuth), 0};
     const glm::dvec3 up = cross(to_camera, right);
-    const auto there = [&](int x, int y) {
-        return x >= 0 && y >= 0 && x < net.width() && y < net.height() &&
-               !std::isnan(net.at(x, y).x);
-    };
-    constexpr double kEarth_m = 6371e3;
     std::vector<Node> nodes;
-    for (int y = 0; y < net.height(); y += step) {
-        for (int x = 0; x < net.width(); x += step) {
-            if (!there(x, y)) continue;
-            const auto difference = [&](int dx, int dy) {
-                const bool on = there(x + dx, y + dy), back = there(x - dx, y - dy);
-                const glm::dvec3 here = net.at(x, y);
-                const glm::dvec3 a = on ? net.at(x + dx, y + dy) : here;
-                const glm::dvec3 b = back ? net.at(x - dx, y - dy) : here;
-                return on && back ? 0.5 * (a - b) : a - b;
-            };
-            Node node;
-            node.at_m = net.at(x, y);
-            node.normal = cross(difference(step, 0), difference(0, step));
-            if (dot(node.normal, node.at_m + glm::dvec3(0, 0, kEarth_m)) < 0)
-                node.normal = -node.normal;
-            node.right = dot(node.at_m, right);
-            node.up = dot(node.at_m, up);
-            node.nearness = dot(node.at_m, to_camera);
-            nodes.push_back(node);
-        }
-    }
+    for (const GroundNode& node : nodes_of(net))
+        nodes.push_back(
+            {node, dot(node.at_m, right), dot(node.at_m, up), dot(node.at_m, to_camera)});
     return nodes;
-}
-
-/// Azimuth of the net's rows [deg], 90 where it has none.
-double row_azimuth_deg(const GroundNet& net) {
-    const int y = net.height() / 2;
-    const auto there = [&](int x) { return !std::isnan(net.at(x, y).x); };
-    int first = 0, last = net.width() - 1;
-    while (first < last && !there(first))
-        ++first;
-    while (last > first && !there(last))
-        --last;
-    if (first >= last) return 90;
-    // From the middle on: on the round Earth rows are bent.
-    const int middle = (first + last) / 2;
-    const int from = there(middle) ? middle : first;
-    const int to = there(std::min(from + 1, last)) ? std::min(from + 1, last) : last;
-    const glm::dvec3 along = net.at(to, y) - net.at(from, y);
-    return degrees(std::atan2(along.x, along.y));
 }
 
 /// How well a side shows depth, kStraightOn to 1.
@@ -127,7 +77,7 @@ double Aspect::score() const {
 Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_deg,
                    const DefaultDay& day) {
     const glm::dvec3 to_camera = towards(azimuth_deg, elevation_deg);
-    std::vector<Node> nodes = nodes_of(net, azimuth_deg, to_camera);
+    std::vector<Node> nodes = nodes_from(net, azimuth_deg, to_camera);
     if (nodes.empty()) return {};
     std::ranges::sort(nodes, [](const Node& a, const Node& b) { return a.nearness > b.nearness; });
     glm::dvec2 least(1e300), most(-1e300);
@@ -171,19 +121,21 @@ Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_de
 
 std::string Framing::reason() const {
     return fmt::format(
-        "view: from azimuth {:.0f}, {:.0f} degrees high, chosen for relief: {:.0f} % of the DEM is "
-        "visible",
-        orbit.azimuth_deg.value(), orbit.elevation_deg.value(), 100 * aspect.in_sight);
+        "view: from azimuth {:.0f}, {:.0f} degrees high, chosen for relief: {:.0f} % of the {}",
+        orbit.azimuth_deg.value(), orbit.elevation_deg.value(), 100 * in_sight,
+        orbit.aerial ? "posts are in the picture" : "DEM is visible");
 }
 
-Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay& day) {
-    Framing best{.orbit = wanted};
-    best.by_relief = !wanted.azimuth_deg || !wanted.elevation_deg;
-    if (!best.by_relief) return best;
+namespace {
+
+Framing frame_whole(const Orbit& wanted, const GroundNet& net, const DefaultDay& day) {
+    Framing best{.orbit = wanted, .by_relief = true};
+    best.orbit.aerial = false;
     if (day.is_globe()) {
         best.orbit.azimuth_deg = wanted.azimuth_deg.value_or(kGlobeAzimuth_deg);
         best.orbit.elevation_deg = wanted.elevation_deg.value_or(kGlobeElevation_deg);
-        best.aspect = aspect_from(net, *best.orbit.azimuth_deg, *best.orbit.elevation_deg, day);
+        best.in_sight =
+            aspect_from(net, *best.orbit.azimuth_deg, *best.orbit.elevation_deg, day).in_sight;
         return best;
     }
     constexpr double kMiddle_deg = 34;
@@ -211,15 +163,27 @@ Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay
     best.orbit.azimuth_deg = azimuth_deg;
     double elevation_deg =
         wanted.elevation_deg.value_or(is_country ? kFirstOfCountry_deg : kFirstElevation_deg);
-    best.aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
+    Aspect aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
     while (!wanted.elevation_deg && elevation_deg + kElevationStep_deg <= kHighestView_deg &&
-           (best.aspect.in_sight < kEnoughInSight ||
-            (best.aspect.filled < kEnoughFilled && elevation_deg < kHighForFill_deg))) {
+           (aspect.in_sight < kEnoughInSight ||
+            (aspect.filled < kEnoughFilled && elevation_deg < kHighForFill_deg))) {
         elevation_deg += kElevationStep_deg;
-        best.aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
+        aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
     }
+    best.in_sight = aspect.in_sight;
     best.orbit.elevation_deg = elevation_deg;
     return best;
+}
+
+}  // namespace
+
+Framing frame_ground(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,
+                     const DefaultDay& day) {
+    if (wanted.azimuth_deg && wanted.elevation_deg) return {.orbit = wanted};
+    if (!wanted.aerial || day.is_globe() || !has_aerial_view(ground))
+        return frame_whole(wanted, net, day);
+    const AerialFraming framing = frame_aerial(wanted, net, ground, day);
+    return {framing.orbit, framing.aspect.posts, true};
 }
 
 }  // namespace relevo::scene

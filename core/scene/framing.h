@@ -2,17 +2,12 @@
 
 #include <string>
 
-#include <glm/vec3.hpp>
-
-#include "base/array2d.h"
+#include "scene/aerial.h"
 #include "scene/camera.h"
 #include "scene/default_time.h"
+#include "scene/ground_nodes.h"
 
 namespace relevo::scene {
-
-/// The ground as choosing a camera sees it: places on a net in the local frame [m], neighbours in
-/// the field beside each other; x is NaN where there is no ground.
-using GroundNet = Array2d<glm::dvec3>;
 
 /// How the ground looks from a side, as parallel rays show it.
 struct Aspect {
@@ -29,10 +24,11 @@ Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_de
 /// An orbit whose angles are both known, and why they are these.
 struct Framing {
     Orbit orbit;
-    Aspect aspect;
+    double in_sight = 0;     ///< fraction of the ground; in aerial views of the posts
     bool by_relief = false;  ///< whether any angle was chosen here
 
-    /// "the DEM is seen from azimuth 195, 34 degrees high: 98 % of it in sight"
+    /// "view: from azimuth 195, 34 degrees high, chosen for relief: 98 % of the DEM is visible", or
+    /// of aerial views "... 91 % of the posts are in the picture"
     std::string reason() const;
 };
 
@@ -42,8 +38,10 @@ inline constexpr double kLowestView_deg = 25, kHighestView_deg = 40;
 /// best, and the lowest elevation from 28 to 40 degrees that hides little of it. Ground of more
 /// than 300 km is seen from 46 degrees and from the south if that is nearly as good. Depends on the
 /// DEM alone, never on the time or the size of the picture, so that pictures of one DEM are of one
-/// view. What goes round the Earth is seen from high above the middle of its map. Takes some 2 ms
+/// view. What goes round the Earth is seen from high above the middle of its map. Aerial views are
+/// framed by frame_aerial(); DEMs that have none are seen as a whole. Takes some 10 ms
 /// (tests/scene/test_framing.cpp).
-Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay& day);
+Framing frame_ground(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,
+                     const DefaultDay& day);
 
 }  // namespace relevo::scene

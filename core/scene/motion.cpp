@@ -138,8 +138,12 @@ Turn whole_turn(const View& view, const Camera& camera, const MotionGround& grou
 }
 
 Turn turn_of(const View& view, const MotionGround& ground) {
+    if (!view.eye) {
+        View whole = view;
+        whole.orbit.aerial = false;
+        return whole_turn(whole, ground.camera(whole), ground);
+    }
     const Camera camera = ground.camera(view);
-    if (!view.eye) return whole_turn(view, camera, ground);
     if (view.look_at) {
         // The camera looks at it, so its distance is all that is missing.
         geo::Geodetic target = view.look_at->place;

@@ -104,6 +104,8 @@ ordered_json camera_json(const Scene& scene) {
         if (view.orbit.azimuth_deg) json["orbit"]["azimuth"] = *view.orbit.azimuth_deg;
         if (view.orbit.elevation_deg) json["orbit"]["elevation"] = *view.orbit.elevation_deg;
         json["orbit"]["zoom"] = view.orbit.zoom;
+        const bool has_angle = view.orbit.azimuth_deg || view.orbit.elevation_deg;
+        if (view.orbit.aerial == has_angle) json["orbit"]["aerial"] = view.orbit.aerial;
     }
     add_options(scene, "camera", Defaults::Skipped, json);
     return json;

@@ -256,6 +256,8 @@ void SceneReader::take_camera(const json::Value& value, const std::string& path,
         take_angle("azimuth", 360, view.orbit.azimuth_deg);
         take_angle("elevation", 90, view.orbit.elevation_deg);
         view.orbit.zoom = of.number("zoom", view.orbit.zoom, kMinZoom, kMaxZoom, false);
+        const bool gives_angle = of.has("azimuth") || of.has("elevation");
+        view.orbit.aerial = of.boolean("aerial", view.orbit.aerial && !gives_angle);
         of.finish();
     }
     if (eye) view.eye = standpoint(object, *eye, "eye", kEyeHeight_m);

@@ -57,15 +57,19 @@ glm::dvec3 middle_ray(const Camera& camera, double aspect, const Insets& insets)
 Camera zoomed_orbit(const Orbit& orbit, const GroundHeight& ground_height_m,
                     const geo::LocalFrame& frame, const Outline& outline, double fov_y_rad,
                     double aspect, double exaggeration, const Insets& insets) {
+    const auto fitted = [&](const Orbit& of) {
+        return of.aerial
+                   ? aerial_camera(of, outline.aerial, fov_y_rad, aspect, insets)
+                   : orbit_camera(of, outline.points, fov_y_rad, aspect, outline.also, insets);
+    };
     Orbit whole = orbit;
     whole.zoom = 1;
-    Camera camera = orbit_camera(whole, outline.points, fov_y_rad, aspect, outline.also, insets);
+    Camera camera = fitted(whole);
     if (orbit.zoom == 1) return camera;
     const std::optional<glm::dvec3> target =
         first_ground(camera.eye_m, middle_ray(camera, aspect, insets), outline.points,
                      ground_height_m, frame, exaggeration);
-    if (!target)
-        return orbit_camera(orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
+    if (!target) return fitted(orbit);
     camera.eye_m = *target + (camera.eye_m - *target) / orbit.zoom;
     return camera;
 }
@@ -127,6 +131,11 @@ constexpr Side kSides[] = {{"north", 0},   {"north-east", 45},  {"east", 90},  {
 
 /// Whether it is a word of --view, which is then in the view.
 bool read_side(std::string_view word, View& view) {
+    if (word == "aerial" || word == "whole") {
+        view.orbit.aerial = word == "aerial";
+        return true;
+    }
+    view.orbit.aerial = false;
     if (word == "top") {
         // South of the middle, so that north is up.
         view.orbit.azimuth_deg = 180;
@@ -144,7 +153,7 @@ bool read_side(std::string_view word, View& view) {
 
 /// "; did you mean north?" of a word that is nearly a side's; else empty.
 std::string meant_side(std::string_view word) {
-    std::vector<std::string> words{"top"};
+    std::vector<std::string> words{"top", "whole", "aerial"};
     for (const Side& side : kSides)
         words.emplace_back(side.word);
     const std::optional<std::string> near = nearest(word, words);
@@ -157,23 +166,24 @@ std::string meant_side(std::string_view word) {
 View parse_view(std::string_view text) {
     View view;
     Orbit& orbit = view.orbit;
-    bool first = true;
+    bool first = true, has_word = false;
     for (const std::string& piece : split(text, ',')) {
-        if (std::exchange(first, false) && read_side(piece, view)) continue;
+        if (std::exchange(first, false) && (has_word = read_side(piece, view))) continue;
         const std::size_t equals = piece.find('=');
         const std::string key = piece.substr(0, equals);
         const auto value = equals == std::string::npos
                                ? std::nullopt
                                : parse_number(std::string_view(piece).substr(equals + 1));
         if (!value || (key != "az" && key != "el" && key != "zoom"))
-            bad_usage(
-                fmt::format("--view: {}: expected top, north, north-east, ... north-west, or "
-                            "az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"{}",
-                            text, piece, meant_side(piece)));
+            bad_usage(fmt::format(
+                "--view: {}: expected top, whole, north, north-east, ... north-west, or "
+                "az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"{}",
+                text, piece, meant_side(piece)));
         if (key == "az") orbit.azimuth_deg = within_a_turn_deg(*value);
         if (key == "el") orbit.elevation_deg = *value;
         if (key == "zoom") orbit.zoom = *value;
     }
+    if (!has_word) orbit.aerial = !orbit.azimuth_deg && !orbit.elevation_deg;
     if (orbit.elevation_deg && (*orbit.elevation_deg < -90 || *orbit.elevation_deg > 90))
         bad_usage(fmt::format("--view: {}: expected an elevation of -90 to 90 degrees but got {}",
                               text, *orbit.elevation_deg));
@@ -189,7 +199,8 @@ Camera make_camera(const View& view, const GroundHeight& ground_height_m,
     const double fov_y_rad = view.fov_y_rad > 0 ? view.fov_y_rad
                              : view.focal_length_mm > 0
                                  ? fov_y_of_focal_length(view.focal_length_mm, aspect)
-                                 : radians(kDefaultFov_deg);
+                             : !view.eye && view.orbit.aerial ? aerial_fov_rad(aspect)
+                                                              : radians(kDefaultFov_deg);
     if (!view.eye) {
         Camera camera = zoomed_orbit(view.orbit, ground_height_m, frame, outline, fov_y_rad, aspect,
                                      exaggeration, insets);

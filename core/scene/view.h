@@ -27,7 +27,7 @@ enum class Stereo { None, Parallel, CrossEyed, Anaglyph };
 /// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a
 /// place or along a heading.
 struct View {
-    Orbit orbit;
+    Orbit orbit{.aerial = true};
     std::optional<Standpoint> eye;
     std::optional<Standpoint> look_at;
     double heading_deg = 0;
@@ -54,8 +54,9 @@ double within_a_turn_deg(double angle_deg);
 inline constexpr double kMapFov_deg = 1;
 
 /// Reads `az=210,el=30,zoom=1`, or with a word in the place of the azimuth `north-east,el=45`: the
-/// side that the camera stands on, north, north-east, ... north-west; or `top`: from straight above
-/// with north up, as a map. What is left out stays as it is in Orbit.
+/// side that the camera stands on, north, north-east, ... north-west; `top`: from straight above
+/// with north up, as a map; `whole`: all of the DEM, from a side that is chosen; or `aerial`. A
+/// view is aerial if no word and no angle is given. Skipped angles stay open.
 /// @throws Error (Usage) `--view: text: what, expected E but got G`
 View parse_view(std::string_view text);
 
@@ -71,6 +72,7 @@ using GroundHeight = std::function<double(const geo::Geodetic& place)>;
 /// Ground that an orbit has to show, in the DEM's local frame [m]: orbit_camera()'s points.
 struct Outline {
     std::vector<glm::dvec3> points, also;
+    AerialGround aerial;
 };
 
 /// The camera of a view of a DEM.

@@ -85,7 +85,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
         return;
     }
     if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
-        framing_ = scene::frame_ground(view.orbit, to_show_.net, *day_);
+        framing_ = scene::frame_ground(view.orbit, to_show_.net, to_show_.aerial, *day_);
         view.orbit = framing_->orbit;
     }
     const auto camera_of = [&](const scene::View& of) {
@@ -106,7 +106,7 @@ void SceneState::warn_of_eye(const DrawnShape& shape) const {
 }
 
 scene::Outline SceneState::outline(const DrawnShape& shape) {
-    scene::Outline outline{to_show_.points, moved_points(shape.displacement)};
+    scene::Outline outline{to_show_.points, moved_points(shape.displacement), to_show_.aerial};
     if (shape.shows_block) {
         const auto base = render::block_below(to_show_.rim, *ground_, scene.exaggeration);
         outline.points.insert(outline.points.end(), base.begin(), base.end());

@@ -1,6 +1,7 @@
 #include "session/scene_times.h"
 
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,10 +44,11 @@ std::string dem_key(const scene::Scene& scene) {
 /// What default view angles depend on.
 struct SceneTimes::Shown {
     scene::GroundNet net;
+    scene::AerialGround aerial;
     scene::DefaultDay day;
-    /// Framed views by the given angles (azimuth, elevation). Framing takes milliseconds, and many
-    /// pictures of a job share it.
-    using Given = std::pair<std::optional<double>, std::optional<double>>;
+    /// Framed views by what is given (aerial, azimuth, elevation). Framing takes milliseconds, and
+    /// many pictures of a job share it.
+    using Given = std::tuple<bool, std::optional<double>, std::optional<double>>;
     std::map<Given, scene::Orbit> framed{};
 };
 
@@ -128,7 +130,9 @@ SceneTimes::Shown& SceneTimes::shown_of(const scene::Scene& scene) {
     if (found != known.end()) return found->second;
     if (known.size() >= kMostShown) known.clear();
     const render::Ground ground = ground_of(*heights);
-    Shown shown{render::ground_to_show(heights->field, ground, scene.exaggeration).net,
+    render::GroundToShow to_show =
+        render::ground_to_show(heights->field, ground, scene.exaggeration);
+    Shown shown{std::move(to_show.net), std::move(to_show.aerial),
                 scene::DefaultDay(ground.frame.origin(), ground.block_m <= 0)};
     return known.emplace(scene.exaggeration, std::move(shown)).first->second;
 }
@@ -141,9 +145,11 @@ scene::View SceneTimes::settled_view(const scene::Scene& scene) {
     const auto found = known.find(scene.exaggeration);
     Shown& shown = found == known.end() ? shown_of(scene) : found->second;
     if (shown.framed.size() >= kMostShown) shown.framed.clear();
-    const auto [framed, fresh] =
-        shown.framed.try_emplace({view.orbit.azimuth_deg, view.orbit.elevation_deg});
-    if (fresh) framed->second = scene::frame_ground(view.orbit, shown.net, shown.day).orbit;
+    const auto [framed, fresh] = shown.framed.try_emplace(
+        {view.orbit.aerial, view.orbit.azimuth_deg, view.orbit.elevation_deg});
+    if (fresh)
+        framed->second = scene::frame_ground(view.orbit, shown.net, shown.aerial, shown.day).orbit;
+    view.orbit.aerial = framed->second.aerial;
     view.orbit.azimuth_deg = framed->second.azimuth_deg;
     view.orbit.elevation_deg = framed->second.elevation_deg;
     return view;
@@ -161,8 +167,8 @@ sun::Instant SceneTimes::default_time(const scene::Scene& scene) {
         render::ground_to_show(heights->field, ground, scene.exaggeration);
     const scene::Camera camera = scene::make_camera(
         settled_view(scene), [&](const geo::Geodetic& at) { return heights->height_m(at); },
-        ground.frame, {to_show.points, {}}, static_cast<double>(scene.width_px) / scene.height_px,
-        scene.exaggeration);
+        ground.frame, {to_show.points, {}, to_show.aerial},
+        static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
     return day.time(scene::side_of_deg(camera)).utc;
 }
 
@@ -186,10 +192,11 @@ scene::MotionGround SceneTimes::motion_ground(const scene::Scene& scene) {
     const auto base = render::block_below(to_show.rim, ground, scene.exaggeration);
     result.points.insert(result.points.end(), base.begin(), base.end());
     result.camera = [this, scene, height_m = result.height_m, frame = ground.frame,
-                     points = to_show.points, aspect = result.aspect](const scene::View& view) {
+                     outline = scene::Outline{to_show.points, {}, to_show.aerial},
+                     aspect = result.aspect](const scene::View& view) {
         scene::Scene seen = scene;
         seen.view = view;
-        return scene::make_camera(settled_view(seen), height_m, frame, {points, {}}, aspect,
+        return scene::make_camera(settled_view(seen), height_m, frame, outline, aspect,
                                   scene.exaggeration);
     };
     return result;

@@ -102,7 +102,7 @@ TEST(GroundToShow, ItsOutlineIsThatOfAllPostsWhateverTheShape) {
         points.insert(points.end(), base.begin(), base.end());
         const auto all = all_of(shape.field, ground);
         const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
-        const scene::Orbit orbit = scene::frame_ground({}, show.net, day).orbit;
+        const scene::Orbit orbit = scene::frame_ground({}, show.net, show.aerial, day).orbit;
         for (const double aspect : {0.5, 1.25, 2.5}) {
             const glm::dvec2 sides =
                 filled(all, scene::orbit_camera(orbit, points, radians(40), aspect), aspect);

@@ -34,12 +34,12 @@ TEST(Framing, AWallHidesWhatLiesBehindIt) {
     const DefaultDay day = day_at(46);
     EXPECT_LT(aspect_from(net, 0, 30, day).in_sight, 0.9);
     EXPECT_GT(aspect_from(net, 180, 30, day).in_sight, 0.93);
-    const double azimuth_deg = *frame_ground({}, net, day).orbit.azimuth_deg;
+    const double azimuth_deg = *frame_ground({}, net, {}, day).orbit.azimuth_deg;
     EXPECT_GE(azimuth_deg, 120);
     EXPECT_LE(azimuth_deg, 240);
     // The other way round it is seen from the other side, though maps are read from the south.
     const GroundNet mirrored = net_of([](double, double y) { return y < -12e3 ? 4000.0 : 0.0; });
-    const double other_deg = *frame_ground({}, mirrored, day).orbit.azimuth_deg;
+    const double other_deg = *frame_ground({}, mirrored, {}, day).orbit.azimuth_deg;
     EXPECT_TRUE(other_deg <= 60 || other_deg >= 300) << other_deg;
 }
 
@@ -49,7 +49,7 @@ TEST(Framing, CountriesAreSeenFromTheSouthAndFromHigherUp) {
     const DefaultDay day = day_at(-41);
     for (glm::dvec3& point : net)
         point = {20 * point.x, 20 * point.y, 7 * point.z};
-    const Orbit orbit = frame_ground({}, net, day).orbit;
+    const Orbit orbit = frame_ground({}, net, {}, day).orbit;
     EXPECT_LE(std::abs(*orbit.azimuth_deg - 180), 60);
     EXPECT_EQ(*orbit.elevation_deg, 46);
 }
@@ -70,7 +70,7 @@ TEST(Framing, StandsBeside25And40DegreesAndBesideTheGridsAxes) {
             const GroundNet net = net_of(
                 [](double x, double y) { return 500 * std::sin(x / 3e3) * std::sin(y / 2e3); },
                 turned_deg);
-            const Framing framing = frame_ground({}, net, day_at(lat_deg));
+            const Framing framing = frame_ground({}, net, {}, day_at(lat_deg));
             EXPECT_TRUE(framing.by_relief);
             EXPECT_GE(*framing.orbit.elevation_deg, kLowestView_deg);
             EXPECT_LE(*framing.orbit.elevation_deg, kHighestView_deg);
@@ -83,19 +83,19 @@ TEST(Framing, StandsBeside25And40DegreesAndBesideTheGridsAxes) {
 
 TEST(Framing, LeavesWhatIsGiven) {
     const GroundNet net = net_of([](double x, double) { return x / 10; });
-    const Framing az = frame_ground({.azimuth_deg = 77.0, .zoom = 2}, net, day_at(46));
+    const Framing az = frame_ground({.azimuth_deg = 77.0, .zoom = 2}, net, {}, day_at(46));
     EXPECT_EQ(az.orbit.azimuth_deg, 77);
     EXPECT_TRUE(az.orbit.elevation_deg);
     EXPECT_EQ(az.orbit.zoom, 2);
-    const Framing el = frame_ground({.elevation_deg = 11.0}, net, day_at(46));
+    const Framing el = frame_ground({.elevation_deg = 11.0}, net, {}, day_at(46));
     EXPECT_EQ(el.orbit.elevation_deg, 11);
     EXPECT_TRUE(el.orbit.azimuth_deg);
-    EXPECT_FALSE(frame_ground({10, 20, 1}, net, day_at(46)).by_relief);
+    EXPECT_FALSE(frame_ground({10, 20, 1}, net, {}, day_at(46)).by_relief);
 }
 
 TEST(Framing, OfNothingIsFromTheSouth) {
     const GroundNet none(3, 3, glm::dvec3(std::nan("")));
-    const Framing framing = frame_ground({}, none, day_at(46));
+    const Framing framing = frame_ground({}, none, {}, day_at(46));
     EXPECT_EQ(framing.orbit.azimuth_deg, 180);
     EXPECT_TRUE(framing.orbit.elevation_deg);
 }
@@ -103,7 +103,7 @@ TEST(Framing, OfNothingIsFromTheSouth) {
 TEST(Framing, SaysWhatItChose) {
     const GroundNet net = net_of([](double, double) { return 0.0; });
     EXPECT_EQ(
-        frame_ground({}, net, day_at(46)).reason(),
+        frame_ground({}, net, {}, day_at(46)).reason(),
         "view: from azimuth 195, 28 degrees high, chosen for relief: 100 % of the DEM is visible");
 }
 
@@ -113,7 +113,7 @@ TEST(Framing, TakesAFewMilliseconds) {
     double least_ms = 1e300;
     for (int i = 0; i < 5; ++i) {
         const auto began = std::chrono::steady_clock::now();
-        frame_ground({}, net, day);
+        frame_ground({}, net, {}, day);
         const std::chrono::duration<double, std::milli> took =
             std::chrono::steady_clock::now() - began;
         least_ms = std::min(least_ms, took.count());

@@ -45,6 +45,29 @@ TEST_F(SceneFile, HasDefaultsForAllButTheDem) {
     EXPECT_FALSE(scene.effects.switches.only);
 }
 
+TEST_F(SceneFile, OrbitsAreAerialWithoutAngles) {
+    const auto is_aerial = [&](const std::string& orbit) {
+        return read_scene(write(with("\"camera\": {\"orbit\": {" + orbit + "}}")))
+            .view.orbit.aerial;
+    };
+    EXPECT_TRUE(is_aerial(""));
+    EXPECT_TRUE(is_aerial("\"zoom\": 2"));
+    EXPECT_TRUE(is_aerial("\"azimuth\": 170, \"elevation\": 20, \"aerial\": true"));
+    EXPECT_FALSE(is_aerial("\"azimuth\": 170"));
+    EXPECT_FALSE(is_aerial("\"elevation\": 20"));
+    EXPECT_FALSE(is_aerial("\"aerial\": false"));
+    std::ofstream(dir_ / "a.tif") << "";
+    Scene scene;
+    scene.dems = {(dir_ / "a.tif").string()};
+    for (const bool aerial : {false, true})
+        for (const bool has_angle : {false, true}) {
+            scene.view.orbit = {.aerial = aerial};
+            if (has_angle) scene.view.orbit.azimuth_deg = 170;
+            const std::string text = scene_text(scene, dir_);
+            EXPECT_EQ(read_scene(write(text)).view.orbit.aerial, aerial) << text;
+        }
+}
+
 TEST_F(SceneFile, ComesBackAsItWasWritten) {
     std::ofstream(dir_ / "a.tif") << "";
     std::ofstream(dir_ / "winter.json") << "";

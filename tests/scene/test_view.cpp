@@ -116,6 +116,16 @@ TEST(View, WhatIsLeftOutIsLeftOpen) {
     EXPECT_FALSE(parse_view("zoom=2").orbit.azimuth_deg);
 }
 
+TEST(View, IsAerialWithoutAnglesAndWords) {
+    EXPECT_TRUE(View{}.orbit.aerial);
+    EXPECT_TRUE(parse_view("zoom=2").orbit.aerial);
+    EXPECT_TRUE(parse_view("aerial,az=170,el=20").orbit.aerial);
+    EXPECT_EQ(parse_view("aerial,az=170,el=20").orbit.azimuth_deg, 170);
+    for (const char* const text : {"whole", "whole,zoom=2", "az=170", "el=20", "north", "top"})
+        EXPECT_FALSE(parse_view(text).orbit.aerial) << text;
+    EXPECT_FALSE(parse_view("whole").orbit.azimuth_deg);
+}
+
 TEST(View, AWordIsTheSideThatTheCameraStandsOn) {
     const char* const words[] = {"north", "north-east", "east", "south-east",
                                  "south", "south-west", "west", "north-west"};

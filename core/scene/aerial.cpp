@@ -1,0 +1,186 @@
+#include "scene/aerial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+
+namespace relevo::scene {
+namespace {
+
+constexpr double kChoiceAspect = 1.25;
+/// Of the camera from a side's normal: straight on, a block shows no depth.
+constexpr double kTurn_deg = 7;
+/// The camera stands so high that the horizon is this far below the upper edge of the picture, as a
+/// fraction of its height, or as far as this where ground does not fill enough of the picture.
+constexpr double kHorizon = 0.15, kHighestHorizon = 0.09;
+constexpr double kLeastAerial_deg = 16, kAerialStep_deg = 1, kHighestAerial_deg = 45;
+constexpr double kWideDem_m = 300e3;
+/// Over wider DEMs the Earth's curvature hides what is far.
+constexpr double kWidest_m = 2000e3;
+/// A picture that is filled by this much is not bettered by standing higher, or by another side.
+constexpr double kFilled = 0.52, kFullPicture = 0.6;
+/// Preference of the south, as on maps, and of sides whose default light is within its limits.
+constexpr double kFromSouth = 0.05, kFromSouthOfCountry = 0.4, kOtherLight = 0.3;
+
+struct NodeInPicture {
+    GroundNode node;
+    double x, y, depth_m;  ///< in the picture, -1 to 1 each
+};
+
+/// Nodes in the picture, the nearest first.
+std::vector<NodeInPicture> nodes_in(const Camera& camera, const GroundNet& net) {
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    const double tan_y = std::tan(camera.fov_y_rad / 2), tan_x = tan_y * kChoiceAspect;
+    std::vector<NodeInPicture> seen;
+    for (const GroundNode& node : nodes_of(net)) {
+        const glm::dvec3 from_eye = node.at_m - camera.eye_m;
+        const double depth_m = dot(from_eye, camera.forward);
+        if (depth_m <= 0) continue;
+        const NodeInPicture at{node, dot(from_eye, right) / depth_m / tan_x,
+                               dot(from_eye, camera.up) / depth_m / tan_y, depth_m};
+        if (std::abs(at.x) <= 1 && std::abs(at.y) <= 1) seen.push_back(at);
+    }
+    std::ranges::sort(
+        seen, [](const NodeInPicture& a, const NodeInPicture& b) { return a.depth_m < b.depth_m; });
+    return seen;
+}
+
+/// Fraction of the picture between the lowest and the highest node of each column.
+double filled_of(const std::vector<NodeInPicture>& seen) {
+    constexpr int kColumns = 12;
+    std::array<double, kColumns> low, high;
+    low.fill(1);
+    high.fill(-1);
+    for (const NodeInPicture& at : seen) {
+        const auto column = static_cast<std::size_t>(
+            std::clamp(static_cast<int>(0.5 * (at.x + 1) * kColumns), 0, kColumns - 1));
+        low[column] = std::min(low[column], at.y);
+        high[column] = std::max(high[column], at.y);
+    }
+    double filled = 0;
+    for (std::size_t i = 0; i < kColumns; ++i)
+        filled += std::max(high[i] - low[i], 0.0) / 2 / kColumns;
+    return filled;
+}
+
+/// How far the horizon is below the upper edge of a picture, as a fraction of its height.
+double horizon_of(const Camera& camera) {
+    constexpr double kEarth_m = 6371e3;
+    const glm::dvec3 from_earth = camera.eye_m + glm::dvec3(0, 0, kEarth_m);
+    const double dip = std::acos(std::min(kEarth_m / length(from_earth), 1.0));
+    const double pitch = std::asin(dot(camera.forward, normalize(from_earth)));
+    return 0.5 * (1 - std::tan(-pitch - dip) / std::tan(camera.fov_y_rad / 2));
+}
+
+Camera choice_camera(const Orbit& orbit, const AerialGround& ground) {
+    return aerial_camera(orbit, ground, radians(kAerialFov_deg), kChoiceAspect);
+}
+
+/// Raises an orbit until its horizon and its ground are as they should be.
+AerialFraming raised(Orbit orbit, const GroundNet& net, const AerialGround& ground,
+                     const DefaultDay& day) {
+    orbit.elevation_deg = kLeastAerial_deg;
+    double horizon = horizon_of(choice_camera(orbit, ground));
+    while (horizon > kHorizon && *orbit.elevation_deg < kHighestAerial_deg) {
+        *orbit.elevation_deg += kAerialStep_deg;
+        horizon = horizon_of(choice_camera(orbit, ground));
+    }
+    AerialFraming framing{orbit, aerial_aspect(orbit, net, ground, day)};
+    while (framing.aspect.filled < kFilled) {
+        *orbit.elevation_deg += kAerialStep_deg;
+        if (horizon_of(choice_camera(orbit, ground)) < kHighestHorizon) break;
+        framing = {orbit, aerial_aspect(orbit, net, ground, day)};
+    }
+    return framing;
+}
+
+}  // namespace
+
+double AerialAspect::score() const {
+    return std::min(filled, kFullPicture) * in_sight * in_sight * (0.6 + std::min(contrast, 1.0));
+}
+
+AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const AerialGround& ground,
+                           const DefaultDay& day) {
+    const Camera camera = choice_camera(orbit, ground);
+    AerialAspect aspect;
+    aspect.posts = share_in_picture(camera, ground.posts, kChoiceAspect);
+    const std::vector<NodeInPicture> seen = nodes_in(camera, net);
+    const DefaultTime time = day.estimate(*orbit.azimuth_deg);
+    const glm::dvec3 to_sun = towards(*orbit.azimuth_deg + time.aside_deg, time.elevation_deg);
+    // A node is hidden where nearer ground in the same column of the picture stands higher in it.
+    const int columns = std::max(1, static_cast<int>(std::sqrt(seen.size())));
+    std::vector<double> horizon(static_cast<std::size_t>(columns), -1e300);
+    double all = 0, visible = 0, covered = 0, light = 0, light2 = 0;
+    for (const NodeInPicture& at : seen) {
+        const double area = length(at.node.normal);
+        const double facing = dot(at.node.normal, camera.eye_m - at.node.at_m) /
+                              (at.depth_m * at.depth_m * at.depth_m);
+        all += area;
+        double& highest = horizon[static_cast<std::size_t>(
+            std::clamp(static_cast<int>(0.5 * (at.x + 1) * columns), 0, columns - 1))];
+        if (facing > 0 && at.y >= highest) {
+            visible += area;
+            covered += facing;
+            const double lit = std::max(dot(at.node.normal, to_sun), 0.0) / std::max(area, 1e-9);
+            light += facing * lit;
+            light2 += facing * lit * lit;
+        }
+        highest = std::max(highest, at.y);
+    }
+    aspect.filled = filled_of(seen);
+    if (all > 0) aspect.in_sight = visible / all;
+    if (covered > 0 && light > 0) {
+        const double mean = light / covered;
+        aspect.contrast = std::sqrt(std::max(light2 / covered - mean * mean, 0.0)) / mean;
+    }
+    return aspect;
+}
+
+bool has_aerial_view(const AerialGround& ground) {
+    if (ground.posts.empty()) return false;
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::dvec3& post : ground.posts) {
+        low = min(low, post);
+        high = max(high, post);
+    }
+    const glm::dvec3 size = high - low;
+    return std::min(size.x, size.y) > 0 && std::max(size.x, size.y) < kWidest_m;
+}
+
+AerialFraming frame_aerial(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,
+                           const DefaultDay& day) {
+    const GroundBox box = box_of(net);
+    const double longest_m = std::max(box.size_m.x, box.size_m.y);
+    std::vector<double> azimuths_deg;
+    for (int side = 0; side < 4 && !wanted.azimuth_deg; ++side)
+        for (const double turn_deg : {-kTurn_deg, kTurn_deg})
+            azimuths_deg.push_back(std::fmod(box.azimuth_deg + 90 * side + turn_deg + 720, 360.0));
+    if (wanted.azimuth_deg) azimuths_deg = {*wanted.azimuth_deg};
+    AerialFraming best;
+    double most = -1;
+    for (const double azimuth_deg : azimuths_deg) {
+        Orbit orbit = wanted;
+        orbit.azimuth_deg = azimuth_deg;
+        AerialFraming framing;
+        if (wanted.elevation_deg)
+            framing = {orbit, aerial_aspect(orbit, net, ground, day)};
+        else
+            framing = raised(orbit, net, ground, day);
+        const double southern = longest_m > kWideDem_m ? kFromSouthOfCountry : kFromSouth;
+        const double score = framing.aspect.score() *
+                             (1 - southern * std::cos(radians(azimuth_deg))) *
+                             (day.estimate(azimuth_deg).within_bounds ? 1 : kOtherLight);
+        if (score <= most + 1e-9) continue;
+        most = score;
+        best = framing;
+    }
+    return best;
+}
+
+}  // namespace relevo::scene

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/default_time.h"
+#include "scene/ground_nodes.h"
+
+/// Aerial views: out of an aeroplane above the near edge of a DEM, with a horizon.
+namespace relevo::scene {
+
+/// What an aerial view shows of a DEM in a picture 5 : 4.
+struct AerialAspect {
+    double posts = 0;     ///< fraction of AerialGround::posts that is in the picture
+    double filled = 0;    ///< fraction of the picture that is ground
+    double in_sight = 0;  ///< fraction of the ground in the picture that no other ground hides
+    double contrast = 0;  ///< of its light at the default time: spread over mean
+    double score() const;
+};
+
+AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const AerialGround& ground,
+                           const DefaultDay& day);
+
+/// True if a DEM can be seen from the air: it has an extent, and the Earth's curvature leaves its
+/// far edge above the horizon.
+bool has_aerial_view(const AerialGround& ground);
+
+struct AerialFraming {
+    Orbit orbit;
+    AerialAspect aspect;
+};
+
+/// Fills in the angles that an orbit leaves open. The camera looks along a normal of a side of the
+/// DEM, turned by a few degrees, so that no two long walls show, from the side where relief stands
+/// up best, and from 20 degrees or higher until ground fills half of the picture. Depends on the
+/// DEM alone.
+AerialFraming frame_aerial(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,
+                           const DefaultDay& day);
+
+}  // namespace relevo::scene
