@@ -42,7 +42,8 @@ class LargeDem : public testing::Test {
                                             const std::vector<std::string>& more = {}) {
         std::vector<std::string> words{"capture",          dem,           "-o",
                                        picture().string(), "--overwrite", "--device",
-                                       "software",         "--time",      "2026-06-21T12:00Z"};
+                                       "software",         "--time",      "2026-06-21T12:00Z",
+                                       "--view",           "whole"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }

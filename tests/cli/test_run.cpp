@@ -261,7 +261,7 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
 TEST_F(Run, ADiskThatIsFullFailsThePicturesThatDoNotFit) {
     const fs::path path =
         job("\"time\": {\"at\": \"2026-06-21T12:00Z\"}, \"sweep\": [{\"cameras\": "
-            "[{}, {\"fov\": 20}]}], \"output\": \"{camera}.png\"");
+            "[{}, {\"fov\": 60}]}], \"output\": \"{camera}.png\"");
     // A file may have 4 KiB.
     const Result run =
         test::run("/bin/sh", {"-c", "ulimit -f 8; exec \"$0\" -q run \"$1\" --device software",
