@@ -89,6 +89,7 @@ scene::Scene scene_of(const std::string& dem, double elevation_deg, double zoom)
     scene.width_px = 1280;
     scene.height_px = 1024;
     scene.view.orbit.azimuth_deg = 170;
+    scene.view.orbit.aerial = false;
     scene.view.orbit.elevation_deg = elevation_deg;
     scene.view.orbit.zoom = zoom;
     scene.effects.switches.only = std::vector<std::string>{"contours"};

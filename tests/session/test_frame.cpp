@@ -336,6 +336,7 @@ TEST(Frame, NothingIsSeenThroughAVoidButTheBackdrop) {
     const auto share = [](scene::Scene scene, bool with_walls) {
         scene.holes = dem::Holes::Cut;
         scene.view.orbit.azimuth_deg = 160;
+        scene.view.orbit.aerial = false;
         scene.view.orbit.elevation_deg = 12;
         if (!with_walls) scene.effects.switches.only = std::vector<std::string>();
         return share_of(scene);

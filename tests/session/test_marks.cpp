@@ -147,6 +147,7 @@ std::vector<double> distances_px(double elevation_deg, double exaggeration, bool
     scene.effects.plugin_path = {test_plugins()};
     scene.exaggeration = exaggeration;
     scene.view.orbit.elevation_deg = elevation_deg;
+    scene.view.orbit.aerial = false;
     scene.view.orbit.azimuth_deg = 160;
     scene.view.orbit.zoom = 1.5;
     Shown shown(scene);
@@ -259,6 +260,7 @@ TEST(Marks, AreInPicturesButNotInLinearOnes) {
     scene.effects.settings.push_back({"labels.colour", "#00ff00"});
     scene.effects.settings.push_back({"labels.halo", "#00ff00"});
     scene.view.orbit.elevation_deg = 89;
+    scene.view.orbit.aerial = false;
     FilesInUse files;
     Session session(scene, {.device = test::gl_device(), .radiance = true}, files);
     session.draw();
@@ -347,6 +349,7 @@ TEST(Marks, AHundredThousandTakeBoundedTime) {
         csv += row("Place", grid.place(2 + i % 290, 2 + i / 290 % 290));
     scene::Scene scene = scene_of(jacksboro(), written("many.csv", csv));
     scene.view.orbit.elevation_deg = 60;
+    scene.view.orbit.aerial = false;
     const auto seconds = [](const auto& act) {
         const auto began = std::chrono::steady_clock::now();
         act();

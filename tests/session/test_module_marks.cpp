@@ -52,6 +52,7 @@ scene::Scene scene_of(const std::string& id, const std::string& folder) {
     scene.width_px = 640;
     scene.height_px = 480;
     scene.view.orbit.elevation_deg = 60;
+    scene.view.orbit.aerial = false;
     scene.effects.switches.only = std::vector<std::string>{id};
     scene.effects.plugin_path = {folder};
     return scene;
@@ -179,6 +180,7 @@ TEST(Marks, KeepOutOfTheRoomOfStamps) {
     scene::Scene scene = scene_of("labels", "");
     scene.effects.plugin_path.clear();
     scene.view.orbit.elevation_deg = 89;
+    scene.view.orbit.aerial = false;
     scene.view.orbit.zoom = 2;
     scene.effects.settings = {{"labels.file", file.string()}, {"labels.leader_px", "0"}};
     scene.stamps.title = scene.stamps.north = scene.stamps.scale = true;

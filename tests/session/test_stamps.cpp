@@ -21,6 +21,7 @@ scene::Scene scene_of(double azimuth_deg, double elevation_deg) {
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
     scene.time.at = "2026-06-21T15:30Z";
     scene.view.orbit.azimuth_deg = azimuth_deg;
+    scene.view.orbit.aerial = false;
     scene.view.orbit.elevation_deg = elevation_deg;
     scene.width_px = 480;
     scene.height_px = 360;
