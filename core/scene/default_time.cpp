@@ -15,6 +15,9 @@ namespace {
 constexpr int kMinutesApart = 5;
 /// The best light, and the deviations that cost the same.
 constexpr double kBestElevation_deg = 28, kBestAside_deg = 70;
+/// Light between these is preferred.
+constexpr double kPreferredLow_deg = 25, kPreferredHigh_deg = 30;
+constexpr double kPreferredLeast_deg = 60, kPreferredMost_deg = 80;
 constexpr double kBestGlobeElevation_deg = 60;  // in the middle of the map
 constexpr double kElevationScale_deg = 30, kAsideScale_deg = 80;
 /// Margin of the limits, for the error of a declination that is constant over the day.
@@ -34,6 +37,8 @@ double cost(double elevation_deg, double aside_deg) {
     const double in = kInside_deg;
     return outside(elevation_deg, kLowestSun_deg + in, kHighestSun_deg - in) * 1000 +
            outside(away, kLeastAside_deg + in, kMostAside_deg - in) +
+           outside(elevation_deg, kPreferredLow_deg, kPreferredHigh_deg) / kElevationScale_deg +
+           outside(away, kPreferredLeast_deg, kPreferredMost_deg) / kAsideScale_deg +
            std::pow((elevation_deg - kBestElevation_deg) / kElevationScale_deg, 2) +
            std::pow((away - kBestAside_deg) / kAsideScale_deg, 2) + (aside_deg < 0 ? 0.1 : 0);
 }

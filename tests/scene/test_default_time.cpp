@@ -39,6 +39,31 @@ TEST(DefaultTime, HasTheSunInItsBoundsFromSomeSidesAtAllLatitudes) {
     }
 }
 
+TEST(DefaultTime, Prefers25To30DegreesHighAnd60To80Aside) {
+    int both = 0;
+    for (int lat_deg = -80; lat_deg <= 80; lat_deg += 10)
+        for (int camera_deg = 0; camera_deg < 360; camera_deg += 15) {
+            const geo::Geodetic place{radians(lat_deg), radians(30), 0};
+            const DefaultTime time = DefaultDay(place).time(camera_deg);
+            const sun::Instant day =
+                sun::Instant::from_utc({.date = {2026, lat_deg < 0 ? 12 : 6, 21}});
+            bool exists = false;
+            for (int minute = -120; minute < 22 * 60 && !exists; minute += 10) {
+                const sun::Position sun = sun::position(day + 60.0 * minute, place);
+                const double aside = std::remainder(degrees(sun.azimuth_rad) - camera_deg, 360);
+                const double high = degrees(sun.elevation_rad);
+                exists = high >= 26 && high <= 29 && std::abs(aside) >= 62 && std::abs(aside) <= 78;
+            }
+            if (!exists) continue;
+            ++both;
+            const double away = std::abs(time.aside_deg);
+            EXPECT_TRUE(time.elevation_deg >= 24.5 && time.elevation_deg <= 30.5 && away >= 59.5 &&
+                        away <= 80.5)
+                << lat_deg << " " << camera_deg << ": " << time.elevation_deg << " " << away;
+        }
+    EXPECT_GT(both, 20);
+}
+
 TEST(DefaultTime, HasTheSunAsHighAsItComesAtThePoles) {
     for (const double lat_deg : {-90.0, 90.0}) {
         const DefaultTime time = time_at(lat_deg, 0, 200);
