@@ -250,6 +250,11 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
+    // True air over a DEM of 100 km washes out its far half.
+    constexpr double kClear_m = 6e3;
+    const glm::dvec2 extent_m = ground.north_east_m - ground.south_west_m;
+    const double width_m = std::max(std::sqrt(extent_m.x * extent_m.y), kClear_m);
+    block.air_scale = static_cast<float>(inputs.in_the_air ? std::sqrt(kClear_m / width_m) : 1);
     block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;

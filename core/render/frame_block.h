@@ -91,7 +91,9 @@ struct FrameInputs {
     /// The direct light on the ground, with its shadows.
     const SunLight& direct_light() const { return moonlight ? *moonlight : sun; }
     sun::CelestialFrame stars;  ///< at the DEM's centre
-    double exposure_ev = 0;     ///< stops above the natural exposure of this sun, or above `ev100`
+    /// The DEM has sky and air even if the eye is outside of it.
+    bool in_the_air = false;
+    double exposure_ev = 0;  ///< stops above the natural exposure of this sun, or above `ev100`
     std::optional<double> ev100;  ///< of a camera; without: the natural exposure of this sun
     double exaggeration = 1;      ///< vertical exaggeration, a factor
     Displacement displacement;    ///< by effects; set by the renderer
@@ -143,6 +145,8 @@ struct Ground {
 /// True if the eye is outside of the DEM's footprint, or higher above it than about a third of its
 /// width.
 bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggeration);
+/// As above, for a frame: never for one in the air.
+bool is_outside(const Ground& ground, const FrameInputs& inputs);
 
 /// Distance of the near plane [m]. With reversed depth, a small value costs no precision.
 inline constexpr double kNear_m = 0.5;

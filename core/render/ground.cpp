@@ -282,6 +282,10 @@ double Footprint::at(const glm::dvec2& point_m) const {
     return share.at(static_cast<int>(square.x), static_cast<int>(square.y));
 }
 
+bool is_outside(const Ground& ground, const FrameInputs& inputs) {
+    return !inputs.in_the_air && is_outside(ground, inputs.camera.eye_m, inputs.exaggeration);
+}
+
 bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggeration) {
     const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
     const double above_m =

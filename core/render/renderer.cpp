@@ -308,7 +308,7 @@ struct Renderer::Impl : FrameServices {
 
     void draw(Terrain& terrain, const Ground& ground, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
-        move(is_outside(ground, inputs.camera.eye_m, inputs.exaggeration));
+        move(is_outside(ground, inputs));
         describe(terrain, inputs, block);
         PassContext frame{.terrain = terrain,
                           .ground = ground,

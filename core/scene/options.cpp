@@ -24,6 +24,7 @@ using Kind = Option::Kind;
 // In the order of dem::Encoding, dem::Holes, Panorama and Stereo.
 constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
 constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
+constexpr std::array<std::string_view, 2> kBackdrops = {"sky", "studio"};
 constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
@@ -118,13 +119,18 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return number(s.station_height_m.value_or(kNone)); },
      [](Scene& s, const Value& v) { s.station_height_m = v.number; }},
     {"camera", "fov", "--fov", "View",
-     "Vertical field of view, degrees; 40 without it", Kind::Number, 0.1, 170, {},
+     "Vertical field of view, degrees; 40 without it, 50 of aerial views", Kind::Number, 0.1, 170, {},
      [](const Scene& s) { return number(written_deg(s.view.fov_y_rad)); },
      [](Scene& s, const Value& v) { set_lens(s, radians(v.number), 0); }},
     {"camera", "focal_length", "--focal-length", "View",
      "Focal length instead of the field of view, mm on 35 mm film", Kind::Number, 1, 10000, {},
      [](const Scene& s) { return number(s.view.fov_y_rad > 0 ? 0 : s.view.focal_length_mm); },
      [](Scene& s, const Value& v) { set_lens(s, 0, v.number); }},
+    {"camera", "backdrop", "--backdrop", "View",
+     "Behind the DEM in aerial views: sky (with air), studio (a plain backdrop, and the DEM as a block)",
+     Kind::Word, 0, 0, kBackdrops,
+     [](const Scene& s) { return text(kBackdrops[s.studio ? 1 : 0]); },
+     [](Scene& s, const Value& v) { s.studio = index_of(kBackdrops, v) == 1; }},
     {"camera", "panorama", "--panorama", "View",
      "Picture all around the eye: none, cylindrical, equirectangular; needs --eye", Kind::Word, 0, 0,
      kPanoramas,

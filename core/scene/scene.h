@@ -84,6 +84,7 @@ struct Scene {
     std::string forecast;      ///< a file of cloud cover instead; empty: none
     std::optional<double> station_height_m;  ///< of the weather's station; none: of the ground
     View view;
+    bool studio = false;  ///< aerial views have a plain backdrop behind a block, not sky and air
     std::optional<Overlay> overlay;
     LandCover land_cover;
     Stamps stamps;

@@ -53,8 +53,7 @@ void Session::Impl::check_panorama() const {
     scene::check_panorama(state.scene);
     refuse_with_several_cameras("--panorama");
     refuse_whole_frame_effects(*drawn, "a picture without --panorama");
-    if (drawn->renderer().shows_block() &&
-        render::is_outside(state.ground(), state.inputs.camera.eye_m, state.scene.exaggeration))
+    if (drawn->renderer().shows_block() && render::is_outside(state.ground(), state.inputs))
         bad_input(
             "--panorama: the eye is outside of the DEM or far above it, from where the DEM is "
             "drawn as a block; choose another --eye");

@@ -78,6 +78,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
     if (is_map()) {
         const dem::Grid& grid = dem_->source->grid();
         framing_.reset();
+        inputs.in_the_air = false;
         scene.view = view;
         inputs.camera = scene::map_camera(
             grid, ground_->frame,
@@ -93,6 +94,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
                                   of.eye ? scene::Outline() : outline(shape),
                                   scene::view_aspect(scene), scene.exaggeration);
     };
+    inputs.in_the_air = shape.has_air && view.orbit.aerial && !view.eye && !scene.studio;
     inputs.camera = standing(view, {ground_->frame, scene.exaggeration, shape.height_m, camera_of},
                              keep_above_m);
     scene.view = view;

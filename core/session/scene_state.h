@@ -21,6 +21,7 @@ namespace relevo::session {
 struct DrawnShape {
     render::Displacement displacement;
     bool shows_block = false;  ///< a block below the ground, if the eye is outside of it
+    bool has_air = false;      ///< air is drawn before the ground
     /// Height of the drawn ground on the vertical through the camera's eye [m], exaggerated;
     /// nullopt without ground, and for an eye above all of it.
     std::function<std::optional<double>(const scene::Camera&)> height_m;

@@ -78,8 +78,7 @@ void Session::Impl::say_unseen(const scene::Effects& asked) const {
 }
 
 bool Session::Impl::is_seen_from_outside() const {
-    return state.is_map() ||
-           render::is_outside(state.ground(), state.inputs.camera.eye_m, state.scene.exaggeration);
+    return state.is_map() || render::is_outside(state.ground(), state.inputs);
 }
 
 std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
@@ -344,7 +343,12 @@ DrawnShape Session::Impl::shape() {
 }
 
 DrawnShape Session::Impl::shape(bool around) {
-    return {drawn->renderer().displacement(), drawn->renderer().shows_block(),
+    const bool has_air = std::ranges::any_of(
+        drawn->effects().loaded.selection.effects, [](const effect::Effect* const effect) {
+            return std::ranges::find(effect->manifest.provides, "haze") !=
+                   effect->manifest.provides.end();
+        });
+    return {drawn->renderer().displacement(), drawn->renderer().shows_block(), has_air,
             [this, around](const scene::Camera& camera) { return drawn_height_m(camera, around); }};
 }
 

@@ -84,4 +84,5 @@ layout(std140, binding = 0) uniform Frame {
     vec4 light_heights;       // of light_by_height, for lib/ground.glsl; x: height of its first row [m], y: 1 / (its last - its
                               // first) [1/m]
     float eye_above_ground;   // height of the eye above the posts below it, as drawn [m]; 1e9 where there are none
+    float air_scale;          // of distances in the air before the ground: below 1 in aerial views of wide DEMs
 } frame;

@@ -106,7 +106,7 @@ TEST(BadValue, LineBreaksInItStandAsTheirNames) {
         return arguments;
     };
     expect_no_picture(with("--view", "az=1\nrelevo: done"), 2,
-                      "--view: az=1\\nrelevo: done: expected top, north, north-east, ... "
+                      "--view: az=1\\nrelevo: done: expected top, whole, north, north-east, ... "
                       "north-west, or az=DEG,el=DEG,zoom=FACTOR, but got \"az=1\\nrelevo: done\"");
     expect_no_picture(with("--time", "1\n2"), 3,
                       "time: 1\\n2: not a time, expected YYYY-MM-DDThh:mm with Z or an "
@@ -230,16 +230,17 @@ TEST(BadUsage, EachHasItsMessage) {
                                 : zoom));
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
                       "--foo: no such option; did you mean --fov? See relevo capture --help");
-    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
-                      "--view: az=10,tilt=3: expected top, north, north-east, ... north-west, or "
-                      "az=DEG,el=DEG,zoom=FACTOR, but got \"tilt=3\"");
+    expect_no_picture(
+        {"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
+        "--view: az=10,tilt=3: expected top, whole, north, north-east, ... north-west, or "
+        "az=DEG,el=DEG,zoom=FACTOR, but got \"tilt=3\"");
     // A word stands first; north-up is none.
     for (const auto& [view, word, remedy] :
          {std::tuple{"el=40,north", "north", "; a side comes first, as in north,el=40"},
           {"north-up", "north-up", ""},
           {"nort", "nort", "; did you mean north?"}})
         expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--view", view}, 2,
-                          fmt::format("--view: {}: expected top, north, north-east, ... "
+                          fmt::format("--view: {}: expected top, whole, north, north-east, ... "
                                       "north-west, or az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"{}",
                                       view, word, remedy));
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,

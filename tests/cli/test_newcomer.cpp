@@ -42,7 +42,7 @@ TEST(Newcomer, MisspeltWords) {
                    "--size: not an option of relevo info, but of relevo view, relevo capture, "
                    "relevo run, ...; see relevo info --help");
     expect_failure(capture({"--view", "nort"}), 2,
-                   "--view: nort: expected top, north, north-east, ... north-west, or "
+                   "--view: nort: expected top, whole, north, north-east, ... north-west, or "
                    "az=DEG,el=DEG,zoom=FACTOR, but got \"nort\"; did you mean north?");
     expect_failure(capture({"--preset", "relif"}), 3,
                    "preset: relif: no such preset; did you mean relief?");

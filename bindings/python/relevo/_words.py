@@ -36,6 +36,7 @@ _ARGUMENTS: Final = {
 # Members of scenes, as scene= takes them.
 _MEMBERS: Final = {
     "attribution": "stamps.attribution",
+    "backdrop": "camera.backdrop",
     "disable": "effects.disable",
     "enable": "effects.enable",
     "ev100": "picture.ev100",
