@@ -1,3 +1,4 @@
+#include <limits>
 #include <string>
 
 #include "chart/ramp.h"
@@ -6,7 +7,10 @@
 namespace relevo::fuzz {
 
 const Target kColours("colours", [](std::string_view bytes) {
-    chart::read_ramp(file(bytes, "colours.txt"), 0, 100);
+    attempt([&] { chart::named_ramp(bytes, 0, 100).at(40); });
+    const chart::Ramp ramp = chart::read_ramp(file(bytes, "colours.txt"), 0, 100);
+    for (const double value : {-1e300, 0.0, 40.0, 1e300, std::numeric_limits<double>::quiet_NaN()})
+        ramp.at(value);
 });
 
 }  // namespace relevo::fuzz

@@ -465,9 +465,10 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
         EXPECT_EQ(program_->status(), 0) << program_->output();
     });
     const double read_s = seconds([&] {
-        test::WindowedProgram info(display_, test::build_dir() / "bin/relevo",
-                                   {"-q", "capture", slow.string(), "--only", "--memory", "128",
-                                    "--size", "32x32", "-o", (folder_ / "slow.png").string()});
+        test::WindowedProgram info(
+            display_, test::build_dir() / "bin/relevo",
+            {"-q", "capture", slow.string(), "--only", "--memory", "128", "--view", "whole",
+             "--size", "32x32", "-o", (folder_ / "slow.png").string()});
         EXPECT_EQ(info.status(120), 0) << info.output();
     });
     fmt::print("[ measured ] replaced after {:.1f} s, closed after {:.1f} s; read in {:.1f} s\n",
