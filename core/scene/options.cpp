@@ -24,7 +24,7 @@ using Kind = Option::Kind;
 // In the order of dem::Encoding, dem::Holes, Panorama and Stereo.
 constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
 constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
-constexpr std::array<std::string_view, 2> kBackdrops = {"sky", "studio"};
+constexpr std::array<std::string_view, 2> kBackdrops = {"horizon", "studio"};
 constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
@@ -127,7 +127,7 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return number(s.view.fov_y_rad > 0 ? 0 : s.view.focal_length_mm); },
      [](Scene& s, const Value& v) { set_lens(s, 0, v.number); }},
     {"camera", "backdrop", "--backdrop", "View",
-     "Behind the DEM in aerial views: sky (with air), studio (a plain backdrop, and the DEM as a block)",
+     "Behind the DEM in aerial views: horizon (with sky and air), studio (a plain backdrop, and the DEM as a block)",
      Kind::Word, 0, 0, kBackdrops,
      [](const Scene& s) { return text(kBackdrops[s.studio ? 1 : 0]); },
      [](Scene& s, const Value& v) { s.studio = index_of(kBackdrops, v) == 1; }},

@@ -343,11 +343,10 @@ DrawnShape Session::Impl::shape() {
 }
 
 DrawnShape Session::Impl::shape(bool around) {
-    const bool has_air = std::ranges::any_of(
-        drawn->effects().loaded.selection.effects, [](const effect::Effect* const effect) {
-            return std::ranges::find(effect->manifest.provides, "haze") !=
-                   effect->manifest.provides.end();
-        });
+    const bool has_air = std::ranges::any_of(drawn->effects().loaded.selection.snippets(),
+                                             [](const shader::Snippet* const snippet) {
+                                                 return snippet->find("atmosphere") != nullptr;
+                                             });
     return {drawn->renderer().displacement(), drawn->renderer().shows_block(), has_air,
             [this, around](const scene::Camera& camera) { return drawn_height_m(camera, around); }};
 }
