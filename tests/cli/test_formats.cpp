@@ -80,7 +80,7 @@ TEST_F(Formats, TransparentPicturesHaveAlphaWhereThereIsNoGround) {
 
 TEST_F(Formats, LayersAreConsistent) {
     constexpr int kNothing = 0;
-    const auto path = take("a.exr", {"--layers", "all"});
+    const auto path = take("a.exr", {"--layers", "all", "--view", "whole"});
     std::map<std::string, image::Channel> layers;
     for (image::Channel& layer : image::read_layers(path))
         layers[layer.name] = std::move(layer);

@@ -84,7 +84,7 @@ TEST_F(Weather, OfWhichNothingIsDrawnIsSaid) {
     const std::string report = "LSZB 011150Z 24009KT 9999 BKN040 17/13 Q1014";
     const std::string outside =
         "; clouds and fog are not drawn from outside the DEM, --eye stands in it";
-    EXPECT_THAT(capture({"--weather", report}).err, HasSubstr(outside));
+    EXPECT_THAT(capture({"--weather", report, "--view", "whole"}).err, HasSubstr(outside));
     EXPECT_THAT(capture({"--weather", report, "--ortho"}).err, HasSubstr(outside));
     EXPECT_THAT(capture({"--weather", "LSZB 011150Z 24009KT CAVOK 17/13 Q1014"}).err,
                 Not(HasSubstr("from outside")));
