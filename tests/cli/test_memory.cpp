@@ -42,8 +42,7 @@ class LargeDem : public testing::Test {
                                             const std::vector<std::string>& more = {}) {
         std::vector<std::string> words{"capture",          dem,           "-o",
                                        picture().string(), "--overwrite", "--device",
-                                       "software",         "--time",      "2026-06-21T12:00Z",
-                                       "--view",           "whole"};
+                                       "software",         "--time",      "2026-06-21T12:00Z"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -67,7 +66,8 @@ TEST_F(LargeDem, PicturesTakeWhatMemoryAllows) {
     relevo(capture(small, {"--allow-blank"}));  // the driver keeps its programs
     const int floor_mib = measured(capture(small, {"--allow-blank"})).peak_mib;
     for (const int mib : {64, 96}) {
-        const std::vector<std::string> memory{"--memory", std::to_string(mib), "--no-cache"};
+        const std::vector<std::string> memory{"--memory", std::to_string(mib), "--no-cache",
+                                              "--view", "whole"};
         const Measured found = measured(capture(large, memory));
         ASSERT_EQ(found.run.status, 0) << found.run.err;
         fmt::print("[ memory ] --memory {}: {} MiB above a floor of {}\n", mib,
