@@ -191,7 +191,7 @@ TEST(Audit, MeansOfManyPostsAreComparedWithTheirOwnPixels) {
 TEST(Audit, AtNightThereIsNothingToCompare) {
     scene::Scene scene = morning("shadows");
     scene.time.at = "2026-06-15T05:00Z";  // new moon
-    scene.view.orbit.aerial = false;
+    scene.view.orbit = {180, 30, 1};
     const ShadowAudit audit = audit_of(scene);
     EXPECT_EQ(audit.pixels(), 0);
     EXPECT_EQ(audit.text(),
