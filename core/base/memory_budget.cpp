@@ -74,7 +74,7 @@ MemoryBudget MemoryBudget::for_pictures() const {
 
 void MemoryBudget::return_what_is_freed() const {
     constexpr std::int64_t kMuch_mib = 512;  // of which that is a small part
-    constexpr int kLarge = 4 << 20;          // bytes: what a strip of a sweep takes again and again is not
+    constexpr int kLarge = 4 << 20;  // bytes: what a strip of a sweep takes again and again is not
     if (mib() >= kMuch_mib) return;
     mallopt(M_ARENA_MAX, 1);
     mallopt(M_TRIM_THRESHOLD, kLarge);

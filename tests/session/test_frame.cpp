@@ -29,6 +29,7 @@ scene::Scene scene_of(const std::filesystem::path& dem, std::vector<std::string>
     scene.effects.switches.only = std::move(effects);
     scene.width_px = 320;
     scene.height_px = 256;
+    scene.view.orbit.aerial = false;
     return scene;
 }
 
