@@ -84,7 +84,7 @@ void add_view(CommandLine& command, const scene::View& view) {
         if (view.orbit.elevation_deg)
             orbit = fmt::format("el={},{}", *view.orbit.elevation_deg, orbit);
         if (view.orbit.azimuth_deg) orbit = fmt::format("az={},{}", *view.orbit.azimuth_deg, orbit);
-        orbit = fmt::format("{},{}", view.orbit.aerial ? "aerial" : "whole", orbit);
+        orbit.insert(0, view.orbit.aerial ? "aerial," : "whole,");
         command.option("--view", orbit);
     }
 }
