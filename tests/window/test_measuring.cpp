@@ -20,7 +20,7 @@ class MeasuredLine : public Viewer {
         std::this_thread::sleep_for(kStill);
     }
     void begin() {
-        open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+        open({dem_, "--view", "az=165,el=28", "--only", "--time", "2026-06-21T18:00:00Z"});
         act({"key", "p"});
         click(760, 330);
         ASSERT_TRUE(wait([&] { return red({750, 320, 20, 20}) > 20; }));

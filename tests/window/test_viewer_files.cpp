@@ -52,7 +52,7 @@ TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
 TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
     constexpr glm::ivec3 kDay{0xe0, 0x7b, 0x12};
     constexpr glm::ivec4 kAbove{410, 40, 850, 400}, kBelow{410, 480, 850, 300};
-    open({dem_, "--view", "whole", "--time", "2026-06-21T18:00:00Z", "--disable", "haze"});
+    open({dem_, "--view", "az=165,el=28", "--time", "2026-06-21T18:00:00Z", "--disable", "haze"});
     const auto click = [&](const char* x, const char* y) {
         act({"mousemove", x, y});
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -98,7 +98,7 @@ TEST_F(Viewer, OpensADemByItsNameAtTheSameHourOfItsOwnClocks) {
 TEST_F(Viewer, MeasuresFromThePointToTheCursor) {
     constexpr glm::ivec3 kLine{255, 80, 60};
     constexpr glm::ivec4 kAbove{820, 260, 90, 50}, kBelow{820, 350, 90, 50};
-    open({dem_, "--view", "whole", "--only", "--time", "2026-06-21T18:00:00Z"});
+    open({dem_, "--view", "az=165,el=28", "--only", "--time", "2026-06-21T18:00:00Z"});
     const auto red = [&](glm::ivec4 area) { return count_near(display_.screen(), area, kLine); };
     act({"key", "p", "mousemove", "760", "330"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
