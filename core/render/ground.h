@@ -29,7 +29,7 @@ struct GroundToShow {
     std::vector<glm::dvec3> points;
     std::vector<glm::dvec3> rim;  ///< the ends of rows and columns among them
     scene::GroundNet net;         ///< one post of each piece
-    scene::AerialGround aerial;   ///< the net's posts, or those of its land
+    scene::AerialGround aerial;   ///< what aerial views frame
 };
 GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground, double exaggeration);
 

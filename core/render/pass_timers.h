@@ -12,7 +12,7 @@ namespace relevo::render {
 
 struct PassTime {
     std::string pass;
-    double ms = 0;            ///< by the clock, or the device's
+    double ms = 0;            ///< wall-clock time; of the device, where it measures
     double processor_ms = 0;  ///< of all threads of the process
 };
 /// Of a frame's passes, in order.

@@ -14,7 +14,7 @@ namespace relevo::render {
 namespace {
 
 constexpr std::size_t kMostKept = 4096;                     // cached tiles
-constexpr std::int64_t kMostNodes = std::int64_t{1} << 24;  // by which parts are told
+constexpr std::int64_t kMostNodes = std::int64_t{1} << 24;  // of the level that parts are found in
 constexpr int kNarrow = 8;  // narrower parts of the ground than the DEM by this have no walls
 
 constexpr int kOpen = 1;  ///< a void that reaches the DEM's edge

@@ -27,36 +27,31 @@ constexpr double kFilled = 0.52, kFullPicture = 0.6;
 /// Preference of the south, as on maps, and of sides whose default light is within its limits.
 constexpr double kFromSouth = 0.05, kFromSouthOfCountry = 0.4, kOtherLight = 0.3;
 
-struct NodeInPicture {
-    GroundNode node;
-    double x, y, depth_m;  ///< in the picture, -1 to 1 each
-};
-
-/// Nodes in the picture, the nearest first.
-std::vector<NodeInPicture> nodes_in(const Camera& camera, const GroundNet& net) {
+/// Nodes in the picture; x and y are -1 to 1.
+std::vector<NodeInView> nodes_in(const Camera& camera, const GroundNet& net) {
     const glm::dvec3 right = cross(camera.forward, camera.up);
     const double tan_y = std::tan(camera.fov_y_rad / 2), tan_x = tan_y * kChoiceAspect;
-    std::vector<NodeInPicture> seen;
+    std::vector<NodeInView> seen;
     for (const GroundNode& node : nodes_of(net)) {
         const glm::dvec3 from_eye = node.at_m - camera.eye_m;
         const double depth_m = dot(from_eye, camera.forward);
         if (depth_m <= 0) continue;
-        const NodeInPicture at{node, dot(from_eye, right) / depth_m / tan_x,
-                               dot(from_eye, camera.up) / depth_m / tan_y, depth_m};
-        if (std::abs(at.x) <= 1 && std::abs(at.y) <= 1) seen.push_back(at);
+        const double x = dot(from_eye, right) / depth_m / tan_x,
+                     y = dot(from_eye, camera.up) / depth_m / tan_y;
+        if (std::abs(x) > 1 || std::abs(y) > 1) continue;
+        seen.push_back(
+            {node, x, y, -depth_m, -dot(node.normal, from_eye) / (depth_m * depth_m * depth_m)});
     }
-    std::ranges::sort(
-        seen, [](const NodeInPicture& a, const NodeInPicture& b) { return a.depth_m < b.depth_m; });
     return seen;
 }
 
 /// Fraction of the picture between the lowest and the highest node of each column.
-double filled_of(const std::vector<NodeInPicture>& seen) {
+double filled_of(const std::vector<NodeInView>& seen) {
     constexpr int kColumns = 12;
     std::array<double, kColumns> low, high;
     low.fill(1);
     high.fill(-1);
-    for (const NodeInPicture& at : seen) {
+    for (const NodeInView& at : seen) {
         const auto column = static_cast<std::size_t>(
             std::clamp(static_cast<int>(0.5 * (at.x + 1) * kColumns), 0, kColumns - 1));
         low[column] = std::min(low[column], at.y);
@@ -110,35 +105,13 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
     const Camera camera = choice_camera(orbit, ground);
     AerialAspect aspect;
     aspect.posts = share_in_picture(camera, ground.posts, kChoiceAspect);
-    const std::vector<NodeInPicture> seen = nodes_in(camera, net);
-    const DefaultTime time = day.estimate(*orbit.azimuth_deg);
-    const glm::dvec3 to_sun = towards(*orbit.azimuth_deg + time.aside_deg, time.elevation_deg);
-    // A node is hidden where nearer ground in the same column of the picture stands higher in it.
-    const int columns = std::max(1, static_cast<int>(std::sqrt(seen.size())));
-    std::vector<double> horizon(static_cast<std::size_t>(columns), -1e300);
-    double all = 0, visible = 0, covered = 0, light = 0, light2 = 0;
-    for (const NodeInPicture& at : seen) {
-        const double area = length(at.node.normal);
-        const double facing = dot(at.node.normal, camera.eye_m - at.node.at_m) /
-                              (at.depth_m * at.depth_m * at.depth_m);
-        all += area;
-        double& highest = horizon[static_cast<std::size_t>(
-            std::clamp(static_cast<int>(0.5 * (at.x + 1) * columns), 0, columns - 1))];
-        if (facing > 0 && at.y >= highest) {
-            visible += area;
-            covered += facing;
-            const double lit = std::max(dot(at.node.normal, to_sun), 0.0) / std::max(area, 1e-9);
-            light += facing * lit;
-            light2 += facing * lit * lit;
-        }
-        highest = std::max(highest, at.y);
-    }
+    const std::vector<NodeInView> seen = nodes_in(camera, net);
     aspect.filled = filled_of(seen);
-    if (all > 0) aspect.in_sight = visible / all;
-    if (covered > 0 && light > 0) {
-        const double mean = light / covered;
-        aspect.contrast = std::sqrt(std::max(light2 / covered - mean * mean, 0.0)) / mean;
-    }
+    const DefaultTime time = day.estimate(*orbit.azimuth_deg);
+    const Sight sight =
+        sight_of(seen, -1, 1, towards(*orbit.azimuth_deg + time.aside_deg, time.elevation_deg));
+    aspect.in_sight = sight.in_sight;
+    aspect.contrast = sight.contrast;
     return aspect;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "scene/ground_nodes.h"
 
 namespace relevo::scene {
 namespace {
@@ -183,9 +184,8 @@ Fit fit_above(const Camera& camera, std::span<const glm::dvec3> points, const Ro
     return fit;
 }
 
-/// The nearest place from which enough posts are in the picture and the near edge is below it;
-/// where there is none, because of voids for instance, the one with the least bare picture below
-/// the edge.
+/// The nearest place from which enough posts are in the picture and the near edge is below it.
+/// Voids can rule that out: then the place with the least picture below the edge.
 template <typename RoomWithin>
 Fit aerial_fit(const Camera& camera, const AerialGround& ground, double aspect, const Room& picture,
                const RoomWithin& room_within) {
@@ -216,12 +216,9 @@ Fit aerial_fit(const Camera& camera, const AerialGround& ground, double aspect, 
 /// Looks from the side of an orbit, from a place that is not known yet.
 Camera facing(const Orbit& orbit, double fov_y_rad) {
     const double azimuth = radians(orbit.azimuth_deg.value());
-    const double elevation = radians(orbit.elevation_deg.value());
-    const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
-                               std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
     Camera camera;
     camera.fov_y_rad = fov_y_rad;
-    camera.forward = -to_camera;
+    camera.forward = -towards(orbit.azimuth_deg.value(), orbit.elevation_deg.value());
     camera.up = upright(camera.forward, {0, 0, 1}, {-std::sin(azimuth), -std::cos(azimuth), 0});
     return camera;
 }

@@ -52,7 +52,7 @@ struct Orbit {
     bool aerial = false;
 };
 
-/// What of the ground orbits show, in the local frame [m].
+/// The ground that aerial views frame, in the local frame [m].
 struct AerialGround {
     /// Evenly spread posts; of the land alone where most of the DEM is a level sea.
     std::vector<glm::dvec3> posts;

@@ -33,20 +33,16 @@ constexpr double kPictureAspect = 1.25;
 /// A globe is seen from straight above the middle of its map, north up.
 constexpr double kGlobeAzimuth_deg = 180, kGlobeElevation_deg = 90;
 
-struct Node : GroundNode {
-    double right, up, nearness;
-};
-
 /// Nodes from a direction, in parallel rays.
-std::vector<Node> nodes_from(const GroundNet& net, double azimuth_deg,
-                             const glm::dvec3& to_camera) {
+std::vector<NodeInView> nodes_from(const GroundNet& net, double azimuth_deg,
+                                   const glm::dvec3& to_camera) {
     const double azimuth = radians(azimuth_deg);
     const glm::dvec3 right{-std::cos(azimuth), std::sin(azimuth), 0};
     const glm::dvec3 up = cross(to_camera, right);
-    std::vector<Node> nodes;
+    std::vector<NodeInView> nodes;
     for (const GroundNode& node : nodes_of(net))
-        nodes.push_back(
-            {node, dot(node.at_m, right), dot(node.at_m, up), dot(node.at_m, to_camera)});
+        nodes.push_back({node, dot(node.at_m, right), dot(node.at_m, up), dot(node.at_m, to_camera),
+                         dot(node.normal, to_camera)});
     return nodes;
 }
 
@@ -77,45 +73,19 @@ double Aspect::score() const {
 Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_deg,
                    const DefaultDay& day) {
     const glm::dvec3 to_camera = towards(azimuth_deg, elevation_deg);
-    std::vector<Node> nodes = nodes_from(net, azimuth_deg, to_camera);
+    const std::vector<NodeInView> nodes = nodes_from(net, azimuth_deg, to_camera);
     if (nodes.empty()) return {};
-    std::ranges::sort(nodes, [](const Node& a, const Node& b) { return a.nearness > b.nearness; });
     glm::dvec2 least(1e300), most(-1e300);
-    for (const Node& node : nodes) {
-        least = glm::min(least, glm::dvec2(node.right, node.up));
-        most = glm::max(most, glm::dvec2(node.right, node.up));
+    for (const NodeInView& node : nodes) {
+        least = glm::min(least, glm::dvec2(node.x, node.y));
+        most = glm::max(most, glm::dvec2(node.x, node.y));
     }
     const DefaultTime time = day.estimate(azimuth_deg);
-    const glm::dvec3 to_sun = towards(azimuth_deg + time.aside_deg, time.elevation_deg);
-
-    // A node is hidden where nearer ground in the same column of the picture stands higher in it.
-    const int columns = std::max(1, static_cast<int>(std::sqrt(nodes.size())));
-    std::vector<double> horizon(static_cast<std::size_t>(columns), -1e300);
-    const double per_m = columns / std::max(most.x - least.x, 1e-9);
-    double ground = 0, seen = 0, covered = 0, light = 0, light2 = 0;
-    for (const Node& node : nodes) {
-        const double area = length(node.normal);
-        const double facing = dot(node.normal, to_camera);
-        ground += area;
-        double& highest = horizon[static_cast<std::size_t>(
-            std::clamp(static_cast<int>((node.right - least.x) * per_m), 0, columns - 1))];
-        if (facing > 0 && node.up >= highest) {
-            seen += area;
-            covered += facing;
-            const double lit = std::max(dot(node.normal, to_sun), 0.0) / std::max(area, 1e-9);
-            light += facing * lit;
-            light2 += facing * lit * lit;
-        }
-        highest = std::max(highest, node.up);
-    }
-    Aspect aspect;
+    const Sight sight =
+        sight_of(nodes, least.x, most.x, towards(azimuth_deg + time.aside_deg, time.elevation_deg));
     const double width = std::max(most.x - least.x, (most.y - least.y) * kPictureAspect) / kFill;
-    if (ground > 0) aspect.in_sight = seen / ground;
-    if (width > 0) aspect.filled = covered * kPictureAspect / (width * width);
-    if (covered > 0 && light > 0) {
-        const double mean = light / covered;
-        aspect.contrast = std::sqrt(std::max(light2 / covered - mean * mean, 0.0)) / mean;
-    }
+    Aspect aspect{.in_sight = sight.in_sight, .contrast = sight.contrast};
+    if (width > 0) aspect.filled = sight.covered * kPictureAspect / (width * width);
     return aspect;
 }
 

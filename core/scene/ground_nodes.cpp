@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -41,6 +42,36 @@ std::vector<GroundNode> nodes_of(const GroundNet& net) {
         }
     }
     return nodes;
+}
+
+Sight sight_of(std::vector<NodeInView> nodes, double left, double right, const glm::dvec3& to_sun) {
+    std::ranges::sort(nodes, std::greater{}, &NodeInView::nearness);
+    // A node is hidden where nearer ground in the same column of the picture stands higher in it.
+    const int columns = std::max(1, static_cast<int>(std::sqrt(nodes.size())));
+    std::vector<double> horizon(static_cast<std::size_t>(columns), -1e300);
+    const double per_x = columns / std::max(right - left, 1e-9);
+    double all = 0, visible = 0, light = 0, light2 = 0;
+    Sight sight;
+    for (const NodeInView& node : nodes) {
+        const double area = length(node.normal);
+        all += area;
+        double& highest = horizon[static_cast<std::size_t>(
+            std::clamp(static_cast<int>((node.x - left) * per_x), 0, columns - 1))];
+        if (node.facing > 0 && node.y >= highest) {
+            visible += area;
+            sight.covered += node.facing;
+            const double lit = std::max(dot(node.normal, to_sun), 0.0) / std::max(area, 1e-9);
+            light += node.facing * lit;
+            light2 += node.facing * lit * lit;
+        }
+        highest = std::max(highest, node.y);
+    }
+    if (all > 0) sight.in_sight = visible / all;
+    if (sight.covered > 0 && light > 0) {
+        const double mean = light / sight.covered;
+        sight.contrast = std::sqrt(std::max(light2 / sight.covered - mean * mean, 0.0)) / mean;
+    }
+    return sight;
 }
 
 glm::dvec3 towards(double azimuth_deg, double elevation_deg) {
