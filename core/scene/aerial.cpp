@@ -22,6 +22,8 @@ constexpr double kLeastAerial_deg = 16, kAerialStep_deg = 1, kHighestAerial_deg 
 constexpr double kWideDem_m = 300e3;
 /// Over wider DEMs the Earth's curvature hides what is far.
 constexpr double kWidest_m = 2000e3;
+/// A longer strip, by its width, fills less than a third of the picture from any side.
+constexpr double kLongest = 3;
 /// A picture that is filled by this much is not bettered by standing higher, or by another side.
 constexpr double kFilled = 0.52, kFullPicture = 0.6;
 /// Preference of the south, as on maps, and of sides whose default light is within its limits.
@@ -115,15 +117,12 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
     return aspect;
 }
 
-bool has_aerial_view(const AerialGround& ground) {
+bool has_aerial_view(const GroundNet& net, const AerialGround& ground) {
     if (ground.posts.empty()) return false;
-    glm::dvec3 low(1e300), high(-1e300);
-    for (const glm::dvec3& post : ground.posts) {
-        low = min(low, post);
-        high = max(high, post);
-    }
-    const glm::dvec3 size = high - low;
-    return std::min(size.x, size.y) > 0 && std::max(size.x, size.y) < kWidest_m;
+    const GroundBox box = box_of(net);
+    const auto [shorter_m, longer_m] = std::minmax(box.size_m.x, box.size_m.y);
+    const bool is_strip = !ground.land_alone && longer_m > kLongest * shorter_m;
+    return shorter_m > 0 && longer_m < kWidest_m && !is_strip;
 }
 
 AerialFraming frame_aerial(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,

@@ -22,9 +22,9 @@ struct AerialAspect {
 AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const AerialGround& ground,
                            const DefaultDay& day);
 
-/// True if a DEM can be seen from the air: it has an extent, and the Earth's curvature leaves its
-/// far edge above the horizon.
-bool has_aerial_view(const AerialGround& ground);
+/// False for DEMs that are seen as a whole: those without an extent, strips, and those so wide that
+/// the Earth's curvature hides their far edge.
+bool has_aerial_view(const GroundNet& net, const AerialGround& ground);
 
 struct AerialFraming {
     Orbit orbit;

@@ -150,7 +150,7 @@ Framing frame_whole(const Orbit& wanted, const GroundNet& net, const DefaultDay&
 Framing frame_ground(const Orbit& wanted, const GroundNet& net, const AerialGround& ground,
                      const DefaultDay& day) {
     if (wanted.azimuth_deg && wanted.elevation_deg) return {.orbit = wanted};
-    if (!wanted.aerial || day.is_globe() || !has_aerial_view(ground))
+    if (!wanted.aerial || day.is_globe() || !has_aerial_view(net, ground))
         return frame_whole(wanted, net, day);
     const AerialFraming framing = frame_aerial(wanted, net, ground, day);
     return {framing.orbit, framing.aspect.posts, true};

@@ -146,12 +146,18 @@ TEST(Aerial, LandAloneIsInThePictureWithItsSea) {
     EXPECT_LT(distance(camera.eye_m, glm::dvec3(0)), 60e3);
 }
 
-TEST(Aerial, GlobesLinesAndContinentsHaveNone) {
+TEST(Aerial, GlobesLinesStripsAndContinentsHaveNone) {
     const DefaultDay day({radians(46), 0, 0});
     const GroundNet wide = dem_net(3000e3, 2000e3, 0, hills_m);
     EXPECT_FALSE(frame_ground(kAerial, wide, aerial_of(wide), day).orbit.aerial);
     const GroundNet line = dem_net(3e3, 0, 0, hills_m);
     EXPECT_FALSE(frame_ground(kAerial, line, aerial_of(line), day).orbit.aerial);
+    for (const double turned_deg : {0.0, 45.0}) {
+        const GroundNet strip = dem_net(60e3, 17e3, turned_deg, hills_m);
+        EXPECT_FALSE(frame_ground(kAerial, strip, aerial_of(strip), day).orbit.aerial);
+        const GroundNet shorter = dem_net(60e3, 23e3, turned_deg, hills_m);
+        EXPECT_TRUE(frame_ground(kAerial, shorter, aerial_of(shorter), day).orbit.aerial);
+    }
     const GroundNet net = dem_net(60e3, 60e3, 0, hills_m);
     const DefaultDay globe({0, 0, 0}, /*globe=*/true);
     EXPECT_FALSE(frame_ground(kAerial, net, aerial_of(net), globe).orbit.aerial);
