@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 64> kReserved = {
 constexpr std::size_t kMaxInstanceSets = 16;
 
 // Capabilities that core provides itself: render/core_passes.h.
-constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
+constexpr std::array<std::string_view, 4> kCoreWords = {"near", "night", "outside", "water"};
 
 constexpr std::array<std::string_view, 3> kGroundWords = {"water", "marked_holes", "covered_voids"};
 

@@ -9,6 +9,7 @@
 #include "render/instances.h"
 #include "render/pass_context.h"
 #include "render/pass_texts.h"
+#include "render/plain_parts.h"
 #include "shader/stored_varyings.h"
 
 namespace relevo::render {
@@ -125,6 +126,12 @@ class Declaration {
         if (facts_.software) recipe.defines.push_back({"EXACT_FILTERS", ""});
         const std::string full = word ? std::string(name) + "_" + word : name;
         frame_.programs.push_back({full, std::move(recipe), word ? word : ""});
+        return full;
+    }
+
+    std::string plain_program(const char* name, const shader::ProgramRecipe& recipe) {
+        const std::string full = program((std::string(name) + "_plain").c_str(), recipe);
+        frame_.programs.back().plain = true;
         return full;
     }
 
@@ -383,6 +390,8 @@ class Declaration {
                   .program = program("terrain", recipe, outside_word()),
                   .colours = {{shaded_}},
                   .depth = Depth{"depth@" + covering_, DepthTest::Covered}};
+        if (facts_.wants_plain && !facts_.outside && !facts_.orthographic)
+            pass.plain = PlainProgram{plain_program("terrain", recipe), parts_of_ground};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
         if (facts_.surface) pass.colours.push_back({kSurfaceTexture, kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
@@ -418,9 +427,9 @@ class Declaration {
     /// The sky, or the backdrop of a block.
     void background() {
         const char* const name = facts_.outside ? "backdrop" : "background";
-        const shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
-                                           .fragment_main = std::string(name) + ".frag.glsl",
-                                           .defines = end_defines_};
+        shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
+                                     .fragment_main = std::string(name) + ".frag.glsl",
+                                     .defines = end_defines_};
         Pass pass{.name = "background",
                   .program = program(name, recipe, outside_word()),
                   .colours = {{.resource = shaded_, .updates = true}},
@@ -428,6 +437,10 @@ class Declaration {
                   .after = {"side"}};  // a pass of views from outside only
         if (!facts_.outside && facts_.wants_night)
             pass.program_at_night = program(name, recipe, kNightWord);
+        if (!facts_.outside && !facts_.orthographic) {
+            recipe.defines.push_back({"NO_MOON", ""});
+            pass.plain = PlainProgram{plain_program(name, recipe), parts_of_sky};
+        }
         add(std::move(pass));
     }
 

@@ -17,6 +17,11 @@ inline constexpr const char* kNightWord = "night";
 /// such as air, adds no cost to these frames.
 inline constexpr const char* kOutsideWord = "outside";
 
+/// Capability words of core for the ground: 0 in the program of parts of the picture where no
+/// ground has water, and no pixel is narrower on it than kNearPixel_m; else 1.
+inline constexpr const char* kWaterWord = "water";
+inline constexpr const char* kNearWord = "near";
+
 /// Height differences between neighbouring pixels, from the geometry to the terrain program: the
 /// sampler, and the define with the number of the output. Present if a hook reads them.
 inline constexpr const char* kHeightStepsTexture = "height_steps";
@@ -40,6 +45,7 @@ struct FrameFacts {
     bool outside = false;                ///< the DEM is seen from outside, as a block
     bool wants_outside = false;          ///< effects want the word `outside`
     bool wants_night = false;            ///< effects want the word `night`
+    bool wants_plain = false;            ///< effects want the words `water` or `near`
     bool radiance = false;               ///< stores linear radiance; else shading writes colours
     bool antialias = true;               ///< smooths silhouettes
     bool pixel_hooks = false;            ///< effects have the hook image, finish or overlay
@@ -65,6 +71,7 @@ struct ProgramRecipe {
     std::string name;
     shader::ProgramRecipe recipe;
     std::string word{};  ///< capability word in addition to those of the effects; empty: none
+    bool plain = false;  ///< without the words of the ground that is seen near or has water
 };
 
 /// The passes of a frame with their resources, and their programs.

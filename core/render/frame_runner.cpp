@@ -18,8 +18,8 @@ constexpr double kMaxWatched_px = 1 << 21;
 
 /// Restricts draws to a rectangle.
 struct Scissor {
-    Scissor(int x, int y, int width, int height) {
-        glScissor(x, y, width, height);
+    explicit Scissor(const PixelRectangle& to) {
+        glScissor(to.left, to.bottom, to.width, to.height);
         glEnable(GL_SCISSOR_TEST);
     }
     Scissor(const Scissor&) = delete;
@@ -37,8 +37,12 @@ struct DebugGroup {
     ~DebugGroup() { glPopDebugGroup(); }
 };
 
-double pixels(const gl::Framebuffer& target) {
-    return double{1} * target.extent().width * target.extent().height;
+double pixels(const PixelRectangle& of) {
+    return double{1} * of.width * of.height;
+}
+
+PixelRectangle all_of(const gl::Framebuffer& target) {
+    return {0, 0, target.extent().width, target.extent().height};
 }
 
 }  // namespace
@@ -103,6 +107,7 @@ void FrameRunner::run(PassContext& frame, bool night, PassTimes* times) {
     changed_.clear();
     for (std::size_t step = 0; step < plan_.steps.size(); ++step)
         run_step(step, frame, night, timers ? &*timers : nullptr);
+    has_drawn_ = true;
     if (timers) *times = timers->end();
 }
 
@@ -150,6 +155,7 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
                     .clips_voids = pass.clips_voids && frame.terrain.has_voids()};
     if (pass.culls) state.winds_counterclockwise = frame.terrain.winds_counterclockwise();
     const DrawScope scope(*target, state);
+    if (program == pass.program && uses_plain(pass)) return draw_parts(pass, program, frame);
     draw(pass, program, *target, frame);
 }
 
@@ -157,10 +163,29 @@ void FrameRunner::draw(const Pass& pass, const std::string& program, const gl::F
                        PassContext& frame) {
     const bool watched = programs_.needs_watch(program);
     if (pass.kind == PassKind::Fullscreen)
-        fill(program, target);
+        fill(program, all_of(target));
     else
         draw_geometry(pass, program, target, frame);
     if (watched) programs_.set_proven(program);
+}
+
+bool FrameRunner::uses_plain(const Pass& pass) {
+    return pass.plain && ((links_plain_ && has_drawn_) || programs_.is_linked(pass.plain->name));
+}
+
+void FrameRunner::draw_parts(const Pass& pass, const std::string& program, PassContext& frame) {
+    const PictureParts parts = pass.plain->parts(frame);
+    const auto draw_with = [&](const std::string& name, bool whole) {
+        const std::vector<PixelRectangle> rectangles = parts.rectangles(whole);
+        if (rectangles.empty()) return;
+        use(name, frame.terrain);
+        const bool watched = programs_.needs_watch(name);
+        for (const PixelRectangle& rectangle : rectangles)
+            fill(name, rectangle);
+        if (watched) programs_.set_proven(name);
+    };
+    draw_with(program, true);
+    draw_with(pass.plain->name, false);
 }
 
 void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
@@ -175,27 +200,28 @@ void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
                               body);
     // On a large frame, runs the vertices first with one pixel, to detect endless ones as soon as
     // on a small frame.
-    if (programs_.needs_watch(program) && pixels(target) > kMaxWatched_px) {
-        const Scissor corner(0, 0, 1, 1);
+    const double all_px = pixels(all_of(target));
+    if (programs_.needs_watch(program) && all_px > kMaxWatched_px) {
+        const Scissor corner(PixelRectangle{0, 0, 1, 1});
         programs_.draw(program, triangles, body);
     }
-    programs_.draw(program, pixels(target) + triangles, body);
+    programs_.draw(program, all_px + triangles, body);
 }
 
-/// Draws a full-screen triangle. Unproven programs draw large frames in bands, to detect endless
-/// pixels as soon as in a small frame.
-void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target) {
-    const auto draw_all = [this] {
-        no_inputs_.bind();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    };
-    if (!programs_.needs_watch(program) || pixels(target) <= kMaxWatched_px)
-        return programs_.draw(program, pixels(target), draw_all);
-    const auto [width, height, layers] = target.extent();
-    const int rows = std::max(1, static_cast<int>(kMaxWatched_px / width));
-    for (int y = 0; y < height; y += rows) {
-        const Scissor band(0, y, width, rows);
-        programs_.draw(program, kMaxWatched_px, draw_all);
+/// Draws a full-screen triangle in a rectangle. Unproven programs draw large ones in bands, to
+/// detect endless pixels as soon as in a small frame.
+void FrameRunner::fill(const std::string& program, const PixelRectangle& where) {
+    const bool bands = programs_.needs_watch(program) && pixels(where) > kMaxWatched_px;
+    const int rows =
+        bands ? std::max(1, static_cast<int>(kMaxWatched_px / where.width)) : where.height;
+    for (int y = 0; y < where.height; y += rows) {
+        const PixelRectangle band{where.left, where.bottom + y, where.width,
+                                  std::min(rows, where.height - y)};
+        const Scissor scissor(band);
+        programs_.draw(program, pixels(band), [this] {
+            no_inputs_.bind();
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        });
     }
 }
 

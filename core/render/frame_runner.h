@@ -12,6 +12,7 @@
 #include "render/graph_targets.h"
 #include "render/pass_context.h"
 #include "render/pass_timers.h"
+#include "render/picture_parts.h"
 #include "render/watched_programs.h"
 #include "shader/param_store.h"
 
@@ -37,6 +38,9 @@ class FrameRunner {
     /// frame.
     void release();
     bool is_arranged() const { return is_arranged_; }
+    /// Plain programs are used once something else has linked them. Otherwise the second frame
+    /// links them: one picture alone is drawn faster without them.
+    void leave_plain_programs() { links_plain_ = false; }
 
     const FrameGraph& graph() const { return graph_of(outside_); }
     const Plan& plan() const { return plan_; }
@@ -71,9 +75,11 @@ class FrameRunner {
     void execute(std::size_t step, PassContext& frame, bool night);
     void draw(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
               PassContext& frame);
+    void draw_parts(const Pass& pass, const std::string& program, PassContext& frame);
+    bool uses_plain(const Pass& pass);
     void draw_geometry(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
                        PassContext& frame);
-    void fill(const std::string& program, const gl::Framebuffer& target);
+    void fill(const std::string& program, const PixelRectangle& where);
     void dispatch(const Pass& pass, const std::string& program, const PassContext& frame);
 
     gl::Context& context_;
@@ -83,6 +89,7 @@ class FrameRunner {
     Provider provider_;
     const shader::ParamStore& values_;
     bool outside_ = false, poisons_ = false, is_arranged_ = false;
+    bool has_drawn_ = false, links_plain_ = true;
     Plan plan_;
     GraphTargets targets_;
     std::map<std::string, Inputs> executed_;  // by pass: inputs of its last execution

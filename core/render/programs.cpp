@@ -92,6 +92,7 @@ class Stitcher {
         facts_.natives = options.natives;
         facts_.wants_night = wants(input, kNightWord);
         facts_.wants_outside = wants(input, kOutsideWord);
+        facts_.wants_plain = wants(input, kWaterWord) || wants(input, kNearWord);
     }
 
     StitchedFrames run() {
@@ -123,6 +124,7 @@ class Stitcher {
         for (Pass& pass : frame.graph.passes) {
             add_reads(frame.graph, pass, pass.program);
             add_reads(frame.graph, pass, pass.program_at_night);
+            if (pass.plain) add_reads(frame.graph, pass, pass.plain->name);
         }
         return std::move(frame.graph);
     }
@@ -130,6 +132,9 @@ class Stitcher {
     shader::Stitched stitched(const ProgramRecipe& recipe) const {
         shader::StitchInput input = input_;
         if (!recipe.word.empty()) input.capabilities.push_back(recipe.word);
+        if (!recipe.plain)
+            for (const char* const word : {kWaterWord, kNearWord})
+                input.capabilities.push_back(word);
         shader::Stitched stitched = shader::stitch(core_, recipe.recipe, input);
         for (shader::TextureUnit& unit : stitched.textures)
             for (const shader::CoreTexture& texture : shader::kCoreTextures)

@@ -147,6 +147,7 @@ struct Renderer::Impl : FrameServices {
         for (const ProgramText& text : frames.programs)
             if (!shared.programs.find(text)) rest.push_back(text);
         linker.emplace(context, std::move(rest), snippets);
+        runner.leave_plain_programs();
     }
 
     /// Adds programs that were linked in the background.

@@ -30,6 +30,7 @@
 #include "render/sides.h"
 #include "render/tile_mesh.h"
 #include "render/water_field.h"
+#include "render/wet_posts.h"
 
 namespace relevo::render {
 
@@ -52,6 +53,14 @@ struct TerrainOptions {
     std::shared_ptr<const dem::Photo> land_cover{};
     SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
+};
+
+/// Which ground a frame needs its whole program for.
+struct DetailedGround {
+    glm::dvec3 eye_m{0};
+    double exaggeration = 1;
+    double near_m = 0;             ///< ground nearer to the eye
+    double water_posts_per_m = 0;  ///< and around water, by the distance: so many posts
 };
 
 /// Tiles of a view with resident pages. May be drawn repeatedly.
@@ -125,6 +134,8 @@ class Terrain {
         return tree_.box(first, last, exaggeration);
     }
     bool hidden(const Box& box, const LodView& view) const { return tree_.hidden(box, view); }
+    /// Boxes that have all detailed ground of a selection: of windows of its tiles.
+    std::vector<Box> boxes(const TileSelection& selection, const DetailedGround& detailed);
 
     /// As draw(), of the walls below the edges of the ground.
     void draw_sides(const TileSelection& selection, const glm::dvec3& origin_m);
@@ -187,6 +198,8 @@ class Terrain {
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     /// What a frame draws, with the option's pixel error.
     LodView view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const;
+    bool is_detailed(const Box& box, const glm::ivec2& first, const glm::ivec2& last,
+                     const DetailedGround& detailed);
     /// Whether that is few enough vertices, or as coarse as it may be to save them.
     bool in_budget(const LodView& wanted, double tolerance,
                    const std::vector<TileDraw>& draws) const;
@@ -223,6 +236,7 @@ class Terrain {
     int reduction_;
     std::optional<dem::Water> own_water_;  // unless one was given
     std::optional<WaterField> water_;
+    std::optional<WetPosts> wet_posts_;  // made when first asked for
     gl::Texture dry_;  // for programs that read "water_pages" where there is nothing to tell
     bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
     bool complete_ = true;

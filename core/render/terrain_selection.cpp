@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include <glm/geometric.hpp>
 
 #include "render/ground_in_view.h"
 #include "render/ground_probe.h"
@@ -36,6 +39,46 @@ bool Terrain::sees_ground(const TileSelection& selection, const LodView& view) {
                is_ground_in_view(pyramid_, tile.draw, tree_.net(tile.draw.key), morph_start_m,
                                  tree_.displacement(), view);
     });
+}
+
+/// @param first, last  posts of the box
+bool Terrain::is_detailed(const Box& box, const glm::ivec2& first, const glm::ivec2& last,
+                          const DetailedGround& detailed) {
+    const double nearest_m = box.distance(detailed.eye_m);
+    if (nearest_m < detailed.near_m) return true;
+    const dem::Water* const water = options_.water ? options_.water
+                                    : own_water_   ? &*own_water_
+                                                   : nullptr;
+    if (!water || !water->any()) return false;
+    if (!wet_posts_) wet_posts_.emplace(water->kind);
+    const double farthest_m = nearest_m + length(box.high - box.low);
+    const double reach = std::min(std::ceil(farthest_m * detailed.water_posts_per_m) + 2, 1e6);
+    const auto grown = static_cast<int>(reach);
+    return wet_posts_->any((first - grown) / reduction_, (last + grown) / reduction_);
+}
+
+std::vector<Box> Terrain::boxes(const TileSelection& selection, const DetailedGround& detailed) {
+    constexpr int kWindows = 8;  // of a tile, along either side
+    std::vector<Box> found;
+    for (const TileSelection::Tile& tile : selection.tiles_) {
+        const TileKey& key = tile.draw.key;
+        const int quad = 1 << key.level, side = kTileQuads * quad / kWindows;
+        const glm::ivec2 first = key.at * (kTileQuads * quad);
+        // Vertices that morph, and means of posts, have heights of the posts beside them.
+        const auto box_between = [&](const glm::ivec2& from, const glm::ivec2& to) {
+            return tree_.box(glm::dvec2(from - 2 * quad), glm::dvec2(to + 2 * quad),
+                             detailed.exaggeration);
+        };
+        const glm::ivec2 last = first + kWindows * side;
+        const auto whole = box_between(first, last);
+        if (!whole || !is_detailed(*whole, first, last, detailed)) continue;
+        for (int i = 0; i < kWindows * kWindows; ++i) {
+            const glm::ivec2 from = first + side * glm::ivec2(i % kWindows, i / kWindows);
+            const auto box = box_between(from, from + side);
+            if (box && is_detailed(*box, from, from + side, detailed)) found.push_back(*box);
+        }
+    }
+    return found;
 }
 
 bool Terrain::in_budget(const LodView& wanted, double tolerance,

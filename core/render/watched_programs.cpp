@@ -38,6 +38,10 @@ void WatchedPrograms::begin(const std::string& name) {
     cache_.begin(text(name));
 }
 
+bool WatchedPrograms::is_linked(const std::string& name) {
+    return linked_[name] || cache_.find(text(name));
+}
+
 const gl::Program& WatchedPrograms::link(const std::string& name) {
     return entry(name).program;
 }

@@ -21,6 +21,7 @@ class WatchedPrograms {
     const ProgramText& text(const std::string& name) const;
     /// Starts compiling and linking; several programs may be in progress.
     void begin(const std::string& name);
+    bool is_linked(const std::string& name);
     /// Links a program if necessary. @throws Error as link_program
     const gl::Program& link(const std::string& name);
     /// True until a draw with the program has finished.

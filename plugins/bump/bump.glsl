@@ -100,7 +100,7 @@ void bump_on_normal(inout Surface s) {
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
     vec3 ground = s.normal;
-#if !HAS_outside
+#if !HAS_outside && HAS_near
     float upright = clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
     float steep = sqrt(1.0 - upright * upright) / upright;
     vec2 slope = bump_relief_strength(s, steep) * frame.height_range.z *

@@ -55,6 +55,7 @@ uniform vec3 cover_white = vec3(0.77, 0.79, 0.82); //@ colour label("Snow")
 uniform vec4 cover_specular = vec4(0.02, 0.012, 0.025, 0.08); //@ range(0, 1) label("Specular")
 uniform vec4 cover_shininess = vec4(12.0, 10.0, 16.0, 24.0); //@ range(1, 1000) label("Shininess")
 
+const float cover_near_m = 24.0;  // HAS_near: wider pixels have neither crowns nor grain
 const int cover_last_level = 10;  // of the albedo textures, 1 x 1: their mean
 
 /// Shares of the ground, 0..1.
@@ -261,7 +262,7 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, 
     float crowns = cover_crowns * (1.0 - smoothstep(0.0, 0.8 * size_m, across_m)) *
                    (1.0 - smoothstep(0.3 * size_m, 2.0 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
                    smoothstep(0.03, 0.12, -dot(s.position_m, s.geometric_normal) / s.distance_m);
-    float stands = 1.0 - smoothstep(4.0, 24.0, across_m);
+    float stands = 1.0 - smoothstep(4.0, cover_near_m, across_m);
     if (stands == 0.0) return canopy;
     vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
     canopy.light += stands * (1.4 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
@@ -379,11 +380,13 @@ void cover_on_albedo(inout Surface s) {
     vec3 albedo = mix(open, rock, shares.rock);
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
+#if HAS_near
     if (trees > 0.02) {
         cover_Canopy canopy = cover_canopy_at(s, pixel_m, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
         cover_canopy_slope = trees * canopy.slope;
         forest *= max(canopy.light, 0.2);
     }
+#endif
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
@@ -400,11 +403,13 @@ void cover_on_albedo(inout Surface s) {
     s.texture_dx = s.ground_dx_m.xy * per_m;
     s.texture_dy = s.ground_dy_m.xy * per_m;
     s.gloss = 0.5;
-    if (pixel_m < cover_texture_m) {
+#if HAS_near
+    if (pixel_m < min(cover_texture_m, cover_near_m)) {
         vec4 grain = cover_grain_of(s);
         albedo *= grain.rgb;
         s.gloss = grain.a;
     }
+#endif
     s.diffuse = albedo;
     s.ambient = albedo;
     s.emissive = vec3(0.0);

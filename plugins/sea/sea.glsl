@@ -267,7 +267,14 @@ float sea_here = 0.0;
 vec3 sea_normal = vec3(0.0, 0.0, 1.0);
 float sea_rough = 1.0;
 
+/// @param overview  sea_seen()  @param share  of water
+void sea_shade_land(inout Surface s, in float overview, in float share) {
+    if (overview > 0.0 && share < 1.0)
+        s.normal = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), overview));
+}
+
 void sea_on_material(inout Surface s) {
+#if HAS_water
     float height_m = sea_height_m(s);
     sea_Water water = sea_water(s, height_m);
     float overview = sea_seen(), seen = overview * water.known;
@@ -287,10 +294,9 @@ void sea_on_material(inout Surface s) {
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m, waves.roughness);
     // The surface of this pixel is that of the water, not the drawn floor's.
     surface_of_water(s, height_m, water.share, water.known);
-    s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
-    if (overview > 0.0 && water.share < 1.0)
-        s.normal = sea_steep(s.normal, s.up, mix(1.0, sea_land_steeper(), overview));
-    s.normal = normalize(mix(s.normal, sea_normal, water.share));
+    if (water.share > 0.0) s.geometric_normal = normalize(mix(s.geometric_normal, s.up, water.share));
+    sea_shade_land(s, overview, water.share);
+    if (water.share > 0.0) s.normal = normalize(mix(s.normal, sea_normal, water.share));
     // Light from below comes out of the water whichever way a wave leans.
     float facing = (max(dot(s.up, to_sun), 0.0) + 0.02) / (max(dot(sea_normal, to_sun), 0.0) + 0.02);
     s.diffuse = mix(s.diffuse, albedo * min(facing, 4.0), water.share);
@@ -298,13 +304,18 @@ void sea_on_material(inout Surface s) {
     s.shininess = mix(s.shininess, glitter.x, water.share);
     // Low over the water the glitter is many times as bright as snow, which no picture can show.
     s.specular = mix(s.specular, vec3(min(glitter.y, 0.4)) * (1.0 - seen), water.share);
+#else
+    sea_shade_land(s, sea_seen(), 0.0);
+#endif
 }
 
 void sea_on_lit(in Surface s, inout vec3 radiance) {
+#if HAS_water
     vec3 view = s.position_m / s.distance_m;
     float cosine = max(-dot(view, sea_normal), 0.0);
     // What is mirrored in waves lies higher than in a level mirror, and never below the horizon.
     vec3 mirrored = view + 2.0 * cosine * sea_normal + sqrt(sea_rough) * s.up;
     mirrored -= min(dot(mirrored, s.up), 0.0) * s.up;
     radiance = mix(radiance, background_radiance(normalize(mirrored), false), sea_here * sea_mirrored(cosine, sea_rough));
+#endif
 }

@@ -1,5 +1,6 @@
 //! provides  air_radiance, air_ground, air_between_eye_and: the clear atmosphere as the eye of the frame sees it
 //! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
+//!           with NO_MOON nothing of the moon, which then lights nothing
 //! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model
 
 //@ include lib/filtered.glsl
@@ -50,8 +51,10 @@ vec2 air_sky_place(in vec3 direction, in float elevation) {
 vec3 air_radiance_at(in vec2 place, in vec3 direction) {
     vec3 radiance = filtered(air_sky, vec3(place, 0.0)).rgb +
                     air_aerosol_phase(dot(direction, frame.eye_sun.xyz)) * filtered(air_sky, vec3(place, 1.0)).rgb;
+#ifndef NO_MOON
     if (frame.eye_moon_light.a > 0.0)
         radiance += air_aerosol_phase(dot(direction, frame.eye_moon.xyz)) * filtered(air_sky, vec3(place, 3.0)).rgb;
+#endif
     return max(radiance, 0.0);  // a few colours of dusk are outside of sRGB
 }
 

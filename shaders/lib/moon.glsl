@@ -1,5 +1,5 @@
 //! provides  the moon in the sky: its disc with its phase, and what it hides of the sun; the corona
-//! reads     frame.eye_moon and what follows it
+//! reads     frame.eye_moon and what follows it; with NO_MOON none of it, in parts of the picture without it
 //! frame     directions in the local frame, unit; radiance as frame.glsl
 //! source    law of Lommel and Seeliger; corona: S. Baumbach (1937) in C. W. Allen, Astrophysical
 //!           Quantities, 1976, 176; maria: IAU Gazetteer of Planetary Nomenclature
@@ -16,8 +16,12 @@ float moon_outside_px(in vec3 direction) {
 
 /// Share of a pixel that the moon does not cover, 0 to 1.
 float moon_uncovered(in vec3 direction) {
+#ifdef NO_MOON
+    return 1.0;
+#else
     if (frame.eye_moon.w == 0.0) return 1.0;
     return clamp(0.5 + moon_outside_px(direction), 0.0, 1.0);
+#endif
 }
 
 /// Darkness of a large mare at a point, 0 outside of it. Without a table: software renderers would store that again for
@@ -85,7 +89,9 @@ vec3 moon_corona(in vec3 direction, in vec3 to_sun) {
 /// @param uncovered  moon_uncovered() there
 vec3 moon_on_sky(in vec3 direction, in vec3 to_sun, in float uncovered) {
     vec3 radiance = vec3(0.0);
+#ifndef NO_MOON
     if (uncovered < 1.0) radiance = (1.0 - uncovered) * moon_disc(direction);
     if (frame.corona.g > 0.0) radiance += uncovered * moon_corona(direction, to_sun);
+#endif
     return radiance;
 }

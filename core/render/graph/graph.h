@@ -107,6 +107,14 @@ struct Dispatch {
 };
 
 struct PassContext;  // render/pass_context.h
+class PictureParts;  // render/picture_parts.h
+
+/// A smaller program of a full-screen pass, for parts of the picture that need no more: there it
+/// draws the same.
+struct PlainProgram {
+    std::string name;
+    std::function<PictureParts(PassContext&)> parts;  ///< marked are those that need the whole one
+};
 
 /// A step of a frame.
 ///
@@ -121,6 +129,7 @@ struct Pass {
     std::vector<std::string> parameters{};  ///< addresses, for When::Parameters
     std::string program{};                  ///< name of a program; empty: none
     std::string program_at_night{};         ///< replaces `program` at night, unless empty
+    std::optional<PlainProgram> plain{};    ///< in addition to `program`, but for nights
     std::vector<std::string> reads{};       ///< including the program's samplers
     std::vector<Colour> colours{};          ///< in the order of the program's outputs
     std::optional<Depth> depth{};
