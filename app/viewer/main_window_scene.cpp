@@ -17,7 +17,7 @@ sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun:
 
 bool same(const Wanted& a, const Wanted& b) {
     return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.seconds == b.seconds &&
-           a.exposure_ev == b.exposure_ev && a.width_px == b.width_px &&
+           a.exposure_ev == b.exposure_ev && a.backdrop == b.backdrop && a.width_px == b.width_px &&
            a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
            a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
            a.view->fov_y_rad == b.view->fov_y_rad &&
@@ -89,6 +89,7 @@ Wanted MainWindow::wanted_now() const {
     wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
     wanted.utc = state_.document.utc;
     wanted.exposure_ev = state_.document.scene.exposure_ev;
+    wanted.backdrop = state_.document.scene.backdrop;
     if (film_->shows_frame()) {  // exactly
         wanted.keep_above_m.reset();
         wanted.seconds = state_.document.scene.seconds;
@@ -165,6 +166,7 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     if (!view) {
         document.overlay = {};
         if (scene.overlay) document.overlay = choice_of(*scene.overlay);
+        document.scene.backdrop = scene.backdrop;
     }
     if (opened.legend) {  // until overlay_ has read the file
         auto shown = std::make_shared<OverlayShown>();

@@ -156,10 +156,18 @@ struct SceneThread::Impl {
 
     /// Holds the lock only for the hand-over, so that the window does not wait.
     void publish_opened(const scene::Insets& insets) {
+        stay_in_the_air();
         auto anew = as_opened();
         look_at_whole(*anew, insets);
         const std::lock_guard lock(mutex);
         opened = std::move(anew);
+    }
+
+    /// An aerial view has its sky and air also once it is turned, and is an eye like any other.
+    void stay_in_the_air() {
+        const scene::Scene& now = session->scene();
+        if (now.backdrop == scene::Backdrop::Auto && now.view.orbit.aerial && !now.view.eye)
+            session->set_backdrop(scene::Backdrop::Horizon);
     }
 
     /// Looks at the whole scene until the window requests a view.
@@ -333,6 +341,7 @@ struct SceneThread::Impl {
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
+        if (now.backdrop) session->set_backdrop(*now.backdrop);
         if (now.view) session->look(*now.view, now.keep_above_m);
         // A forecast may not have the time: the picture then keeps its own.
         if (now.utc && *now.utc != session->time() &&

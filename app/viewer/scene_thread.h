@@ -24,6 +24,7 @@ struct Wanted {
     std::optional<double> keep_above_m = 0;
     std::optional<sun::Instant> utc;    ///< nullopt: the scene's
     std::optional<double> exposure_ev;  ///< nullopt: the scene's
+    std::optional<scene::Backdrop> backdrop;  ///< nullopt: the scene's
     std::optional<double> seconds;      ///< of effects that move; nullopt: they move by themselves
     int width_px = 1, height_px = 1;    ///< of the window
     scene::Insets insets;               ///< of its panels, for the scene's view

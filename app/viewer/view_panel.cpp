@@ -63,6 +63,21 @@ void exposure(State& state) {
     end_step(state);
 }
 
+void backdrop(State& state) {
+    scene::Backdrop& chosen = state.document.scene.backdrop;
+    const bool sky = chosen == scene::Backdrop::Horizon;
+    if (!ImGui::BeginCombo(tr_label("Backdrop"), sky ? tr("sky and horizon") : tr("studio")))
+        return;
+    const auto choice = [&](const char* name, scene::Backdrop of, bool is_chosen) {
+        if (!ImGui::Selectable(name, is_chosen) || is_chosen) return;
+        chosen = of;
+        state.step = true;
+    };
+    choice(tr_label("sky and horizon"), scene::Backdrop::Horizon, sky);
+    choice(tr_label("studio"), scene::Backdrop::Studio, !sky);
+    ImGui::EndCombo();
+}
+
 /// Taken when the slider is let go: the ground is drawn anew.
 void exaggeration(State& state) {
     double& taken = state.document.scene.exaggeration;
@@ -93,8 +108,10 @@ void zone(State& state) {
 
 void view_panel(State& state, double aspect) {
     ImGui::PushItemWidth(
-        -widest({tr("Lens"), tr("Sensor"), tr("Exposure"), tr("Heights"), tr("Zone")}));
+        -widest({tr("Lens"), tr("Sensor"), tr("Backdrop"), tr("Exposure"), tr("Heights"),
+                 tr("Zone")}));
     lens(state, aspect);
+    backdrop(state);
     exposure(state);
     exaggeration(state);
     zone(state);

@@ -144,6 +144,22 @@ double time_of_year(double unix_s) {
     return std::clamp(since_s / (sun::kDay_s * days), 0.0, 1.0);
 }
 
+namespace {
+
+/// Factor on distances in the air of views from outside, where true air over a DEM of 100 km washes
+/// out its far half. Towards the ground it becomes 1.
+double air_scale(const Ground& ground, const FrameInputs& inputs, double eye_height_m) {
+    if (!inputs.in_the_air) return 1;
+    constexpr double kClear_m = 6e3, kHigh = 0.1;  // of the DEM's width
+    const glm::dvec2 extent_m = ground.north_east_m - ground.south_west_m;
+    const double width_m = std::sqrt(extent_m.x * extent_m.y);
+    const double above_m = eye_height_m - inputs.exaggeration * inputs.sun.ground_height_m;
+    const double high = glm::smoothstep(0.0, 1.0, above_m / (kHigh * width_m));
+    return std::sqrt(std::min(kClear_m / std::max(width_m, 1.0), 1.0)) * high + 1 - high;
+}
+
+}  // namespace
+
 // In one piece: each member is assigned once.
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit) {
@@ -250,11 +266,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
-    // True air over a DEM of 100 km washes out its far half.
-    constexpr double kClear_m = 6e3;
-    const glm::dvec2 extent_m = ground.north_east_m - ground.south_west_m;
-    const double width_m = std::max(std::sqrt(extent_m.x * extent_m.y), kClear_m);
-    block.air_scale = static_cast<float>(inputs.in_the_air ? std::sqrt(kClear_m / width_m) : 1);
+    block.air_scale = static_cast<float>(air_scale(ground, inputs, block.eye_m.w));
     block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;

@@ -21,10 +21,10 @@ namespace {
 using json::Value;
 using Kind = Option::Kind;
 
-// In the order of dem::Encoding, dem::Holes, Panorama and Stereo.
+// In the order of dem::Encoding, dem::Holes, Backdrop, Panorama and Stereo.
 constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
 constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
-constexpr std::array<std::string_view, 2> kBackdrops = {"horizon", "studio"};
+constexpr std::array<std::string_view, 3> kBackdrops = {"auto", "horizon", "studio"};
 constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
@@ -127,10 +127,11 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return number(s.view.fov_y_rad > 0 ? 0 : s.view.focal_length_mm); },
      [](Scene& s, const Value& v) { set_lens(s, 0, v.number); }},
     {"camera", "backdrop", "--backdrop", "View",
-     "Behind the DEM in aerial views: horizon (with sky and air), studio (a plain backdrop, and the DEM as a block)",
+     "Behind the DEM: horizon (sky and air), studio (from outside the DEM is a block on a plain backdrop), "
+     "auto (horizon in aerial views, else studio)",
      Kind::Word, 0, 0, kBackdrops,
-     [](const Scene& s) { return text(kBackdrops[s.studio ? 1 : 0]); },
-     [](Scene& s, const Value& v) { s.studio = index_of(kBackdrops, v) == 1; }},
+     [](const Scene& s) { return text(kBackdrops[static_cast<std::size_t>(s.backdrop)]); },
+     [](Scene& s, const Value& v) { s.backdrop = static_cast<Backdrop>(index_of(kBackdrops, v)); }},
     {"camera", "panorama", "--panorama", "View",
      "Picture all around the eye: none, cylindrical, equirectangular; needs --eye", Kind::Word, 0, 0,
      kPanoramas,

@@ -71,6 +71,13 @@ struct Stamps {
     bool operator==(const Stamps&) const = default;
 };
 
+/// What is seen behind the DEM.
+enum class Backdrop {
+    Auto,     ///< horizon in aerial views and from within, studio from outside
+    Horizon,  ///< sky and air, wherever the eye is
+    Studio    ///< from outside a plain one, and the DEM as a block
+};
+
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
 /// command line, files and windows make, and a session draws. Ranges and words: options().
 struct Scene {
@@ -84,7 +91,7 @@ struct Scene {
     std::string forecast;      ///< a file of cloud cover instead; empty: none
     std::optional<double> station_height_m;  ///< of the weather's station; none: of the ground
     View view;
-    bool studio = false;  ///< aerial views have a plain backdrop behind a block, not sky and air
+    Backdrop backdrop = Backdrop::Auto;
     std::optional<Overlay> overlay;
     LandCover land_cover;
     Stamps stamps;

@@ -151,6 +151,9 @@ void Session::set_exposure(double exposure_ev) {
     impl_->state.scene.exposure_ev = exposure_ev;
     impl_->state.inputs.exposure_ev = exposure_ev;
 }
+void Session::set_backdrop(scene::Backdrop backdrop) {
+    impl_->state.scene.backdrop = backdrop;
+}
 void Session::set_exaggeration(double exaggeration) {
     impl_->state.scene.exaggeration = exaggeration;
     impl_->state.take_shape(/*other=*/true);

@@ -174,6 +174,8 @@ class Session {
     void freeze_native(bool freeze);
     /// Sets the exposure [EV] of subsequent frames.
     void set_exposure(double exposure_ev);
+    /// For views from the next look() on.
+    void set_backdrop(scene::Backdrop backdrop);
     /// Sets the vertical exaggeration of subsequent frames. heights_to_aim_at() stay unexaggerated.
     void set_exaggeration(double exaggeration);
     /// True if an active effect reads frame.seconds.

@@ -237,6 +237,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     }
     resize(next.width_px, next.height_px);
     scene::Scene& scene = state.scene;
+    scene.backdrop = next.backdrop;
     scene.exposure_ev = next.exposure_ev;
     scene.ev100 = next.ev100;
     scene.seconds = next.seconds;

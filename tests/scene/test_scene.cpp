@@ -82,7 +82,7 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     scene.dem.memory = MemoryBudget::of_mib(77);
     scene.time = {"sunset-30min", "2026-06-21", "Europe/Zurich"};
     scene.refraction = "saemundsson";
-    scene.studio = true;
+    scene.backdrop = Backdrop::Studio;
     scene.view.eye = Standpoint{geo::geodetic_deg(46.97, 8.03, 2), true};
     scene.view.look_at = Standpoint{geo::geodetic_deg(46.5, 8.1, 4000), false};
     scene.view.fov_y_rad = radians(35.0);
