@@ -24,6 +24,13 @@ void core_on_tonemap(inout vec3 colour) {
     colour = neutral_tones(colour);
 }
 
+/// Ground without air before it.
+vec3 core_on_beyond(in Surface s, in vec3 view) {
+    vec3 to_sun;
+    vec3 irradiance = sun_light(s.up, to_sun);
+    return s.diffuse * (irradiance * max(dot(s.up, to_sun), 0.0) + frame.sky_irradiance.rgb);
+}
+
 /// A matt grey wall.
 vec3 core_on_side(in Surface s, in float down) {
     vec3 to_sun;

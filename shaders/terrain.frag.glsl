@@ -9,6 +9,7 @@
 //@ include lib/exposed.glsl
 //@ include lib/filtered.glsl
 //@ include lib/finite.glsl
+//@ include lib/footprint.glsl
 //@ include lib/ground.glsl
 //@ include lib/instance_shadows.glsl
 //@ include lib/octahedral.glsl
@@ -35,14 +36,6 @@ layout(location = SURFACE_OUTPUT) out vec4 surface_out;
 layout(location = AUDITED) out vec4 audit_out;
 #endif
 
-/// Where the ray of the neighbouring pixel meets the plane of this point, from this point.
-vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) {
-    vec3 beside = ray + ray_step;
-    // A ray never meets its plane at less than about one degree: textures would fade for nothing.
-    float slant = min(dot(beside, normal), -0.02 * length(ray));
-    return beside * (min(dot(position, normal), -0.02 * length(position)) / slant) - position;
-}
-
 #ifdef ORTHOGRAPHIC
 /// The step to the neighbouring pixel of a map on level ground.
 /// @param step_m  what it is in the middle of the map
@@ -61,11 +54,6 @@ vec3 ground_map_footprint(in vec3 level_m, in vec3 normal, in vec3 up) {
     return level_m - up * (dot(level_m, normal) / max(dot(up, normal), 0.02));
 }
 #endif
-
-/// A step over the drawn ground as one over the DEM's own.
-vec3 unexaggerated(in vec3 step_m, in vec3 up) {
-    return step_m - (1.0 - 1.0 / frame.height_range.z) * dot(step_m, up) * up;
-}
 
 /// East and north part of the normal at a post, as a level of the pyramid has it.
 vec2 slope_at(in vec2 post, in int level) {
@@ -150,8 +138,8 @@ void main() {
     float longest = max(length(dx), length(dy));
     float shortest = min(length(dx), length(dy));
     float most = max(shortest * frame.footprint_limit, 1e-6);
-    s.ground_dx_m = unexaggerated(dx * min(1.0, most / length(dx)), s.up);
-    s.ground_dy_m = unexaggerated(dy * min(1.0, most / length(dy)), s.up);
+    s.ground_dx_m = footprint_on_dem(dx * min(1.0, most / length(dx)), s.up);
+    s.ground_dy_m = footprint_on_dem(dy * min(1.0, most / length(dy)), s.up);
     // Between the pixel's sides across the view and along it, which a slant makes longer.
     s.pixel_posts = across * sqrt(min(longest / shortest, frame.footprint_limit));
     s.height_dx_m = s.height_dy_m = s.dem_step_m = 0.0;

@@ -22,12 +22,12 @@ struct Wanted {
     std::optional<scene::View> view;  ///< nullopt: the scene's
     /// Least height of the eye above the drawn ground [m]; nullopt: not raised.
     std::optional<double> keep_above_m = 0;
-    std::optional<sun::Instant> utc;    ///< nullopt: the scene's
-    std::optional<double> exposure_ev;  ///< nullopt: the scene's
+    std::optional<sun::Instant> utc;          ///< nullopt: the scene's
+    std::optional<double> exposure_ev;        ///< nullopt: the scene's
     std::optional<scene::Backdrop> backdrop;  ///< nullopt: the scene's
-    std::optional<double> seconds;      ///< of effects that move; nullopt: they move by themselves
-    int width_px = 1, height_px = 1;    ///< of the window
-    scene::Insets insets;               ///< of its panels, for the scene's view
+    std::optional<double> seconds;    ///< of effects that move; nullopt: they move by themselves
+    int width_px = 1, height_px = 1;  ///< of the window
+    scene::Insets insets;             ///< of its panels, for the scene's view
     bool moving = false;  ///< the user moves the camera: a quick frame is better than a sharp one
     bool sun_moving = false;  ///< the user moves the sun: shadows may lag behind as well
 };

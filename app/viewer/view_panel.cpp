@@ -107,9 +107,8 @@ void zone(State& state) {
 }  // namespace
 
 void view_panel(State& state, double aspect) {
-    ImGui::PushItemWidth(
-        -widest({tr("Lens"), tr("Sensor"), tr("Backdrop"), tr("Exposure"), tr("Heights"),
-                 tr("Zone")}));
+    ImGui::PushItemWidth(-widest(
+        {tr("Lens"), tr("Sensor"), tr("Backdrop"), tr("Exposure"), tr("Heights"), tr("Zone")}));
     lens(state, aspect);
     backdrop(state);
     exposure(state);

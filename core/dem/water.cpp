@@ -304,6 +304,21 @@ class WaterFinder {
 
 }  // namespace
 
+double Water::sea_rim_share() const {
+    if (kind.empty()) return 0;
+    int rim = 0, sea = 0;
+    for (int row = 0; row < kind.height(); ++row) {
+        const bool ends = row == 0 || row == kind.height() - 1;
+        for (int column = 0; column < kind.width(); ++column) {
+            if (!ends && column > 0 && column < kind.width() - 1) continue;
+            const WaterKind at = kind.at(column, row);
+            ++rim;
+            sea += at == WaterKind::Sea || at == WaterKind::SeaFloor;
+        }
+    }
+    return static_cast<double>(sea) / rim;
+}
+
 double Water::sea_floor_share() const {
     if (!has_sea_floor || kind.empty()) return 0;
     const auto floor = std::count(kind.data(), kind.data() + kind.size(), WaterKind::SeaFloor);

@@ -29,6 +29,8 @@ struct Water {
     bool any() const { return !kind.empty(); }
     /// Fraction of all posts that are WaterKind::SeaFloor.
     double sea_floor_share() const;
+    /// Fraction of the posts along the DEM's edge that are sea.
+    double sea_rim_share() const;
 };
 
 /// Tells water from land by the heights of a DEM and by its place.

@@ -10,6 +10,7 @@
 #include "render/pass_context.h"
 #include "render/pass_texts.h"
 #include "render/plain_parts.h"
+#include "render/plugin_resources.h"
 #include "shader/stored_varyings.h"
 
 namespace relevo::render {
@@ -21,6 +22,9 @@ constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
 
 // Colour outputs in addition to the G-buffer: GL guarantees eight in total.
 constexpr int kMaxStored = 7;
+
+/// Pixels along a side of a texel of the ground beyond the DEM.
+constexpr double kBeyond_px = 4;
 
 /// Updates the textures of GroundLight that the frame's programs read.
 /// @param with_walls  walls may be visible where the ground is not
@@ -43,41 +47,6 @@ void update_light(PassContext& frame, bool with_walls) {
         light.update_shadows(inputs.direct_light(), inputs.exaggeration, pixel_posts);
     if (frame.is_read("light_sky")) light.update_sky_view(inputs.exaggeration);
     light.describe(frame.block);
-}
-
-When when_of(shader::PluginPass::When when) {
-    switch (when) {
-        case shader::PluginPass::When::Sun:
-            return When::Sun;
-        case shader::PluginPass::When::Changed:
-            return When::Parameters;
-        case shader::PluginPass::When::Dem:
-            return When::Dem;
-        default:
-            return When::Frame;
-    }
-}
-
-ResourceSize size_of(const shader::PassSize& size) {
-    return {.share = size.scale, .width = size.width, .height = size.height, .depth = size.depth};
-}
-
-/// What a pass of a plugin writes.
-Resource resource_of(const shader::PluginPass& pass, When when) {
-    using Output = shader::PluginPass::Output;
-    Resource resource{.name = pass.resource,
-                      .format = pass.format,
-                      .size = size_of(pass.size),
-                      // What is not computed in every frame has to last.
-                      .lifetime = when == When::Frame ? Lifetime::Frame : Lifetime::Kept,
-                      .linear = pass.linear};
-    if (pass.output == Output::Texture3D) resource.kind = ResourceKind::Texture3D;
-    if (pass.is_buffer()) {
-        resource.kind = ResourceKind::Buffer;
-        resource.format = pass.output == Output::Floats ? PixelFormat::R32F : PixelFormat::R32UI;
-        resource.size.bytes = sizeof(float) * static_cast<std::size_t>(pass.size.width);
-    }
-    return resource;
 }
 
 class Declaration {
@@ -108,6 +77,7 @@ class Declaration {
             plugin_pass(pass);
         terrain();
         if (facts_.outside) side();
+        if (facts_.beyond && !facts_.outside) beyond();
         background();
         if (facts_.radiance) post();
         if (facts_.antialias) antialias();
@@ -424,12 +394,32 @@ class Declaration {
         add(std::move(pass));
     }
 
+    static shader::Define beyond_px() { return {"BEYOND_PX", fmt::format("{:.1f}", kBeyond_px)}; }
+
+    /// Level ground beyond the DEM, in views from the air: without relief it needs few texels.
+    void beyond() {
+        shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
+                                     .fragment_main = "beyond.frag.glsl",
+                                     .defines = {beyond_px()}};
+        const std::string name = program("beyond", std::move(recipe));
+        frame_.programs.back().plain = true;
+        add(Resource{.name = "beyond_ground",
+                     .format = PixelFormat::RGBA16F,
+                     .size = {.share = 1 / kBeyond_px},
+                     .linear = true});
+        add(Pass{.name = "beyond", .program = name, .colours = {{"beyond_ground", kNothing}}});
+    }
+
     /// The sky, or the backdrop of a block.
     void background() {
         const char* const name = facts_.outside ? "backdrop" : "background";
         shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
                                      .fragment_main = std::string(name) + ".frag.glsl",
                                      .defines = end_defines_};
+        if (facts_.beyond && !facts_.outside) {
+            recipe.defines.push_back({"BEYOND", ""});
+            recipe.defines.push_back(beyond_px());
+        }
         Pass pass{.name = "background",
                   .program = program(name, recipe, outside_word()),
                   .colours = {{.resource = shaded_, .updates = true}},

@@ -45,6 +45,7 @@ struct FrameFacts {
     bool outside = false;                ///< the DEM is seen from outside, as a block
     bool wants_outside = false;          ///< effects want the word `outside`
     bool wants_night = false;            ///< effects want the word `night`
+    bool beyond = false;                 ///< effects have the hook `beyond`
     bool wants_plain = false;            ///< effects want the words `water` or `near`
     bool radiance = false;               ///< stores linear radiance; else shading writes colours
     bool antialias = true;               ///< smooths silhouettes

@@ -267,6 +267,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
     block.air_scale = static_cast<float>(air_scale(ground, inputs, block.eye_m.w));
+    block.beyond = inputs.in_the_air ? 1 : 0;
     block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;
@@ -274,6 +275,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
         footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());
     block.footprint_area = glm::vec4(footprint.south_west_m, 1.0 / glm::max(sides_m, 1.0));
     block.sea_floor_share = static_cast<float>(ground.sea_floor_share);
+    block.sea_rim_share = static_cast<float>(ground.sea_rim_share);
     if (camera.map) write_map(inputs, width_px, height_px, block);
     return block;
 }

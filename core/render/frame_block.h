@@ -137,6 +137,7 @@ struct Ground {
     double block_m = 0;
     double floor_m = 0;          ///< least z in the local frame of the rim at height 0
     double sea_floor_share = 0;  ///< dem::Water::sea_floor_share()
+    double sea_rim_share = 0;    ///< dem::Water::sea_rim_share()
 
     /// Height of the block's lower side as drawn [m].
     double base_m(double exaggeration) const { return lowest_m * exaggeration - block_m; }

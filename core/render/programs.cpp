@@ -92,6 +92,8 @@ class Stitcher {
         facts_.natives = options.natives;
         facts_.wants_night = wants(input, kNightWord);
         facts_.wants_outside = wants(input, kOutsideWord);
+        facts_.beyond =
+            answers(input, "beyond") && answers(input, "atmosphere") && !options.orthographic;
         facts_.wants_plain = wants(input, kWaterWord) || wants(input, kNearWord);
     }
 

@@ -111,6 +111,7 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
 render::Ground ground_of(const LoadedDem& dem) {
     render::Ground ground = render::make_ground(dem.field, dem.source->grid());
     ground.sea_floor_share = dem.drawn.water.sea_floor_share();
+    ground.sea_rim_share = dem.drawn.water.sea_rim_share();
     return ground;
 }
 

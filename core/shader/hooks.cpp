@@ -32,6 +32,7 @@ constexpr std::array kHooks = {
     Hook{"side", kFragment, HookKind::Exclusive, "vec3 side(in Surface s, in float down)"},
     Hook{"backdrop", kFragment, HookKind::Exclusive,
          "vec3 backdrop(in vec3 direction, in vec2 at)"},
+    Hook{"beyond", kFragment, HookKind::Exclusive, "vec3 beyond(in Surface s, in vec3 view)"},
     Hook{"image", HookStage::Post, kChain, "void image(in Pixel p, inout vec3 radiance)"},
     Hook{"tonemap", HookStage::Post, HookKind::Exclusive, "void tonemap(inout vec3 colour)"},
     Hook{"finish", HookStage::Post, kChain, "void finish(in Pixel p, inout vec3 colour)"},

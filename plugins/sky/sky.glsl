@@ -1,5 +1,5 @@
 //! provides  the sky: its colours, the sun and the stars in it, and its light on slopes
-//! hook      background_radiance, ambient
+//! hook      background_radiance, beyond, ambient
 //! reads     directions of the view, and of sun and moon with refraction; height of the eye [m]
 //! writes    radiance, linear sRGB; irradiance
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
@@ -7,6 +7,7 @@
 //!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
 //@ include lib/air.glsl
+//@ include lib/beyond.glsl
 //@ include lib/filtered.glsl
 //@ include lib/ground.glsl
 //@ include lib/moon.glsl
@@ -294,6 +295,8 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
         // What fades into the sky, and mirrors, see no ground.
         radiance = with_disc && sky_earth ? air_radiance(direction) + sky_beyond() * air_ground(direction)
                                           : air_radiance_of_sky(direction);
+        vec4 beyond = with_disc && sky_earth ? beyond_seen(direction) : vec4(0.0);
+        radiance = mix(radiance, beyond.rgb, beyond.a);
     } else {
         radiance = sky_of_paper(direction, with_disc);
 #if HAS_night
@@ -303,6 +306,21 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     // What has set is behind the Earth.
     if (with_disc && dot(direction, frame.eye_up.xyz) > frame.eye_up.w) radiance += sky_bodies(direction);
     return radiance;
+}
+
+/// Level ground beyond the DEM, with the air before it as the DEM has it.
+vec3 sky_on_beyond(in Surface s, in vec3 view) {
+    vec3 to_sun;
+    vec3 direct = sun_light_at(s.height_m, s.up, to_sun);
+    vec3 light = light_of_sky_at(s.height_m, s.up) + max(dot(to_sun, s.up), 0.0) * direct;
+    // Where the floor is seen, the sea is a map, and mirrors nothing.
+    bool is_map = frame.sea_floor_share > 0.1;
+    float sea = sky_earth_sea ? surround_sea_here(s.ground_m.xy) : 0.0;
+    float cosine = -dot(view, s.up), mirrored = is_map ? 0.0 : sea * surround_mirrored(cosine);
+    vec3 radiance = light * mix(s.diffuse, is_map ? surround_sea_albedo : surround_deep_albedo, sea);
+    radiance = mix(radiance, sky_on_background_radiance(normalize(view + 2.0 * cosine * s.up), false), mirrored);
+    AirBetween air = air_between_eye_and(view, s.distance_m);
+    return mix(air.radiance, radiance, exp(-beyond_air_scale(s.distance_m) * air.depth));
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {

@@ -85,4 +85,6 @@ layout(std140, binding = 0) uniform Frame {
                               // first) [1/m]
     float eye_above_ground;   // height of the eye above the posts below it, as drawn [m]; 1e9 where there are none
     float air_scale;          // of distances in the air before the ground: below 1 in aerial views of wide DEMs
+    float sea_rim_share;      // of the posts along the DEM's edge that are sea, 0..1
+    float beyond;             // 1 where level ground is made up beyond the DEM (lib/beyond.glsl), else 0
 } frame;

@@ -49,6 +49,7 @@ TEST(Water, SeaIsWhatReachesTheEdgeAtZero) {
     EXPECT_EQ(water.kind.at(50, 7), WaterKind::None);
     EXPECT_TRUE(water.assumptions.empty());
     EXPECT_EQ(water.sea_floor_share(), 0) << "its surface";
+    EXPECT_DOUBLE_EQ(water.sea_rim_share(), (2 * 50 + 98) / 596.0);
 }
 
 TEST(Water, AFloorBelowZeroIsSeaWithAFloor) {

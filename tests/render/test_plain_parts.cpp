@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "drawn.h"
+#include "light/fields.h"
 #include "render/picture_parts.h"
 #include "render/plain_parts.h"
 #include "render/wet_posts.h"

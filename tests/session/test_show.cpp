@@ -20,7 +20,8 @@ scene::Scene evening() {
     scene.view.orbit = {250, 30, 1};
     scene.width_px = 200;
     scene.height_px = 160;
-    scene.effects.switches.only = std::vector<std::string>{"shadows", "skylight"};
+    scene.effects.switches.only =
+        std::vector<std::string>{"block", "haze", "shadows", "sky", "skylight"};
     return scene;
 }
 
@@ -40,6 +41,7 @@ const std::vector<Change>& changes() {
              s.view.orbit = {60, 20, 2};
          }},
         {"exposure", [](scene::Scene& s) { s.exposure_ev = -1; }},
+        {"backdrop", [](scene::Scene& s) { s.backdrop = scene::Backdrop::Horizon; }},
         {"pixel error", [](scene::Scene& s) { s.pixel_error = 60; }},
         {"size", [](scene::Scene& s) { s.width_px = 120; }},
         {"effects", [](scene::Scene& s) { s.effects.switches.only = std::vector<std::string>{}; }},

@@ -36,6 +36,7 @@ TEST(Hooks, TheirNamesAndSignaturesAreAPromise) {
               "void display(in Surface s, inout vec4 overlay)\n"
               "vec3 side(in Surface s, in float down)\n"
               "vec3 backdrop(in vec3 direction, in vec2 at)\n"
+              "vec3 beyond(in Surface s, in vec3 view)\n"
               "void image(in Pixel p, inout vec3 radiance)\n"
               "void tonemap(inout vec3 colour)\n"
               "void finish(in Pixel p, inout vec3 colour)\n"
@@ -145,7 +146,7 @@ TEST_P(SnippetError, NamesFileAndLine) {
 
 constexpr const char* kAmongHooks =
     "; hooks are displace, vertex, albedo, normal, material, facing, visibility, brdf, ambient, "
-    "lit, atmosphere, display, side, backdrop, image, tonemap, finish, overlay, sky, "
+    "lit, atmosphere, display, side, backdrop, beyond, image, tonemap, finish, overlay, sky, "
     "background_radiance";
 const std::string kNoHook = std::string("1: haze_on_xyz: there is no hook xyz") + kAmongHooks;
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "render/graph/graph.h"
+#include "shader/plugin_pass.h"
+
+/// Entries of `passes` in plugin.json as those of a frame graph.
+namespace relevo::render {
+
+When when_of(shader::PluginPass::When when);
+ResourceSize size_of(const shader::PassSize& size);
+/// What a pass of a plugin writes.
+Resource resource_of(const shader::PluginPass& pass, When when);
+
+}  // namespace relevo::render
