@@ -108,12 +108,12 @@ void zone(State& state) {
 
 void view_panel(State& state, double aspect) {
     ImGui::PushItemWidth(-widest(
-        {tr("Lens"), tr("Sensor"), tr("Backdrop"), tr("Exposure"), tr("Heights"), tr("Zone")}));
+        {tr("Lens"), tr("Sensor"), tr("Exposure"), tr("Heights"), tr("Zone"), tr("Backdrop")}));
     lens(state, aspect);
-    backdrop(state);
     exposure(state);
     exaggeration(state);
     zone(state);
+    backdrop(state);
     ImGui::PopItemWidth();
 }
 

@@ -150,7 +150,7 @@ TEST_F(AuthorMistakes, LightThatIsNoNumberIsNamedWithHookLineAndPixel) {
                                                    "column "));
     };
     expect("s.specular = vec3(sqrt(-s.height_m));", "s.specular");
-    expect("s.normal = normalize(s.normal * (dust_amount - dust_amount));", "s.normal");
+    expect("s.normal = normalize(s.normal * (dust_amount - 0.5));", "s.normal");
     expect("s.emissive = vec3(1.0 / (dust_amount - 0.5));", "s.emissive");
     EXPECT_THAT(check("uniform float dust_zero = 0.0; //@ range(-1, 1)\n"
                       "void dust_on_albedo(inout Surface s) { s.diffuse *= 0.5; }\n"

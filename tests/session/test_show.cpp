@@ -3,8 +3,10 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "scene/options.h"
 #include "session/session.h"
 #include "support/device.h"
 #include "support/support.h"
@@ -82,6 +84,43 @@ void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& c
 
 TEST(Show, APictureIsTheSameWhateverWasShownBefore) {
     expect_nothing_kept(evening(), changes());
+}
+
+/// A value that is not the default.
+std::string other_value(const scene::Option& option) {
+    using Kind = scene::Option::Kind;
+    if (option.kind == Kind::Word) return std::string(option.words.back());
+    if (option.key == "weather") return "LSZB 011150Z 24009KT CAVOK 17/13 Q1014";
+    if (option.kind == Kind::Text) return "a text";
+    if (option.kind == Kind::Whole) return "2";
+    if (option.kind == Kind::Flag)
+        return scene::text_of(option, scene::Scene()) == "true" ? "false" : "true";
+    return fmt::format("{}", option.min + (option.max - option.min) / 4);
+}
+
+TEST(Show, EachOptionIsThatOfTheSceneThatIsShown) {
+    scene::Scene begin = evening();
+    begin.width_px = begin.height_px = 48;
+    const sun::Instant utc = sun::parse_time(begin.time.at).utc;
+    FilesInUse files;
+    Session session(begin, {.device = test::gl_device()}, files);
+    int shown = 0;
+    for (const scene::Option& option : scene::options()) {
+        SCOPED_TRACE(option.flag);
+        // What a session opens with, and maps, of which test_land_cover has one.
+        if (option.object == "dem" || option.object == "overlay" || option.key == "holes" ||
+            option.key.starts_with("land_cover"))
+            continue;
+        scene::Scene next = begin;
+        option.set(next, scene::value_of(option, other_value(option)));
+        session.show(next, utc);
+        EXPECT_EQ(scene::text_of(option, session.scene()), scene::text_of(option, next));
+        EXPECT_EQ(picture_of(session).values, alone(next).values);
+        session.show(begin, utc);
+        EXPECT_EQ(scene::text_of(option, session.scene()), scene::text_of(option, begin));
+        ++shown;
+    }
+    EXPECT_GT(shown, 20);
 }
 
 TEST(Show, ShadowMapsAreOfTheGroundAndTheSunThatAreShown) {

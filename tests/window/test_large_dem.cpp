@@ -78,6 +78,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
     // As the window draws it, upright at its eye.
     const viewer::Land land{&session.ground().frame, 1, {}, {}};
+    session.set_backdrop(whole->scene.backdrop);
     session.look(view_of(pose_of(camera, land), land));
     session.draw();
     EXPECT_LE(test::difference(image_of(*picture), session.picture(), 1), 2e-4);
