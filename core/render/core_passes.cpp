@@ -407,7 +407,10 @@ class Declaration {
                      .format = PixelFormat::RGBA16F,
                      .size = {.share = 1 / kBeyond_px},
                      .linear = true});
-        add(Pass{.name = "beyond", .program = name, .colours = {{"beyond_ground", kNothing}}});
+        add(Pass{.name = "beyond",
+                 .program = name,
+                 .colours = {{"beyond_ground", kNothing}},
+                 .is_needed = [](const PassContext& frame) { return frame.inputs.in_the_air; }});
     }
 
     /// The sky, or the backdrop of a block.

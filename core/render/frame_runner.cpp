@@ -139,6 +139,7 @@ bool FrameRunner::is_due(const Pass& pass, const PassContext& frame) const {
 
 void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
     const Pass& pass = graph().passes[static_cast<std::size_t>(plan_.steps[step].pass)];
+    if (pass.is_needed && !pass.is_needed(frame)) return;
     if (pass.kind == PassKind::Host) return pass.body(frame);
     const std::string& program =
         night && !pass.program_at_night.empty() ? pass.program_at_night : pass.program;

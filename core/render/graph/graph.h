@@ -142,6 +142,8 @@ struct Pass {
     std::vector<std::string> after{};  ///< names of earlier passes; unknown names are ignored
     bool clips_voids = false;          ///< enables GL_CLIP_DISTANCE0 if the DEM has voids
     bool culls = false;                ///< triangles that wind otherwise than the ground from above
+    /// False in frames that do not read what it writes; empty: all of them do.
+    std::function<bool(const PassContext&)> is_needed{};
     std::optional<Dispatch> dispatch{};        ///< of a compute pass, and only there
     std::function<void(PassContext&)> body{};  ///< of a geometry or host pass, and only there
 };
