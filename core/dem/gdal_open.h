@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <cpl_vsi.h>
+
 #include "base/allowed_name.h"
 #include "dem/gdal_support.h"
 

@@ -6,7 +6,9 @@
 
 #include "render/ground_in_view.h"
 #include "render/ground_probe.h"
+#include "render/pages.h"
 #include "render/terrain.h"
+#include "render/tile_grid.h"
 
 namespace relevo::render {
 namespace {

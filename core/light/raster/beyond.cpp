@@ -172,8 +172,8 @@ std::string Beyond::text(const std::string& would) const {
 }
 
 std::string Beyond::advice() const {
-    const auto values = [](double share) {
-        const long percent = percent_of(share);
+    const auto values = [](double of_all) {
+        const long percent = percent_of(of_all);
         return percent == 100 ? "all" : fmt::format("{} % of the", percent);
     };
     const auto km = [](const BeyondBound& of) { return std::max(1.0, of.needed_m / 1000); };
