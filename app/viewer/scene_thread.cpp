@@ -156,18 +156,14 @@ struct SceneThread::Impl {
 
     /// Holds the lock only for the hand-over, so that the window does not wait.
     void publish_opened(const scene::Insets& insets) {
-        stay_in_the_air();
+        // An aerial view keeps its sky once it is turned, and is an eye like any other.
+        const scene::Scene& now = session->scene();
+        if (scene::backdrop_of(now.backdrop, now.view) == scene::Backdrop::Horizon)
+            session->set_backdrop(scene::Backdrop::Horizon);
         auto anew = as_opened();
         look_at_whole(*anew, insets);
         const std::lock_guard lock(mutex);
         opened = std::move(anew);
-    }
-
-    /// An aerial view has its sky and air also once it is turned, and is an eye like any other.
-    void stay_in_the_air() {
-        const scene::Scene& now = session->scene();
-        if (now.backdrop == scene::Backdrop::Auto && now.view.orbit.aerial && !now.view.eye)
-            session->set_backdrop(scene::Backdrop::Horizon);
     }
 
     /// Looks at the whole scene until the window requests a view.

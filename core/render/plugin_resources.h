@@ -3,7 +3,7 @@
 #include "render/graph/graph.h"
 #include "shader/plugin_pass.h"
 
-/// Entries of `passes` in plugin.json as those of a frame graph.
+/// What the passes that plugins declare in plugin.json are in a frame graph.
 namespace relevo::render {
 
 When when_of(shader::PluginPass::When when);

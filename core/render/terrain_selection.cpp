@@ -66,7 +66,7 @@ std::vector<Box> Terrain::boxes(const TileSelection& selection, const DetailedGr
         const TileKey& key = tile.draw.key;
         const int quad = 1 << key.level, side = kTileQuads * quad / kWindows;
         const glm::ivec2 first = key.at * (kTileQuads * quad);
-        // Vertices that morph, and means of posts, have heights of the posts beside them.
+        // A vertex may have a height from the posts beside its own: of a mean, or while it morphs.
         const auto box_between = [&](const glm::ivec2& from, const glm::ivec2& to) {
             return tree_.box(glm::dvec2(from - 2 * quad), glm::dvec2(to + 2 * quad),
                              detailed.exaggeration);

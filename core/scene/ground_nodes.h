@@ -33,7 +33,7 @@ struct Sight {
     double covered = 0;   ///< area of these in the picture, as NodeInView::facing has it
     double contrast = 0;  ///< of their light: spread over mean
 };
-/// @param left, right  the range of x whose columns are looked at
+/// @param left, right  range of x; other columns are skipped
 Sight sight_of(std::vector<NodeInView> nodes, double left, double right, const glm::dvec3& to_sun);
 
 /// The horizontal rectangle of least area around all nodes.

@@ -71,12 +71,18 @@ struct Stamps {
     bool operator==(const Stamps&) const = default;
 };
 
-/// What is seen behind the DEM.
+/// Background of the DEM in the picture.
 enum class Backdrop {
-    Auto,     ///< horizon in aerial views and from within, studio from outside
+    Auto,     ///< Horizon in aerial views, else Studio
     Horizon,  ///< sky and air, wherever the eye is
     Studio    ///< from outside a plain one, and the DEM as a block
 };
+
+/// The backdrop of a view: what was chosen, or what Auto means for it.
+inline Backdrop backdrop_of(Backdrop chosen, const View& view) {
+    if (chosen != Backdrop::Auto) return chosen;
+    return view.orbit.aerial && !view.eye ? Backdrop::Horizon : Backdrop::Studio;
+}
 
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
 /// command line, files and windows make, and a session draws. Ranges and words: options().

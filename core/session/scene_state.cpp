@@ -94,9 +94,8 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
                                   of.eye ? scene::Outline() : outline(shape),
                                   scene::view_aspect(scene), scene.exaggeration);
     };
-    const bool aerial = view.orbit.aerial && !view.eye;
-    inputs.in_the_air = shape.has_air && (scene.backdrop == scene::Backdrop::Horizon ||
-                                          (aerial && scene.backdrop == scene::Backdrop::Auto));
+    inputs.in_the_air =
+        shape.has_air && scene::backdrop_of(scene.backdrop, view) == scene::Backdrop::Horizon;
     inputs.camera = standing(view, {ground_->frame, scene.exaggeration, shape.height_m, camera_of},
                              keep_above_m);
     scene.view = view;

@@ -27,7 +27,7 @@ float beyond_distance_m(in vec3 direction) {
     return meets ? over / (sqrt(max(inside, 0.0)) - down) : -1.0;
 }
 
-/// Factor on distances in the air before that ground: that of the DEM beside it, and 1 towards the horizon.
+/// Factor on distances in the air before that ground: frame.air_scale near the DEM, 1 near the horizon.
 float beyond_air_scale(in float distance_m) {
     float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
     return mix(frame.air_scale, 1.0, smoothstep(1.2, 6.0, widths));
