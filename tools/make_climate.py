@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""Makes data/climate/climate.bin: the climate of the whole Earth by month (data/README.md says from what).
+"""Makes data/climate/climate.bin, the climate of the whole Earth by month, and land.bin beside it, what covers its ground (data/README.md says
+from what).
 
-Usage: make_climate.py FOLDER OUT
+Usage: make_climate.py climate|land FOLDER OUT
 
-FOLDER  t0_1deg.tif, orog_1deg.tif, pr_annual_0p5.tif, pr_share_2p5.tif, ice_0p05.tif
-OUT     data/climate/climate.bin
+FOLDER  of climate: t0_1deg.tif, orog_1deg.tif, pr_annual_0p5.tif, pr_share_2p5.tif, ice_0p05.tif
+        of land: igbp_0p05.tif, ground_0p2.tif, towns_0p1.tif
+OUT     data/climate/climate.bin or data/climate/land.bin
 
-All grids are of latitude and longitude, north up from 90 N and 180 W, a cell an area. They are cut into bands of 5 or 10 degrees of latitude,
+All grids are of latitude and longitude, north up from 90 N and 180 W, a cell an area. They are cut into bands of 2 to 10 degrees of latitude,
 each deflated by itself, so that a place costs only its own.
-Layout: the text "relevo climate 1\\n"; for each grid "NAME COLUMNS ROWS PLANES BITS BAND_ROWS\\n"; "end\\n"; the size of each band, 4 bytes, least
+Layout: the text "relevo climate 1\\n" or "relevo land 1\\n"; for each grid "NAME COLUMNS ROWS PLANES BITS BAND_ROWS\\n"; "end\\n"; the size of each band, 4 bytes, least
 first, grid after grid from north to south; then the bands, as zlib writes them with its checksum. A band is plane after plane, row after row:
 of 1 bit eight cells a byte, the highest bit first; of 8 bits each cell less the one to the left, mod 256; of 16 bits each plane less the one
 before, then each cell less the one to the left, mod 65536, first the low bytes of all, then the high ones.
@@ -25,8 +27,9 @@ import numpy
 from osgeo import gdal
 
 # name, file, bits, rows a band
-GRIDS = [("temperature", "t0_1deg.tif", 16, 10), ("relief", "orog_1deg.tif", 16, 10), ("rain", "pr_annual_0p5.tif", 8, 20),
-         ("share", "pr_share_2p5.tif", 8, 4), ("ice", "ice_0p05.tif", 1, 100)]
+GRIDS = {"climate": [("temperature", "t0_1deg.tif", 16, 10), ("relief", "orog_1deg.tif", 16, 10), ("rain", "pr_annual_0p5.tif", 8, 20),
+                     ("share", "pr_share_2p5.tif", 8, 4), ("ice", "ice_0p05.tif", 1, 100)],
+         "land": [("class", "igbp_0p05.tif", 8, 40), ("ground", "ground_0p2.tif", 8, 25), ("towns", "towns_0p1.tif", 8, 50)]}
 
 
 def encoded(planes, bits):
@@ -54,12 +57,12 @@ def decoded(data, shape, bits):
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4 or sys.argv[1] not in GRIDS:
         sys.exit(__doc__)
     gdal.UseExceptions()
-    head, sizes, bands = "relevo climate 1\n", b"", b""
-    for name, file, bits, rows in GRIDS:
-        grid = gdal.Open(str(pathlib.Path(sys.argv[1]) / file)).ReadAsArray()
+    head, sizes, bands = f"relevo {sys.argv[1]} 1\n", b"", b""
+    for name, file, bits, rows in GRIDS[sys.argv[1]]:
+        grid = gdal.Open(str(pathlib.Path(sys.argv[2]) / file)).ReadAsArray()
         grid = grid if grid.ndim == 3 else grid[None]
         head += f"{name} {grid.shape[2]} {grid.shape[1]} {grid.shape[0]} {bits} {rows}\n"
         for first in range(0, grid.shape[1], rows):
@@ -71,8 +74,8 @@ def main():
             sizes += struct.pack("<I", len(packed))
             bands += packed
     data = head.encode() + b"end\n" + sizes + bands
-    pathlib.Path(sys.argv[2]).write_bytes(data)
-    print(f"{sys.argv[2]}: {len(data)} bytes")
+    pathlib.Path(sys.argv[3]).write_bytes(data)
+    print(f"{sys.argv[3]}: {len(data)} bytes")
 
 
 if __name__ == "__main__":

@@ -193,7 +193,7 @@ TEST(ClimateMap, SaysWhatIsWrongWithItsFile) {
     };
     EXPECT_EQ(error("elevation"), "exit 3: climate: FILE: damaged; install Relevo again");
     EXPECT_EQ(error("relevo climate 2\n"),
-              "exit 3: climate: FILE: no map of the climate of this version; install Relevo again");
+              "exit 3: climate: FILE: no such map of this version; install Relevo again");
     EXPECT_EQ(error(whole.substr(0, whole.size() / 2)),
               "exit 3: climate: FILE: damaged; install Relevo again");
     std::string flipped = whole;
