@@ -1,6 +1,7 @@
 #include "climate/land_classes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -144,10 +145,8 @@ class Chance {
           open_(1200, 1.5 * apart_m, 5),
           towns_(1600, 1.5 * apart_m, 9) {}
 
-    void add(const geo::Geodetic& place, LandShares& u) {
-        const double r = kEarthRadius_m * std::cos(place.lat_rad);
-        const glm::dvec3 at(r * std::cos(place.lon_rad), r * std::sin(place.lon_rad),
-                            kEarthRadius_m * std::sin(place.lat_rad));
+    /// @param at  from the Earth's centre [m]
+    void add(const glm::dvec3& at, LandShares& u) {
         const float woods = woods_.at(at), fields = fields_.at(at), open = open_.at(at);
         const float towns = towns_.at(at);
         of(u, Land::Needleleaf) += 0.7F * woods + 0.4F * open;
@@ -165,16 +164,22 @@ class Chance {
     LandNoise woods_, fields_, open_, towns_;
 };
 
-/// Softmax in place. @returns index of the largest
-std::size_t choose(LandShares& u, float temperature) {
-    const auto most = static_cast<std::size_t>(std::ranges::max_element(u) - u.begin());
-    const float highest = u[most];
+/// Natural logarithm of a positive number, within 0.01: log2 as a parabola in the mantissa.
+float rough_log(float x) {
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    const auto exponent = static_cast<float>(static_cast<int>(bits >> 23) - 127);
+    const float m = std::bit_cast<float>((bits & 0x7FFFFFU) | 0x3F800000U) - 1;
+    return 0.6931472F * (exponent + m * (1.3465553F - 0.3465553F * m));
+}
+
+/// Softmax in place.
+void choose(LandShares& u, float temperature) {
+    const float highest = *std::ranges::max_element(u);
     float sum = 0;
     for (float& value : u)
         sum += value = std::exp(std::max((value - highest) / temperature, -60.0F));
     for (float& value : u)
         value /= sum;
-    return most;
 }
 
 /// Corrections by cell of 0.1 degrees that give covers the shares that they should have.
@@ -187,8 +192,8 @@ class Balance {
         const double rows = std::floor((90 - south_deg) / kCell_deg) - north_ + 1;
         // Cells of a wide DEM are larger.
         wide_ = std::max(1.0, std::ceil(std::max(columns, rows) / kMostCells));
-        bias_.fill(Array2d<float>(static_cast<int>(columns / wide_) + 1,
-                                  static_cast<int>(rows / wide_) + 1));
+        bias_ = Array2d<LandShares>(static_cast<int>(columns / wide_) + 1,
+                                    static_cast<int>(rows / wide_) + 1);
     }
 
     void add_sample(double lat_deg, double lon_deg, const LandShares& goal, const LandShares& u) {
@@ -197,7 +202,7 @@ class Balance {
 
     /// @param sample_deg2  what a sample stands for
     void find(double sample_deg2) {
-        const std::size_t cells = bias_[0].size();
+        const std::size_t cells = bias_.size();
         std::vector<LandShares> goal(cells), got(cells);
         std::vector<float> count(cells);
         for (const Sample& sample : samples_) {
@@ -210,7 +215,7 @@ class Balance {
             for (const Sample& sample : samples_) {
                 LandShares u = sample.u;
                 for (std::size_t i = 0; i < kLands; ++i)
-                    u[i] += bias_[i].data()[sample.cell];
+                    u[i] += bias_.data()[sample.cell][i];
                 choose(u, kSoft);
                 for (std::size_t i = 0; i < kLands; ++i)
                     got[sample.cell][i] += u[i];
@@ -220,28 +225,29 @@ class Balance {
                     constexpr float kSome = 0.003F, kPart = 0.8F, kMost = 4;
                     const float ratio = (goal[cell][i] / count[cell] + kSome) /
                                         (got[cell][i] / count[cell] + kSome);
-                    float& bias = bias_[i].data()[cell];
+                    float& bias = bias_.data()[cell][i];
                     bias = std::clamp(bias + kPart * kSoft * std::log(ratio), -kMost, kMost);
                 }
         }
         // A cell of which little is known has less of a say.
         const double whole = kCell_deg * kCell_deg * wide_ * wide_;
         for (std::size_t cell = 0; cell < cells; ++cell)
-            for (Array2d<float>& bias : bias_)
-                bias.data()[cell] *= static_cast<float>(std::sqrt(
+            for (float& bias : bias_.data()[cell])
+                bias *= static_cast<float>(std::sqrt(
                     std::min(1.0, static_cast<double>(count[cell]) * sample_deg2 / whole)));
     }
 
     void add(double lat_deg, double lon_deg, LandShares& u) const {
         const double x = ((lon_deg + 180) / kCell_deg - west_) / wide_ - 0.5;
         const double y = ((90 - lat_deg) / kCell_deg - north_) / wide_ - 0.5;
-        for (std::size_t i = 0; i < kIceLand; ++i)
-            u[i] += bilinear(bias_[i], x, y);
+        const LandShares bias = bilinear(bias_, x, y);
+        for (std::size_t i = 0; i < kLands; ++i)
+            u[i] += bias[i];
     }
 
   private:
     static constexpr double kMostCells = 128;
-    static constexpr int kSteps = 8;
+    static constexpr int kSteps = 6;
 
     struct Sample {
         std::size_t cell;
@@ -251,13 +257,13 @@ class Balance {
     std::size_t cell_of(double lat_deg, double lon_deg) const {
         const auto x = static_cast<int>(((lon_deg + 180) / kCell_deg - west_) / wide_);
         const auto y = static_cast<int>(((90 - lat_deg) / kCell_deg - north_) / wide_);
-        const int column = std::clamp(x, 0, bias_[0].width() - 1);
-        const int row = std::clamp(y, 0, bias_[0].height() - 1);
-        return static_cast<std::size_t>(row * bias_[0].width() + column);
+        const int column = std::clamp(x, 0, bias_.width() - 1);
+        const int row = std::clamp(y, 0, bias_.height() - 1);
+        return static_cast<std::size_t>(row * bias_.width() + column);
     }
 
     double west_, north_, wide_ = 1;
-    std::array<Array2d<float>, kLands> bias_;
+    Array2d<LandShares> bias_;  // 0 for ice
     std::vector<Sample> samples_;
 };
 
@@ -268,6 +274,7 @@ class Places {
     Places(const LandSites& sites)
         : columns_(sites.height_m.width()), rows_(sites.height_m.height()) {
         lat_ = lon_ = Array2d<float>(kNet, kNet);
+        from_centre_m_ = Array2d<std::array<float, 3>>(kNet, kNet);
         const geo::Geodetic middle = sites.place(0.5 * (columns_ - 1), 0.5 * (rows_ - 1));
         middle_lat_ = degrees(middle.lat_rad);
         middle_lon_ = degrees(middle.lon_rad);
@@ -280,6 +287,12 @@ class Places {
                     static_cast<float>(is_place ? degrees(at.lat_rad) - middle_lat_ : 0);
                 lon_.at(i, j) = static_cast<float>(
                     is_place ? geo::normalized_lon_deg(degrees(at.lon_rad) - middle_lon_) : 0);
+                const double lat_rad = is_place ? at.lat_rad : middle.lat_rad;
+                const double lon_rad = is_place ? at.lon_rad : middle.lon_rad;
+                const double r = kEarthRadius_m * std::cos(lat_rad);
+                from_centre_m_.at(i, j) = {static_cast<float>(r * std::cos(lon_rad)),
+                                           static_cast<float>(r * std::sin(lon_rad)),
+                                           static_cast<float>(kEarthRadius_m * std::sin(lat_rad))};
             }
     }
 
@@ -288,6 +301,13 @@ class Places {
         const double y = static_cast<double>(row) * (kNet - 1) / std::max(rows_ - 1, 1);
         return {middle_lat_ + static_cast<double>(bilinear(lat_, x, y)),
                 middle_lon_ + static_cast<double>(bilinear(lon_, x, y))};
+    }
+
+    glm::dvec3 from_centre_m(int column, int row) const {
+        const double x = static_cast<double>(column) * (kNet - 1) / std::max(columns_ - 1, 1);
+        const double y = static_cast<double>(row) * (kNet - 1) / std::max(rows_ - 1, 1);
+        const std::array<float, 3> at = bilinear(from_centre_m_, x, y);
+        return {at[0], at[1], at[2]};
     }
 
     Balance balance() const {
@@ -315,6 +335,7 @@ class Places {
     int columns_, rows_;
     double middle_lat_ = 0, middle_lon_ = 0;
     Array2d<float> lat_, lon_;  // off the middle
+    Array2d<std::array<float, 3>> from_centre_m_;
 };
 
 /// All that decides on the cover of a site.
@@ -351,9 +372,9 @@ class Sites {
         correct(shares, growing, shape, season);
         if (goal) *goal = shares;
         LandShares u = suitability(growing, shape, season, mapped_ice);
-        chance.add(place, u);
+        chance.add(places_.from_centre_m(column, row), u);
         for (std::size_t i = 0; i < kLands; ++i)
-            u[i] += std::log(std::max(shares[i], kLeast[i]) + 1e-7F);
+            u[i] += rough_log(std::max(shares[i], kLeast[i]) + 1e-7F);
         return u;
     }
 
@@ -405,7 +426,7 @@ class Sites {
 }  // namespace
 
 Array2d<LandShares> land_classes(const LandMap& map, const LandSites& sites) {
-    constexpr int kThin = 4, kGrain = 16;
+    constexpr int kThin = 5, kGrain = 16;
     const int columns = sites.height_m.width(), rows = sites.height_m.height();
     const Sites all(map, sites);
     Balance balance = all.places().balance();
@@ -429,10 +450,11 @@ Array2d<LandShares> land_classes(const LandMap& map, const LandSites& sites) {
                 LandShares u = all.weigh(column, row, own);
                 const glm::dvec2 at = all.places().lat_lon_deg(column, row);
                 balance.add(at.x, at.y, u);
-                const std::size_t most = choose(u, 0.5F);
+                const auto most = std::ranges::max_element(u) - u.begin();
+                if (mixed > 0) choose(u, 0.5F);
                 for (float& share : u)
-                    share *= mixed;
-                u[most] += 1 - mixed;
+                    share = mixed > 0 ? mixed * share : 0;
+                u[static_cast<std::size_t>(most)] += 1 - mixed;
                 covers.at(column, row) = u;
             }
     });

@@ -141,7 +141,8 @@ LandMap::Net LandMap::Net::over(const Box& box, double cell_deg, int margin) {
     return net;
 }
 
-float LandMap::Net::at(const Array2d<float>& cells, double lat_deg, double lon_deg) const {
+template <typename Value>
+Value LandMap::Net::at(const Array2d<Value>& cells, double lat_deg, double lon_deg) const {
     return bilinear(cells, (lon_deg - west_deg) / cell_deg - 0.5,
                     (north_deg - lat_deg) / cell_deg - 0.5);
 }
@@ -181,18 +182,19 @@ void LandMap::read_shares(EarthGrids& grids, const ClimateMap& climate) {
                 forests.add(column, row, needles_of(cell.igbp));
             }
     const Array2d<float> needles = forests.needles(5.0 / step, expected_needles(middle));
-    shares_[0] = shares_[1] = parts[kTree];
+    std::array<Array2d<float>, kLands> lands;
+    lands[0] = lands[1] = parts[kTree];
     for (std::size_t i = 0; i < needles.size(); ++i) {
-        shares_[0].data()[i] *= needles.data()[i];
-        shares_[1].data()[i] *= 1 - needles.data()[i];
+        lands[0].data()[i] *= needles.data()[i];
+        lands[1].data()[i] *= 1 - needles.data()[i];
     }
     for (std::size_t land = 2; land < kLands; ++land)
-        shares_[land] = std::move(parts[land - 1]);
+        lands[land] = std::move(parts[land - 1]);
     water_ = std::move(parts[kWater]);
-    spread_shares();
+    spread_shares(std::move(lands));
 }
 
-void LandMap::spread_shares() {
+void LandMap::spread_shares(std::array<Array2d<float>, kLands> lands) {
     Array2d<float> land(net_.columns, net_.rows);
     std::ranges::transform(water_, land.begin(), [](float water) { return 1 - water; });
     known_ = std::ranges::any_of(land, [](float share) { return share > 0; });
@@ -200,18 +202,19 @@ void LandMap::spread_shares() {
     constexpr double kBlur = 0.7;  // cells
     smooth(land, kBlur);
     smooth(water_, kBlur);
-    for (Array2d<float>& share : shares_)
+    for (Array2d<float>& share : lands)
         smooth(share, kBlur);
     // Off the map's coast it is as at the nearest land.
     constexpr float kSomeLand = 0.02F;
-    fill_outwards(std::span(shares_),
+    fill_outwards(std::span(lands),
                   [&](int column, int row) { return land.at(column, row) >= kSomeLand; });
+    shares_ = Array2d<LandShares>(net_.columns, net_.rows);
     for (std::size_t i = 0; i < land.size(); ++i) {
         float sum = 0;
-        for (const Array2d<float>& share : shares_)
+        for (const Array2d<float>& share : lands)
             sum += share.data()[i];
-        for (Array2d<float>& share : shares_)
-            share.data()[i] /= std::max(sum, 1e-6F);
+        for (std::size_t k = 0; k < kLands; ++k)
+            shares_.data()[i][k] = lands[k].data()[i] / std::max(sum, 1e-6F);
     }
 }
 
@@ -238,11 +241,7 @@ void LandMap::read_ground(EarthGrids& grids) {
 }
 
 LandShares LandMap::shares(double lat_deg, double lon_deg) const {
-    LandShares shares{};
-    if (!known_) return shares;
-    for (std::size_t land = 0; land < kLands; ++land)
-        shares[land] = net_.at(shares_[land], lat_deg, lon_deg);
-    return shares;
+    return known_ ? net_.at(shares_, lat_deg, lon_deg) : LandShares{};
 }
 
 float LandMap::water(double lat_deg, double lon_deg) const {

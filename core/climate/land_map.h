@@ -52,16 +52,17 @@ class LandMap {
         static Net over(const Box& box, double cell_deg, int margin);
         double lat_deg(int row) const { return north_deg - (row + 0.5) * cell_deg; }
         double lon_deg(int column) const { return west_deg + (column + 0.5) * cell_deg; }
-        float at(const Array2d<float>& cells, double lat_deg, double lon_deg) const;
+        template <typename Value>
+        Value at(const Array2d<Value>& cells, double lat_deg, double lon_deg) const;
     };
 
     void read_shares(EarthGrids& grids, const ClimateMap& climate);
-    void spread_shares();
+    void spread_shares(std::array<Array2d<float>, kLands> lands);
     void read_ground(EarthGrids& grids);
     void find_tint(const ClimateMap& climate);
 
     Net net_, ground_net_;
-    std::array<Array2d<float>, kLands> shares_;
+    Array2d<LandShares> shares_;
     Array2d<float> water_;
     std::array<Array2d<float>, 3> ground_, tint_;  // of tint the logarithm to base 2
     Array2d<float> has_ground_;

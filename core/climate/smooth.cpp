@@ -1,5 +1,10 @@
 #include "climate/smooth.h"
 
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 namespace relevo::climate {
 namespace {
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "climate/cover_table.h"
 #include "climate/fine_cover.h"
+#include "climate/land_classes.h"
 #include "dem/grid.h"
 #include "geo/local_frame.h"
 #include "gl/texture.h"
@@ -17,6 +19,10 @@ inline constexpr const char* kClimateTexture = "climate_table";
 /// Bounding box of a grid in geographic coordinates; all longitudes if it contains a pole.
 /// Longitudes are within 180 degrees of `origin`, so that no box is split at the date line.
 climate::Box box_of(const dem::Grid& grid, const geo::Geodetic& origin);
+
+/// Mapping of angles of lib/climate.glsl to a texture whose outer texels' centres are on the sides
+/// of a box: factor and constant from longitudes off the origin, and from latitudes.
+glm::vec4 place_of(const climate::Box& box, const geo::Geodetic& origin, const glm::ivec2& texels);
 
 /// Climate tables of a DEM's area on the device, read by lib/climate.glsl.
 class ClimateVolume {
@@ -33,6 +39,9 @@ class ClimateVolume {
     /// Updates the snow for a day of the year, 0 to 364, if it has changed.
     void set_day(int day);
     const gl::Texture& texture() const { return texture_; }
+    /// At a place and height, as the texture has it; beyond the area as on its rim. After
+    /// set_day().
+    climate::Growing growing(const geo::Geodetic& place, float height_m) const;
     /// Writes the texture's mapping from places and heights.
     void write(FrameBlock& block) const;
 
@@ -40,7 +49,9 @@ class ClimateVolume {
     climate::CoverTable table_;
     climate::FineCover cover_;  // of the table
     gl::Texture texture_;
+    std::vector<float> values_;  // of the texture's texels
     std::optional<int> day_;
+    double origin_rad_;
     glm::vec4 place_, height_;
 };
 

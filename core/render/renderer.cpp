@@ -247,7 +247,8 @@ struct Renderer::Impl : FrameServices {
         write_places(terrain);
         if (reads(kLightByHeightTexture)) light.update(inputs, block);
         update_air(inputs, block);
-        if (reads(kClimateTexture)) terrain.update_climate(day_of(inputs.unix_s)).write(block);
+        if (reads(kClimateTexture)) terrain.natural().update_climate(day_of(inputs.unix_s), block);
+        if (reads(kLandClassesTexture)) terrain.natural().update_land(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};

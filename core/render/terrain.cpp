@@ -118,6 +118,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
+      natural_(grid_, frame_, pyramid_),
       light_(heightfield, frame, options.sky, options.shadows_on, options.memory.light_posts),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
@@ -238,32 +239,8 @@ void Terrain::require_surface_pages() {
     surface_ = PageCache();
 }
 
-const climate::ClimateMap& Terrain::climate_map() {
-    if (!climate_map_) climate_map_ = climate::ClimateMap::shipped();
-    return *climate_map_;
-}
-
-float Terrain::mean_height_m(const geo::Geodetic& place) const {
-    const int level = pyramid_.levels() - 1;
-    const glm::dvec2 post = grid_.post(place), last(grid_.columns() - 1, grid_.rows() - 1);
-    if (!(post.x >= 0 && post.y >= 0 && post.x <= last.x && post.y <= last.y)) return NAN;
-    const glm::ivec2 node(
-        round(post / max(last, glm::dvec2(1)) * glm::dvec2(pyramid_.size(level) - 1)));
-    return pyramid_.height(level, node.x, node.y);
-}
-
-const ClimateVolume& Terrain::update_climate(int day) {
-    if (!climate_) {
-        const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
-        climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m,
-                         [this](const geo::Geodetic& place) { return mean_height_m(place); });
-    }
-    climate_->set_day(day);
-    return *climate_;
-}
-
 const gl::Texture* Terrain::texture(std::string_view name) const {
-    if (name == kClimateTexture) return climate_ ? &climate_->texture() : nullptr;
+    if (const gl::Texture* const natural = natural_.texture(name)) return natural;
     if (name == "page_table") return &page_table_.texture();
     if (name == "water_pages" && dry_.name() != 0) return &dry_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;

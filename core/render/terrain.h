@@ -18,13 +18,13 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "render/climate_volume.h"
 #include "render/fields.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/ground_rasters.h"
 #include "render/loading.h"
 #include "render/lod.h"
+#include "render/natural_ground.h"
 #include "render/page_cache.h"
 #include "render/page_table.h"
 #include "render/sides.h"
@@ -166,12 +166,8 @@ class Terrain {
     void set_fields(NamedFields fields) { fields_.set(std::move(fields)); }
     const Fields& fields() const { return fields_; }
 
-    /// Updates the climate tables to the snow of a day (0 to 364).
-    /// @returns tables for FrameBlock
-    /// @throws Error (BadInput) if the climate map is missing or damaged
-    const ClimateVolume& update_climate(int day);
-    /// The climate map, read when first needed. @throws Error as update_climate()
-    const climate::ClimateMap& climate_map();
+    /// Climate and land cover.
+    NaturalGround& natural() { return natural_; }
 
     /// Sun and sky light after occlusion by terrain.
     GroundLight& light() { return light_; }
@@ -191,8 +187,6 @@ class Terrain {
     void write(FrameBlock& block) const;
 
   private:
-    /// Of the ground around a place, at the coarsest level; NaN where there is none [m].
-    float mean_height_m(const geo::Geodetic& place) const;
     TileSelection select_in_background(const LodView& view);
     /// A selection of tiles with resident pages.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
@@ -221,6 +215,7 @@ class Terrain {
     const geo::LocalFrame& frame_;
     TileTree tree_;
     glm::dvec3 polar_axis_;
+    NaturalGround natural_;
     GroundLight light_;
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
@@ -228,8 +223,6 @@ class Terrain {
     std::int64_t surface_bytes_ = 0;  // of a page in all its layers
     std::int64_t view_bytes_ = 0;     // of the heights and triangles that select() has selected
 
-    std::optional<climate::ClimateMap> climate_map_;
-    std::optional<ClimateVolume> climate_;
     bool has_surface_pages_ = false, has_water_pages_ = false;
     const Array2d<float>* drawn_m_;  // all posts in memory
     const dem::Grid* drawn_grid_;

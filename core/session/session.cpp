@@ -308,7 +308,7 @@ std::string Session::climate_text() const {
     if (!impl_->drawn->renderer().reads_climate()) return {};
     impl_->context->make_current();
     const ClimateReport report =
-        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), time());
+        climate_report(impl_->terrain->natural().climate_map(), impl_->state.middle(), time());
     return session::climate_text(report) + "; " + ground_text(report);
 }
 

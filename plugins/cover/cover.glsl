@@ -42,10 +42,15 @@ uniform vec3 cover_steppe_green = vec3(0.178, 0.172, 0.082); //@ colour label("S
 uniform vec3 cover_grass = vec3(0.105, 0.132, 0.045); //@ colour label("Grass, green")
 uniform vec3 cover_straw = vec3(0.195, 0.172, 0.082); //@ colour label("Grass, dry or frozen")
 uniform vec3 cover_tundra = vec3(0.15, 0.14, 0.062); //@ colour label("Alpine grass")
+uniform vec3 cover_heath = vec3(0.074, 0.060, 0.036); //@ colour label("Heath") description("Moors of cool and wet country")
 uniform vec3 cover_scrub = vec3(0.095, 0.092, 0.047); //@ colour label("Scrub") description("Evergreen shrubs on the slopes of dry, mild country")
 uniform vec3 cover_conifers = vec3(0.028, 0.046, 0.021); //@ colour label("Needleleaf forest")
 uniform vec3 cover_broadleaf = vec3(0.044, 0.078, 0.022); //@ colour label("Broadleaf forest")
 uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Bare broadleaf forest")
+uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, green")
+uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
+uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
+uniform vec3 cover_town = vec3(0.180, 0.160, 0.144); //@ colour label("Towns")
 uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
@@ -128,11 +133,14 @@ float cover_mosaic(in float share, in float noise, in float near) {
 }
 
 /// From near rock among trees, clearings in woods and the last snow have edges.
-void cover_part(inout cover_Shares shares, in cover_Shape shape) {
+void cover_part(inout cover_Shares shares, inout LandClasses land, in cover_Shape shape) {
     float near = 0.9 / (1.0 + shape.across_m * shape.across_m * 0.005);
     shares.rock = cover_mosaic(shares.rock, shape.small.r + 0.6 * shape.small.a, near);
     shares.forest = cover_mosaic(shares.forest, shape.broad.r + 0.7 * shape.small.g, near);
     shares.snow = cover_mosaic(shares.snow, 0.8 * shape.small.g + 0.8 * shape.small.a, near);
+    land.fields = cover_mosaic(land.fields, shape.broad.g + 0.7 * shape.small.r, near);
+    land.bare = cover_mosaic(land.bare, shape.broad.a + 0.7 * shape.small.r, near);
+    land.towns = cover_mosaic(land.towns, 0.7 * shape.broad.g + shape.small.a, near);
 }
 
 /// Tangents of two slopes, in degrees, of which the second is the greater one: else smoothstep is undefined.
@@ -176,6 +184,34 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
     float shrubs = smoothstep(0.55, 1.1, rain) * smoothstep(6.0, 11.0, ground.temperature) * smoothstep(0.06, 0.4, steep) *
                    (1.0 - mapped * smoothstep(1.0, 1.8, rain));
     return mix(open, cover_scrub, 0.85 * shrubs);
+}
+
+/// Fields of some 400 x 250 m, green, ripe or bare; from afar their mean.
+vec3 cover_field(in Surface s, in float green, in float across_m) {
+    const mat2 per_m = mat2(0.7986 / 420.0, 0.6018 / 260.0, -0.6018 / 420.0, 0.7986 / 260.0);
+    vec2 within;
+    ivec2 cell = ground_cell(s.anchored_m, per_m, within);
+    float kind = noise_random(cell, 0u), tone = 0.8 + 0.4 * noise_random(cell, 1u);
+    float greens = 0.12 + 0.75 * green, soils = 0.5 - 0.5 * greens;
+    vec3 mean = greens * cover_crop + soils * cover_soil + (1.0 - greens - soils) * cover_ripe;
+    vec3 one = tone * (kind < greens ? cover_crop : kind < greens + soils ? cover_soil : cover_ripe);
+    return mix(mean, one, 0.8 - 0.8 * smoothstep(60.0, 260.0, across_m));
+}
+
+/// Ground without trees, by what covers land.
+vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in float growth, in cover_Shape shape) {
+    float moor = smoothstep(-8.5, -5.5, -ground.temperature) * smoothstep(2.0, 4.0, ground.dryness);
+    vec3 grass = mix(cover_straw, cover_grass, ground.green);
+    grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
+    vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
+    float gardens = smoothstep(-0.2, 0.2, shape.small.a + 0.5 * shape.small.g);
+    vec3 town = mix(cover_town, grass, 0.25 + 0.4 * gardens);
+    float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
+    vec4 shares = vec4(rest, land.fields, land.bare, land.towns) / max(rest + land.fields + land.bare + land.towns, 1e-3);
+    vec3 open = shares.x * low + shares.y * cover_field(s, ground.green, shape.across_m) + shares.z * cover_soil + shares.w * town;
+    // The ground's colour is that of its soil: fields and meadows show less of it, towns the least.
+    float bare_tint = mix(0.95, 0.4, smoothstep(0.5, 1.2, ground.dryness));
+    return open * exp2(dot(shares, vec4(0.75, 0.6, bare_tint, 0.25)) * land.tint);
 }
 
 vec3 cover_forest(in ClimateGround ground, in float growth) {
@@ -280,7 +316,7 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, 
     return canopy;
 }
 
-cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain, in float growth,
+cover_Shares cover_shares(in ClimateGround ground, in LandClasses land, in vec2 white, in float rain, in float growth,
                           in cover_Shape shape) {
     cover_Shares shares;
     float ragged = shape.ragged;
@@ -299,6 +335,8 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
     float flats = 1.0 - smoothstep(0.01, 0.15, shape.steep * (1.0 + 0.3 * ragged));
     wooded *= 1.0 - cover_open_flats * temperate * flats * shape.fine;
+    float line = smoothstep(0.55, 1.05, growth + 0.16 * ragged - 0.06 * shape.steep);
+    wooded = mix(wooded, land.trees * line, land.known);
     shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85 * rooted, 1.3 * rooted, shape.steep));
 
     vec2 bare = cover_tangents(cover_bare_deg);
@@ -359,15 +397,18 @@ void cover_on_albedo(inout Surface s) {
     vec2 white = cover_white_at(place, s.height_m - cover_aspect_m * shape.sunny);
     float growth = cover_growth(ground, s.height_m);
     float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny * shape.fine);
-    cover_Shares shares = cover_shares(ground, white, rain, growth, shape);
     LandCover map = land_cover_at(s.post, s.pixel_posts);
+    LandClasses land = land_classes_at(s.post, s.pixel_posts, s.up);
+    land.known *= 1.0 - map.known;
+    cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
     if (map.known > 0.0) cover_take_map(map, shares, rain);
-    cover_part(shares, shape);
+    cover_part(shares, land, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.
     float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.01);
     float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
+    open = mix(open, cover_land(land, s, ground, growth, shape), land.known);
     // Dry land lies as low as the shore of the Dead Sea.
     float floor_share = max((1.0 - smoothstep(-30.0, -12.0, s.height_m)) * smoothstep(0.6, 1.2, rain),
                             1.0 - smoothstep(-600.0, -440.0, s.height_m));

@@ -13,13 +13,17 @@ struct ClimateGround {
     float temperature;  // mean of the year [degC]
 };
 
-/// Where a place is in the table, for the functions below. @param up  the ellipsoid's normal there
-vec2 climate_place(in vec3 up) {
+/// Longitude off the DEM's centre and latitude. @param up  the ellipsoid's normal there
+vec2 climate_angles(in vec3 up) {
     vec3 axis = frame.polar_axis.xyz;
     // Off the axis: towards the DEM's centre, and east of it.
     vec2 off = vec2(axis.y * up.z - axis.z * up.y, up.x);
-    vec2 angles = vec2(atan(off.y, off.x), atan(dot(axis, up), length(off)));
-    return angles * frame.climate_place.xz + frame.climate_place.yw;
+    return vec2(atan(off.y, off.x), atan(dot(axis, up), length(off)));
+}
+
+/// Where a place is in the table, for the functions below. @param up  the ellipsoid's normal there
+vec2 climate_place(in vec3 up) {
+    return climate_angles(up) * frame.climate_place.xz + frame.climate_place.yw;
 }
 
 float climate_level(in float height_m) {

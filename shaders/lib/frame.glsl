@@ -51,7 +51,8 @@ layout(std140, binding = 0) uniform Frame {
                               // whole steps of 2048 m; zw: from there to the eye [m]
     vec4 overlay_texels;        // of an overlay, for lib/overlay.glsl; xy: post of its first texel, zw: texels per post
     vec4 overlay_shape;          // xy: its last texel, z: levels, w: 1 where it is lit
-    vec4 land_cover;          // x: 1 where there is a map of what covers the ground, else 0
+    vec4 land_cover;          // of lib/land.glsl; x: 1 where there is a map of what covers the ground, y: 1 where that is
+                              // made of shares, else 0; zw: texels of land_classes to a column and row
     vec4 eye_post;            // below the eye, column and row of the DEM; xy: whole parts, zw: fractions
     vec4 eye_axes;            // xy: columns and rows to a metre east, zw: north, there; 0 where that is unknown
     float seconds;            // of effects that move [s]: --seconds, or the time that the window has been open
@@ -87,4 +88,5 @@ layout(std140, binding = 0) uniform Frame {
     float air_scale;          // of distances in the air before the ground: below 1 in aerial views of wide DEMs
     float sea_rim_share;      // of the posts along the DEM's edge that are sea, 0..1
     float beyond;             // 1 where level ground is made up beyond the DEM (lib/beyond.glsl), else 0
+    vec4 land_place;          // as climate_place, of land_around
 } frame;

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <future>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "climate/climate_map.h"
+#include "climate/land_map.h"
+#include "dem/pyramid.h"
+#include "geo/local_frame.h"
+#include "gl/texture.h"
+#include "render/climate_volume.h"
+#include "render/frame_block.h"
+
+namespace relevo::render {
+
+/// Samplers in lib/land.glsl.
+inline constexpr const char* kLandClassesTexture = "land_classes";
+inline constexpr const char* kLandAroundTexture = "land_around";
+
+using LandTexel = std::array<std::uint8_t, 4>;
+/// Of both textures, by level.
+struct LandTexels {
+    std::vector<std::vector<LandTexel>> classes, around;
+};
+
+/// What nature and people make of a DEM's ground: tables of the climate, and of what covers land,
+/// made when programs first read them.
+class NaturalGround {
+  public:
+    /// @param grid, frame, pyramid  must outlive this
+    NaturalGround(const dem::Grid& grid, const geo::LocalFrame& frame, const dem::Pyramid& pyramid)
+        : grid_(grid), frame_(frame), pyramid_(pyramid) {}
+
+    /// The climate map, read when first needed.
+    /// @throws Error (BadInput) if it is missing or damaged; so do the others
+    const climate::ClimateMap& climate_map();
+
+    /// Updates the climate's tables to the snow of a day, 0 to 364, and writes where they are.
+    void update_climate(int day, FrameBlock& block);
+    /// Begins to make the textures of land cover, in the background, and writes where they are.
+    /// After update_climate().
+    void update_land(FrameBlock& block);
+    /// By the sampler's name; null for others, and before the updates. Waits for the background.
+    const gl::Texture* texture(std::string_view name) const;
+
+  private:
+    /// Of the ground around a place, at the coarsest level; NaN where there is none [m].
+    float mean_height_m(const geo::Geodetic& place) const;
+    void make_climate();
+    int level_of_sites() const;
+    Array2d<climate::LandShares> classes_of_sites(const climate::LandMap& map) const;
+    std::vector<LandTexel> classes_around(const climate::LandMap& map,
+                                          const climate::Box& box) const;
+    LandTexels make_land(const climate::LandMap& map, const climate::Box& box) const;
+    void finish_land() const;
+
+    const dem::Grid& grid_;
+    const geo::LocalFrame& frame_;
+    const dem::Pyramid& pyramid_;
+    std::optional<climate::ClimateMap> climate_map_;
+    std::optional<ClimateVolume> climate_;
+    mutable gl::Texture land_classes_, land_around_;
+    glm::vec4 land_place_{0};
+    bool has_land_ = false, knows_land_ = false;
+    // Last member: its thread reads the members above.
+    mutable std::future<LandTexels> making_;
+};
+
+}  // namespace relevo::render
