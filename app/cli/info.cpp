@@ -124,7 +124,8 @@ nlohmann::ordered_json to_json(const session::ClimateReport& report) {
             {"ice_line_m", line(report.ice_line_m)},
             {"date", sun::to_string(report.date)},
             {"snow_line_m", line(report.snow_line_m)},
-            {"ground_cover", climate::name_of(report.cover)}};
+            {"ground_cover", climate::name_of(report.cover)},
+            {"land_cover", session::kLandCoverText}};
 }
 
 /// What depends on the time.
@@ -208,6 +209,7 @@ void add_info(Verb app) {
                        sun::to_iso(moment->utc));
             fmt::print("{:<10} {}\n", "climate", session::climate_text(moment->climate));
             fmt::print("{:<10} {}\n", "ground", session::ground_text(moment->climate));
+            fmt::print("{:<10} {}\n", "land cover", session::kLandCoverText);
         }
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);

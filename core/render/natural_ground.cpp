@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -104,22 +105,27 @@ geo::Geodetic place_in(const climate::Box& box, double column, double row) {
                              box.west_deg + (box.east_deg - box.west_deg) * column / (kAround - 1));
 }
 
-/// Tint and share of shrubs, as lib/land.glsl reads them.
-std::vector<Texel> looks_around(const climate::LandMap& map, const climate::Box& box) {
-    const auto coded = [](float factor) { return byte_of(0.25F * std::log2(factor) + 0.5F); };
+/// A layer of what is around, of texels by latitude and longitude [deg].
+std::vector<std::vector<Texel>> layer_around(
+    const climate::Box& box, const std::function<Texel(double lat_deg, double lon_deg)>& texel) {
     std::vector<Texel> texels;
     for (int row = 0; row < kAround; ++row)
         for (int column = 0; column < kAround; ++column) {
             const geo::Geodetic place = place_in(box, column, row);
-            const double lat_deg = degrees(place.lat_rad), lon_deg = degrees(place.lon_rad);
-            const climate::Colour tint = map.tint(lat_deg, lon_deg);
-            const LandShares shares = map.shares(lat_deg, lon_deg);
-            const float shrub = shares[static_cast<std::size_t>(Land::Shrub)];
-            const float grass = shares[static_cast<std::size_t>(Land::Grass)];
-            texels.push_back({coded(tint[0]), coded(tint[1]), coded(tint[2]),
-                              byte_of(shrub / std::max(shrub + grass, 1e-3F))});
+            texels.push_back(texel(degrees(place.lat_rad), degrees(place.lon_rad)));
         }
-    return texels;
+    return mipmaps_of(std::move(texels), {kAround, kAround});
+}
+
+/// Tint and share of shrubs.
+Texel looks_at(const climate::LandMap& map, double lat_deg, double lon_deg) {
+    const auto coded = [](float factor) { return byte_of(0.25F * std::log2(factor) + 0.5F); };
+    const climate::Colour tint = map.tint(lat_deg, lon_deg);
+    const LandShares shares = map.shares(lat_deg, lon_deg);
+    const float shrub = shares[static_cast<std::size_t>(Land::Shrub)];
+    const float grass = shares[static_cast<std::size_t>(Land::Grass)];
+    return {coded(tint[0]), coded(tint[1]), coded(tint[2]),
+            byte_of(shrub / std::max(shrub + grass, 1e-3F))};
 }
 
 }  // namespace
@@ -154,10 +160,11 @@ void NaturalGround::update_climate(int day, FrameBlock& block) {
 void NaturalGround::update_land(FrameBlock& block) {
     if (!has_land_) {
         has_land_ = true;
+        if (!climate_) update_climate(0, block);
         const climate::Box box = widened(box_of(grid_, frame_.origin()), kLeastAround_deg);
         land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
         const auto map = std::make_shared<const climate::LandMap>(climate_map(), box);
-        knows_land_ = map->is_known();
+        knows_land_ = map->is_known() && !climate_alone_;
         making_ = std::async(std::launch::async | std::launch::deferred,
                              [this, map, box] { return make_land(*map, box); });
     }
@@ -170,10 +177,14 @@ LandTexels NaturalGround::make_land(const climate::LandMap& map, const climate::
     LandTexels land{
         .classes = mipmaps_of(texels_of(classes_of_sites(map)), pyramid_.size(level_of_sites())),
         .around = mipmaps_of(classes_around(map, box), {kAround, kAround})};
-    const auto looks = mipmaps_of(looks_around(map, box), {kAround, kAround});
-    for (std::size_t level = 0; level < looks.size(); ++level)
-        land.around[level].insert(land.around[level].end(), looks[level].begin(),
-                                  looks[level].end());
+    const auto looks = layer_around(
+        box, [&](double lat_deg, double lon_deg) { return looks_at(map, lat_deg, lon_deg); });
+    const auto water = layer_around(box, [&](double lat_deg, double lon_deg) {
+        return Texel{byte_of(map.water(lat_deg, lon_deg)), 0, 0, 0};
+    });
+    for (std::size_t level = 0; level < land.around.size(); ++level)
+        for (const auto& layer : {looks[level], water[level]})
+            land.around[level].insert(land.around[level].end(), layer.begin(), layer.end());
     return land;
 }
 
@@ -185,7 +196,7 @@ void NaturalGround::finish_land() const {
                                 kLandClassesTexture);
     land_classes_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
     write(land_classes_, made.classes);
-    land_around_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {kAround, kAround, 2},
+    land_around_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {kAround, kAround, 3},
                                0, kLandAroundTexture);
     land_around_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
     write(land_around_, made.around);

@@ -32,8 +32,10 @@ struct LandTexels {
 class NaturalGround {
   public:
     /// @param grid, frame, pyramid  must outlive this
-    NaturalGround(const dem::Grid& grid, const geo::LocalFrame& frame, const dem::Pyramid& pyramid)
-        : grid_(grid), frame_(frame), pyramid_(pyramid) {}
+    /// @param climate_alone         land cover is not known
+    NaturalGround(const dem::Grid& grid, const geo::LocalFrame& frame, const dem::Pyramid& pyramid,
+                  bool climate_alone)
+        : grid_(grid), frame_(frame), pyramid_(pyramid), climate_alone_(climate_alone) {}
 
     /// The climate map, read when first needed.
     /// @throws Error (BadInput) if it is missing or damaged; so do the others
@@ -42,7 +44,6 @@ class NaturalGround {
     /// Updates the climate's tables to the snow of a day, 0 to 364, and writes where they are.
     void update_climate(int day, FrameBlock& block);
     /// Begins to make the textures of land cover, in the background, and writes where they are.
-    /// After update_climate().
     void update_land(FrameBlock& block);
     /// By the sampler's name; null for others, and before the updates. Waits for the background.
     const gl::Texture* texture(std::string_view name) const;
@@ -61,6 +62,7 @@ class NaturalGround {
     const dem::Grid& grid_;
     const geo::LocalFrame& frame_;
     const dem::Pyramid& pyramid_;
+    bool climate_alone_;
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
     mutable gl::Texture land_classes_, land_around_;

@@ -248,7 +248,7 @@ struct Renderer::Impl : FrameServices {
         if (reads(kLightByHeightTexture)) light.update(inputs, block);
         update_air(inputs, block);
         if (reads(kClimateTexture)) terrain.natural().update_climate(day_of(inputs.unix_s), block);
-        if (reads(kLandClassesTexture)) terrain.natural().update_land(block);
+        if (reads(kLandAroundTexture)) terrain.natural().update_land(block);
         const dem::Pyramid& posts = terrain.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};

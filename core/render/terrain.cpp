@@ -118,7 +118,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
-      natural_(grid_, frame_, pyramid_),
+      natural_(grid_, frame_, pyramid_, options.climate_alone),
       light_(heightfield, frame, options.sky, options.shadows_on, options.memory.light_posts),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),

@@ -89,10 +89,15 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return text(kHoles[static_cast<std::size_t>(s.holes)]); },
      [](Scene& s, const Value& v) { s.holes = dem::Holes{index_of(kHoles, v)}; }},
     {"", "land_cover", "--land-cover", "Options",
-     "Map of land cover, a raster of classes: what grows where, instead of the climate's word",
-     Kind::Text, 0, 0, {},
-     [](const Scene& s) { return text(s.land_cover.file); },
-     [](Scene& s, const Value& v) { s.land_cover.file = v.text; }},
+     "Map of land cover, a raster of classes: what grows where. none: the climate alone says it, and "
+     "not shares of 0.05 degrees, which are the default", Kind::Text, 0, 0, {},
+     [](const Scene& s) {
+         return s.land_cover.climate_alone ? Value{.text = "none"} : text(s.land_cover.file);
+     },
+     [](Scene& s, const Value& v) {
+         s.land_cover.climate_alone = v.text == "none";
+         s.land_cover.file = s.land_cover.climate_alone ? "" : v.text;
+     }},
     {"", "land_cover_classes", "--land-cover-classes", "Options",
      "Classes of the land cover: worldcover, nlcd, corine, or a table, CLASS,TREES,PLANTS,ICE",
      Kind::Text, 0, 0, {},

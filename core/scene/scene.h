@@ -53,8 +53,9 @@ bool names_file(std::string_view name_or_path);
 
 /// A map of what grows on the ground and what is bare, which effects take for the climate's word.
 struct LandCover {
-    std::string file;     ///< a raster of classes that GDAL opens; empty: none
+    std::string file;     ///< a raster of classes that GDAL opens; empty: no map
     std::string classes;  ///< what they are: a name that the program knows, or a table's file
+    bool climate_alone = false;  ///< without the shares that come with the program
 
     bool operator==(const LandCover&) const = default;
 };

@@ -37,4 +37,8 @@ std::string climate_text(const ClimateReport& report);
 /// "trees up to 1890 m, permanent ice from 2990 m, snow from 2440 m on 2026-06-21".
 std::string ground_text(const ClimateReport& report);
 
+/// Where the land cover of pictures comes from if no map is given.
+inline constexpr const char* kLandCoverText =
+    "generated from shares of 0.05 degrees, not mapped; MODIS MCD12C1 (NASA LP DAAC), NASA Blue Marble";
+
 }  // namespace relevo::session

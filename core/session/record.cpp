@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "dem/versions.h"
 #include "effect/selection.h"
+#include "session/climate_words.h"
 #include "session/active_effects.h"
 #include "session/panorama_maker.h"
 #include "session/scene_weather.h"
@@ -193,6 +194,8 @@ std::string sidecar_text(const Session& session, SceneInputs& inputs, const std:
             json["weather"]["forecast"] = weather->forecast->summary();
         json["weather"]["station_height_m"] = weather->station_m;
     }
+    if (!scene.land_cover.climate_alone && !session.climate_text().empty())
+        json["land_cover"] = kLandCoverText;
     json["effects"] = ordered_json::array();
     for (const effect::Effect* effect : session.effects().loaded.selection.effects)
         json["effects"].push_back(effect->id());

@@ -283,6 +283,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
                         .land_cover = land_cover,
+                        .climate_alone = state.scene.land_cover.climate_alone,
                         .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
                                                                       : render::ShadowsOn::Device},

@@ -50,7 +50,7 @@ uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Bare 
 uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, green")
 uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
-uniform vec3 cover_town = vec3(0.180, 0.160, 0.144); //@ colour label("Towns")
+uniform vec3 cover_town = vec3(0.168, 0.150, 0.132); //@ colour label("Towns")
 uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
@@ -191,11 +191,13 @@ vec3 cover_field(in Surface s, in float green, in float across_m) {
     const mat2 per_m = mat2(0.7986 / 420.0, 0.6018 / 260.0, -0.6018 / 420.0, 0.7986 / 260.0);
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m, per_m, within);
-    float kind = noise_random(cell, 0u), tone = 0.8 + 0.4 * noise_random(cell, 1u);
+    float seen = 1.0 - smoothstep(40.0, 160.0, across_m);
+    float kind = noise_random(cell, 0u), tone = 0.72 + 0.56 * noise_random(cell, 1u);
     float greens = 0.12 + 0.75 * green, soils = 0.5 - 0.5 * greens;
     vec3 mean = greens * cover_crop + soils * cover_soil + (1.0 - greens - soils) * cover_ripe;
-    vec3 one = tone * (kind < greens ? cover_crop : kind < greens + soils ? cover_soil : cover_ripe);
-    return mix(mean, one, 0.8 - 0.8 * smoothstep(60.0, 260.0, across_m));
+    vec3 one = kind < greens ? cover_crop : kind < greens + soils ? cover_soil : cover_ripe;
+    // Half of a field is as all are: hedges, weeds and what the last year has left.
+    return mix(vec3(1.0), vec3(tone), seen) * mix(mean, one, 0.5 * seen);
 }
 
 /// Ground without trees, by what covers land.
@@ -205,7 +207,7 @@ vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in f
     grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
     float gardens = smoothstep(-0.2, 0.2, shape.small.a + 0.5 * shape.small.g);
-    vec3 town = mix(cover_town, grass, 0.25 + 0.4 * gardens);
+    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.3 + 0.4 * gardens);
     float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
     vec4 shares = vec4(rest, land.fields, land.bare, land.towns) / max(rest + land.fields + land.bare + land.towns, 1e-3);
     vec3 open = shares.x * low + shares.y * cover_field(s, ground.green, shape.across_m) + shares.z * cover_soil + shares.w * town;

@@ -315,7 +315,7 @@ vec3 sky_on_beyond(in Surface s, in vec3 view) {
     vec3 light = light_of_sky_at(s.height_m, s.up) + max(dot(to_sun, s.up), 0.0) * direct;
     // Where the floor is seen, the sea is a map, and mirrors nothing.
     bool is_map = frame.sea_floor_share > 0.1;
-    float sea = sky_earth_sea ? surround_sea_here(s.ground_m.xy) : 0.0;
+    float sea = sky_earth_sea ? surround_sea_here(s.ground_m.xy, s.up) : 0.0;
     float cosine = -dot(view, s.up), mirrored = is_map ? 0.0 : sea * surround_mirrored(cosine);
     vec3 radiance = light * mix(s.diffuse, is_map ? surround_sea_albedo : surround_deep_albedo, sea);
     radiance = mix(radiance, sky_on_background_radiance(normalize(view + 2.0 * cosine * s.up), false), mirrored);

@@ -1,5 +1,5 @@
 //! provides  land_cover_at: what covers the ground by a map (--land-cover); land_classes_at: by the shares that come
-//!           with the program
+//!           with the program; land_water_at: water beyond the DEM
 //! reads     water pages: the second half of their slices has the map; land_classes and land_around, of
 //!           render/natural_ground.h
 
@@ -7,7 +7,7 @@
 //@ include lib/water.glsl
 
 uniform sampler2D land_classes;       // of the DEM: shares of trees, fields, bare ground and towns
-uniform sampler2DArray land_around;   // of the DEM and the country around it, below: the same; above: tint and shrubs
+uniform sampler2DArray land_around;   // of the DEM and the country around it: the same, then tint and shrubs, then water
 
 /// What covers the ground of a pixel: shares of it, 0..1. The rest is bare.
 struct LandCover {
@@ -36,20 +36,30 @@ struct LandClasses {
     float known;   // 1, or 0 where nothing is known
 };
 
+/// Where a place is in land_around, and the level to read: beyond what is known it is as in the mean.
+vec3 land_place(in vec3 up) {
+    vec2 place = climate_angles(up) * frame.land_place.xz + frame.land_place.yw, off = abs(place - 0.5);
+    return vec3(place, 8.0 * smoothstep(0.4, 0.56, max(off.x, off.y)));
+}
+
+/// Share of water in the country around, 0..1. @param up  the ellipsoid's normal there
+float land_water_at(in vec3 up) {
+    vec3 place = land_place(up);
+    return textureLod(land_around, vec3(place.xy, 2.0), place.z).r;
+}
+
 /// @param post, pixel_posts  as land_cover_at
 /// @param up                 the ellipsoid's normal there
 LandClasses land_classes_at(in vec2 post, in float pixel_posts, in vec3 up) {
-    vec2 place = climate_angles(up) * frame.land_place.xz + frame.land_place.yw;
+    vec3 place = land_place(up);
 #ifdef BEYOND_PX
-    // Beyond what is known of the country it is as in the mean.
-    vec2 off = abs(place - 0.5);
-    float level = 8.0 * smoothstep(0.4, 0.56, max(off.x, off.y));
-    vec4 shares = textureLod(land_around, vec3(place, 0.0), level);
+    vec4 shares = textureLod(land_around, vec3(place.xy, 0.0), place.z);
 #else
     vec2 texels = vec2(textureSize(land_classes, 0));
-    float wide = floor(log2(max(pixel_posts * frame.land_cover.z, 1.0)) + 0.5), level = 0.0;
-    vec4 shares = textureLod(land_classes, (post * frame.land_cover.zw + 0.5) / texels, wide);
+    float level = floor(log2(max(pixel_posts * frame.land_cover.z, 1.0)) + 0.5);
+    vec4 shares = textureLod(land_classes, (post * frame.land_cover.zw + 0.5) / texels, level);
+    place.z = 0.0;  // the DEM is in the middle
 #endif
-    vec4 around = textureLod(land_around, vec3(place, 1.0), level);
-    return LandClasses(shares.r, shares.g, shares.b, shares.a, around.a, 4.0 * around.rgb - 2.0, frame.land_cover.y);
+    vec4 looks = textureLod(land_around, vec3(place.xy, 1.0), place.z);
+    return LandClasses(shares.r, shares.g, shares.b, shares.a, looks.a, 4.0 * looks.rgb - 2.0, frame.land_cover.y);
 }

@@ -1,7 +1,9 @@
 //! provides  surround_sea, surround_sea_albedo: the sea around a DEM that is mostly sea; surround_sea_here: where the
 //!           DEM ends in one; surround_post: the nearest post of the DEM
-//! reads     share of the DEM's posts that are floor of a sea, and of those along its edge that are sea; water pages
+//! reads     share of the DEM's posts that are floor of a sea, and of those along its edge that are sea; water pages;
+//!           land_around
 
+//@ include lib/land.glsl
 //@ include lib/water.glsl
 
 /// Albedo of a deep sea as overviews show it, chosen by eye.
@@ -21,19 +23,22 @@ vec2 surround_post(in vec2 ground_m) {
     return clamp(surround_place(ground_m), vec2(0.0), frame.posts.xy - 1.0);
 }
 
-/// How far a place beyond the DEM is sea, 0 to 1: as the DEM's edge is, over a width that grows with the distance from
-/// it, as nobody knows that coast.
-float surround_sea_here(in vec2 ground_m) {
+/// How far a place beyond the DEM is water, 0 to 1: near the DEM as its edge is, over a width that grows with the distance
+/// from it, and farther away as a map of coarse cells has it.
+/// @param up  the ellipsoid's normal there
+float surround_sea_here(in vec2 ground_m, in vec3 up) {
     vec2 post = surround_post(ground_m), outwards = surround_place(ground_m) - post;
     vec2 aside = vec2(-outwards.y, outwards.x);
     float some = 0.0;
     for (int i = -3; i <= 3; ++i) {
         vec4 water = water_at(clamp(post + 0.25 * float(i) * aside, vec2(0.0), frame.posts.xy - 1.0),
                               8.0 + 0.5 * length(outwards));
-        some += water.x * water.y / 7.0;
+        some += water.x * mix(water.y, 1.0, frame.land_cover.y) / 7.0;
     }
-    some *= smoothstep(0.05, 0.15, frame.sea_rim_share);
-    return max(mix(some, 1.0, smoothstep(0.7, 0.85, frame.sea_rim_share)), surround_sea());
+    some *= max(smoothstep(0.05, 0.15, frame.sea_rim_share), frame.land_cover.y);
+    some = max(mix(some, 1.0, smoothstep(0.7, 0.85, frame.sea_rim_share)), surround_sea());
+    float mapped = smoothstep(0.35, 0.65, land_water_at(up)), away_m = length(outwards) / frame.normal_texels_per_m;
+    return mix(some, mapped, frame.land_cover.y * smoothstep(1000.0, 12000.0, away_m));
 }
 
 /// Albedo of a deep sea that is seen from low enough to mirror the sky, as that of `sea`.
