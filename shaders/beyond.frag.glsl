@@ -44,6 +44,7 @@ Surface beyond_surface(in vec3 ray, in vec3 position_m, in float distance_m) {
     s.diffuse = s.ambient = vec3(0.3);
     s.specular = s.emissive = vec3(0.0);
     s.gloss = 1.0;
+    s.forest = -1.0;
     s.shininess = 8.0;
     return s;
 }

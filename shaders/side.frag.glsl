@@ -54,6 +54,7 @@ void main() {
     s.dem_height_m = s.height_m;
     s.above_ground_m = side_height_m - side_ground_m;
     s.gloss = 1.0;
+    s.forest = -1.0;
     s.material = ivec2(0);
     s.material_weight = vec2(1.0, 0.0);
     s.diffuse = s.ambient = vec3(0.3);

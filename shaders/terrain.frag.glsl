@@ -157,6 +157,7 @@ void main() {
     s.texture_dx = s.ground_dx_m.xy;
     s.texture_dy = s.ground_dy_m.xy;
     s.gloss = 1.0;
+    s.forest = -1.0;
     s.material = ivec2(0);
     s.material_weight = vec2(1.0, 0.0);
     s.diffuse = vec3(0.3);

@@ -1,7 +1,7 @@
 //! provides  materials: natural ground by climate, height, date and shape
 //! hook      albedo, normal
 //! reads     the climate's tables, a map of land cover, height [m], slope and aspect, ground coordinates [m]
-//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess, normal
+//! writes    forest, material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess, normal
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
@@ -404,6 +404,7 @@ void cover_on_albedo(inout Surface s) {
     land.known *= 1.0 - map.known;
     cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
     if (map.known > 0.0) cover_take_map(map, shares, rain);
+    s.forest = shares.forest * (1.0 - shares.rock);
     cover_part(shares, land, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.

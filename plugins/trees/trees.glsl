@@ -51,19 +51,16 @@ float trees_tone(in Surface s) {
 
 /// @param normal  of the ground, not exaggerated
 /// @param water   share of the ground that is water
-/// @param post, pixel_posts  where maps tell anything, they say where forest is instead of the climate
-trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 anchored_m, in float water, in vec2 post,
-                        in float pixel_posts) {
+/// @param map     where it tells anything, it says where forest is instead of the climate
+trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 anchored_m, in float water,
+                        in LandCover map) {
     ClimateGround ground = climate_ground(climate_place(up), height_m);
     float growth = ground.growth + trees_line_m / 450.0;
     float cosine = clamp(dot(normal, up), 0.02, 1.0);
     float steep = sqrt(1.0 - cosine * cosine) / cosine;
     vec2 slopes = tan(radians(min(trees_slope_deg, vec2(89.0))));
     trees_Stand stand;
-    LandCover map = land_cover_at(post, pixel_posts);
-    LandClasses land = land_classes_at(post, pixel_posts, up);
     float wooded = smoothstep(1.0, 2.1, ground.dryness) * smoothstep(0.85, 1.2, growth - 0.06 * steep);
-    wooded = mix(wooded, land.trees * smoothstep(0.55, 1.05, growth - 0.06 * steep), land.known);
     wooded = mix(wooded, map.trees, map.known);
     float closed = mix(1.0, smoothstep(0.2, 0.55, trees_noise(anchored_m, 140.0, 7u)), trees_clearings);
     stand.density = trees_density * wooded * closed * (1.0 - smoothstep(slopes.x, max(slopes.y, slopes.x + 1e-3), steep)) *
@@ -126,9 +123,18 @@ float trees_crown_sunlight(in trees_Stand stand, in float per_m2) {
     return mix(trees_light, 1.0, crown_sunlight(slant.x + slant.y, slant.x / max(slant.x + slant.y, 1e-6)));
 }
 
+/// A map of land cover, and where it tells nothing the shares that come with the program.
+LandCover trees_map(in VertexFrame ground) {
+    LandCover map = land_cover_at(ground.post, 1.0);
+    LandClasses land = land_classes_at(ground.post, 1.0, ground.up);
+    float growth = climate_ground(climate_place(ground.up), ground.height_m).growth + trees_line_m / 450.0;
+    float known = land.known * (1.0 - map.known), trees = land.trees * smoothstep(0.55, 1.05, growth);
+    return LandCover(mix(map.trees, trees, known), map.plants, map.ice, max(map.known, known));
+}
+
 void trees_place_tree(in InstanceSite at, inout Instance it) {
     trees_Stand stand = trees_stand(at.ground.up, at.ground.height_m, at.normal, at.ground.anchored_m,
-                                    water_at(at.ground.post, 1.0).x, at.ground.post, 1.0);
+                                    water_at(at.ground.post, 1.0).x, trees_map(at.ground));
     bool conifer = at.random.y < stand.conifers;
     Crown crown = trees_crown(stand, conifer);
     it.kind = conifer ? 0 : 1;
@@ -141,8 +147,8 @@ void trees_place_tree(in InstanceSite at, inout Instance it) {
 }
 
 void trees_on_material(inout Surface s) {
-    trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x, s.post,
-                                    s.pixel_posts);
+    trees_Stand stand = trees_stand(s.up, s.height_m, s.ground_normal, s.anchored_m, water_of(s).x,
+                                    s.forest < 0.0 ? land_cover_at(s.post, s.pixel_posts) : LandCover(s.forest, 0.0, 0.0, 1.0));
     float per_m2 = trees_per_m2(stand), range_m = trees_range_m();
     float shaded = per_m2 * instances_shadow_share(s.position_m, range_m);  // by shadows that are drawn
     float to_sun = dot(frame.sun_direction.xyz, s.up), apart = trees_apart(stand, -s.position_m / s.distance_m, s.up);

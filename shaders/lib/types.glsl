@@ -50,6 +50,7 @@ struct Surface {
     float above_ground_m;     // of a cut side: above the DEM's ground, in water that effects have raised it by; else 0 or below
     float dem_height_m;       // of the DEM's posts, also where coarser ground is drawn; with dem_step_m for contours [m]
     float dem_step_m;         // how dem_height_m changes from a pixel to the next one uphill [m/px]; 0 on level ground
+    float forest;             // share of the ground that is wooded, 0..1, where the provider of `materials` knows; else below 0
 };
 
 /// A pixel of the picture, whatever it shows.
