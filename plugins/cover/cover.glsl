@@ -186,18 +186,22 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
     return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
-/// Fields of some 400 x 250 m, green, ripe or bare; from afar their mean.
-vec3 cover_field(in Surface s, in float green, in float across_m) {
+/// A plot of some 400 x 250 m, a field or a block of houses: two numbers of it, 0..1, and how far single ones are seen.
+vec3 cover_plot(in Surface s, in float across_m) {
     const mat2 per_m = mat2(0.7986 / 420.0, 0.6018 / 260.0, -0.6018 / 420.0, 0.7986 / 260.0);
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m, per_m, within);
-    float seen = 1.0 - smoothstep(40.0, 160.0, across_m);
-    float kind = noise_random(cell, 0u), tone = 0.72 + 0.56 * noise_random(cell, 1u);
-    float greens = 0.12 + 0.75 * green, soils = 0.5 - 0.5 * greens;
-    vec3 mean = greens * cover_crop + soils * cover_soil + (1.0 - greens - soils) * cover_ripe;
-    vec3 one = kind < greens ? cover_crop : kind < greens + soils ? cover_soil : cover_ripe;
+    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(40.0, 160.0, across_m));
+}
+
+/// Fields are green, ripe or bare, and most of them between; from afar their mean.
+vec3 cover_field(in vec3 plot, in float green) {
+    float greens = 0.12 + 0.75 * green;
+    vec3 other = mix(cover_soil, cover_ripe, 0.5), one = mix(cover_soil, cover_ripe, plot.y);
+    vec3 mean = mix(other, cover_crop, greens);
+    one = mix(cover_crop, one, smoothstep(greens - 0.5, greens + 0.5, plot.x));
     // Half of a field is as all are: hedges, weeds and what the last year has left.
-    return mix(vec3(1.0), vec3(tone), seen) * mix(mean, one, 0.5 * seen);
+    return mix(1.0, 0.72 + 0.56 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.6 * plot.z);
 }
 
 /// Ground without trees, by what covers land.
@@ -206,11 +210,12 @@ vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in f
     vec3 grass = mix(cover_straw, cover_grass, ground.green);
     grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
-    float gardens = smoothstep(-0.2, 0.2, shape.small.a + 0.5 * shape.small.g);
-    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.3 + 0.4 * gardens);
+    vec3 plot = cover_plot(s, shape.across_m);
+    float gardens = 0.5 + plot.z * (0.9 * plot.x * plot.x - 0.3) + shape.small.a + 0.5 * shape.small.g;
+    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.2 + 0.6 * clamp(gardens, 0.0, 1.0));
     float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
     vec4 shares = vec4(rest, land.fields, land.bare, land.towns) / max(rest + land.fields + land.bare + land.towns, 1e-3);
-    vec3 open = shares.x * low + shares.y * cover_field(s, ground.green, shape.across_m) + shares.z * cover_soil + shares.w * town;
+    vec3 open = shares.x * low + shares.y * cover_field(plot, ground.green) + shares.z * cover_soil + shares.w * town;
     // The ground's colour is that of its soil: fields and meadows show less of it, towns the least.
     float bare_tint = mix(0.95, 0.4, smoothstep(0.5, 1.2, ground.dryness));
     return open * exp2(dot(shares, vec4(0.75, 0.6, bare_tint, 0.25)) * land.tint);
