@@ -17,7 +17,7 @@ namespace relevo::climate {
 namespace {
 
 constexpr double kEarthRadius_m = 6371000;
-constexpr float kSoft = 0.35F;     // temperature of the choice while shares are met
+constexpr float kSoft = 0.2F;     // temperature of the choice while shares are met
 constexpr double kCell_deg = 0.1;  // in which shares are met
 constexpr std::size_t kIceLand = static_cast<std::size_t>(Land::Ice);
 
@@ -222,11 +222,11 @@ class Balance {
             }
             for (std::size_t cell = 0; cell < cells; ++cell)
                 for (std::size_t i = 0; i < kIceLand && count[cell] > 0; ++i) {
-                    constexpr float kSome = 0.003F, kPart = 0.8F, kMost = 4;
+                    constexpr float kSome = 0.003F, kPart = 0.3F, kMost = 4;
                     const float ratio = (goal[cell][i] / count[cell] + kSome) /
                                         (got[cell][i] / count[cell] + kSome);
                     float& bias = bias_.data()[cell][i];
-                    bias = std::clamp(bias + kPart * kSoft * std::log(ratio), -kMost, kMost);
+                    bias = std::clamp(bias + kPart * std::log(ratio), -kMost, kMost);
                 }
         }
         // A cell of which little is known has less of a say.
@@ -247,7 +247,7 @@ class Balance {
 
   private:
     static constexpr double kMostCells = 128;
-    static constexpr int kSteps = 6;
+    static constexpr int kSteps = 8;
 
     struct Sample {
         std::size_t cell;

@@ -32,8 +32,7 @@ struct LandSites {
 /// have the shares that the map has there. Where sites are 150 m apart and more, they have some of
 /// each.
 ///
-/// This is invented within what the map knows: shares are believable, and where a wood stands is
-/// not. Of Sao Tome's land 92 % has the cover of a finer map (tests/climate/test_land_map.cpp).
+/// Shares are what the map knows; where a wood stands is not known. Of Sao Tome's land 92 % has the cover of a finer map (tests/climate/test_land_map.cpp).
 Array2d<LandShares> land_classes(const LandMap& map, const LandSites& sites);
 
 }  // namespace relevo::climate

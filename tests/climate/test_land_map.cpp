@@ -1,7 +1,8 @@
 // Land cover of known places, and how it is shared out over a DEM.
-#include <chrono>
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <fstream>
+#include <map>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -77,8 +78,8 @@ TEST(LandMap, KnowsKnownPlaces) {
         bool hit = false;
         if (place.kind == "class") {
             const LandShares shares = map.shares(place.lat, place.lon);
-            got = kNames[static_cast<std::size_t>(std::ranges::max_element(shares) -
-                                                  shares.begin())];
+            got =
+                kNames[static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin())];
             hit = has_any(got, place.expected);
         } else {
             const Colour ground = map.ground(place.lat, place.lon).value_or(Colour{});
@@ -105,6 +106,159 @@ TEST(LandMap, KnowsKnownPlaces) {
     EXPECT_GE(right["class"].first, 126);
     EXPECT_GE(right["hue"].first, 27);
     EXPECT_GE(right["rgb"].first, 6);
+}
+
+/// Sites of a square on a plain with a ridge from west to east, in the north or south.
+class Hills {
+  public:
+    static constexpr int kSide = 240;
+
+    Hills(double lat, double lon, double spacing_m, double height_m)
+        : lat_(lat), lon_(lon), spacing_m_(spacing_m), heights_(kSide, kSide) {
+        for (int row = 0; row < kSide; ++row)
+            for (int column = 0; column < kSide; ++column)
+                heights_.at(column, row) =
+                    static_cast<float>(300 + height_m * std::exp(-std::pow((row - 120) / 30.0, 2)));
+    }
+
+    geo::Geodetic place(double column, double row) const {
+        const double step_deg = spacing_m_ / kDegree_m;
+        return geo::geodetic_deg(lat_ - (row - kSide / 2) * step_deg,
+                                 lon_ + (column - kSide / 2) * step_deg / std::cos(radians(lat_)));
+    }
+
+    Box box() const {
+        const geo::Geodetic first = place(0, 0), last = place(kSide - 1, kSide - 1);
+        return {degrees(first.lon_rad), degrees(last.lon_rad), degrees(last.lat_rad),
+                degrees(first.lat_rad)};
+    }
+
+    Array2d<LandShares> classes(const LandMap& map, const Growing& growing) const {
+        return land_classes(map, {.height_m = heights_,
+                                  .apart_m = {spacing_m_, spacing_m_},
+                                  .place = [&](double c, double r) { return place(c, r); },
+                                  .growing = [&](const geo::Geodetic&, float) { return growing; }});
+    }
+
+  private:
+    double lat_, lon_, spacing_m_;
+    Array2d<float> heights_;
+};
+
+constexpr Growing kHalfDry{.dryness = 0.9F, .growth = 3, .temperature_c = 11, .ice_m = -4};
+
+float trees_of(const LandShares& shares) {
+    return shares[0] + shares[1];
+}
+
+/// Mean over rows.
+float mean_trees(const Array2d<LandShares>& covers, int first, int last) {
+    float sum = 0;
+    for (int row = first; row < last; ++row)
+        for (int column = 0; column < covers.width(); ++column)
+            sum += trees_of(covers.at(column, row));
+    return sum / static_cast<float>((last - first) * covers.width());
+}
+
+TEST(LandClasses, HaveTheSharesOfTheMapInAllTheDem) {
+    const ClimateMap climate = ClimateMap::shipped();
+    // Cumberland, the Bohemian Forest, and where Missoula is.
+    for (const auto& [lat, lon] :
+         {std::pair(36.3, -84.2), std::pair(49.0, 13.4), std::pair(46.9, -114.0)}) {
+        const Hills hills(lat, lon, 90, 500);
+        const LandMap map(climate, hills.box());
+        Growing wet = kHalfDry;
+        wet.dryness = 2;
+        const Array2d<LandShares> covers = hills.classes(map, wet);
+        LandShares wanted{}, got{};
+        for (int row = 0; row < Hills::kSide; ++row)
+            for (int column = 0; column < Hills::kSide; ++column) {
+                const geo::Geodetic at = hills.place(column, row);
+                const LandShares mapped = map.shares(degrees(at.lat_rad), degrees(at.lon_rad));
+                float sum = 0;
+                for (std::size_t i = 0; i < kLands; ++i) {
+                    wanted[i] += mapped[i] / static_cast<float>(covers.size());
+                    got[i] += covers.at(column, row)[i] / static_cast<float>(covers.size());
+                    sum += covers.at(column, row)[i];
+                }
+                ASSERT_NEAR(sum, 1, 1e-3);
+            }
+        float off = 0;
+        for (std::size_t i = 0; i < kLands; ++i)
+            off += std::abs(wanted[i] - got[i]) / 2;
+        fmt::print("[ land ] {} {}: trees {:.2f}, mapped {:.2f}; {:.3f} of the ground differs\n",
+                   lat, lon, trees_of(got), trees_of(wanted), off);
+        EXPECT_LT(off, 0.1F);
+    }
+}
+
+TEST(LandClasses, WoodsOfDryCountryStandOnShadedSlopes) {
+    const ClimateMap climate = ClimateMap::shipped();
+    const Hills hills(46.9, -114.0, 90, 900);
+    const LandMap map(climate, hills.box());
+    const Array2d<LandShares> covers = hills.classes(map, kHalfDry);
+    const float north = mean_trees(covers, 80, 115), south = mean_trees(covers, 125, 160);
+    const float plain = mean_trees(covers, 0, 40);
+    fmt::print("[ land ] trees on the north slope {:.2f}, south {:.2f}, plain {:.2f}\n", north,
+               south, plain);
+    EXPECT_GT(north, south + 0.1F);
+    EXPECT_GT(0.5F * (north + south), plain);
+}
+
+TEST(LandClasses, HaveNoTreesAboveTheTreeLine) {
+    const ClimateMap climate = ClimateMap::shipped();
+    const Hills hills(47.0, 11.3, 90, 400);
+    const LandMap map(climate, hills.box());
+    Growing high = kHalfDry;
+    high.growth = 0.5F;
+    high.dryness = 3;
+    const float trees = mean_trees(hills.classes(map, high), 0, Hills::kSide);
+    EXPECT_LT(trees, 0.02F);
+    high.growth = 3;
+    EXPECT_GT(mean_trees(hills.classes(map, high), 0, Hills::kSide), 0.1F);
+}
+
+TEST(LandClasses, OfAPartAreMostlyThoseOfTheWhole) {
+    const ClimateMap climate = ClimateMap::shipped();
+    const Hills hills(36.3, -84.2, 90, 500);
+    const LandMap map(climate, hills.box());
+    const Array2d<LandShares> whole = hills.classes(map, kHalfDry);
+    // The same places from a DEM that ends beyond the ridge.
+    Array2d<float> part(Hills::kSide, 150);
+    for (int row = 0; row < part.height(); ++row)
+        for (int column = 0; column < part.width(); ++column)
+            part.at(column, row) =
+                static_cast<float>(300 + 500 * std::exp(-std::pow((row - 120) / 30.0, 2)));
+    const Array2d<LandShares> cut =
+        land_classes(map, {.height_m = part,
+                           .apart_m = {90, 90},
+                           .place = [&](double c, double r) { return hills.place(c, r); },
+                           .growing = [&](const geo::Geodetic&, float) { return kHalfDry; }});
+    int same = 0, again = 0;
+    for (int row = 0; row < 150; ++row)
+        for (int column = 0; column < Hills::kSide; ++column)
+            same += cut.at(column, row) == whole.at(column, row) ? 1 : 0;
+    again = hills.classes(map, kHalfDry) == whole ? 1 : 0;
+    fmt::print("[ land ] {:.1f} % of a part's sites are as in the whole\n",
+               100.0 * same / (150.0 * Hills::kSide));
+    EXPECT_GT(same, 0.88 * 150 * Hills::kSide);
+    EXPECT_EQ(again, 1) << "chance hangs on the place alone";
+}
+
+TEST(LandMap, GoesOnBeyondTheDateLineAndThePoles) {
+    const ClimateMap climate = ClimateMap::shipped();
+    const LandMap east(climate, {179, 181, -18, -16}), west(climate, {-181, -179, -18, -16});
+    for (double lon = 179; lon < 181; lon += 0.13) {
+        EXPECT_EQ(east.shares(-17, lon), west.shares(-17, lon - 360)) << lon;
+        EXPECT_NEAR(east.water(-17, lon), west.water(-17, lon - 360), 1e-5) << lon;
+    }
+    const LandMap pole(climate, {-180, 180, -90, -60});
+    const LandShares ice = pole.shares(-88, 12);
+    EXPECT_GT(ice[static_cast<std::size_t>(Land::Ice)], 0.8F);
+    const LandMap sea(climate, {-150.2, -150, -40.2, -40});
+    EXPECT_FALSE(sea.is_known());
+    EXPECT_EQ(sea.shares(-40.1, -150.1), LandShares{});
+    EXPECT_EQ(sea.tint(-40.1, -150.1), (Colour{1, 1, 1}));
 }
 
 }  // namespace
