@@ -146,16 +146,25 @@ double time_of_year(double unix_s) {
 
 namespace {
 
-/// Factor on distances in the air of views from outside, where true air over a DEM of 100 km washes
-/// out its far half. Towards the ground it becomes 1.
-double air_scale(const Ground& ground, const FrameInputs& inputs, double eye_height_m) {
-    if (!inputs.in_the_air) return 1;
+/// The air before the ground in views from outside, where true air over a DEM of 100 km washes out
+/// its far half. Towards the ground it becomes the true one.
+struct AerialAir {
+    double scale = 1;   // on depths
+    double near_m = 0;  // up to where it is left out, so that the foreground is clear
+};
+
+AerialAir aerial_air(const Ground& ground, const FrameInputs& inputs, double eye_height_m) {
+    if (!inputs.in_the_air) return {};
     constexpr double kClear_m = 6e3, kHigh = 0.1;  // of the DEM's width
     const glm::dvec2 extent_m = ground.north_east_m - ground.south_west_m;
     const double width_m = std::sqrt(extent_m.x * extent_m.y);
     const double above_m = eye_height_m - inputs.exaggeration * inputs.sun.ground_height_m;
     const double high = glm::smoothstep(0.0, 1.0, above_m / (kHigh * width_m));
-    return std::sqrt(std::min(kClear_m / std::max(width_m, 1.0), 1.0)) * high + 1 - high;
+    const glm::dvec2 eye(inputs.camera.eye_m);
+    const glm::dvec2 away = eye - glm::clamp(eye, ground.south_west_m, ground.north_east_m);
+    constexpr double kLeftOut = 0.9;  // of the way to the DEM's edge
+    return {std::sqrt(std::min(kClear_m / std::max(width_m, 1.0), 1.0)) * high + 1 - high,
+            kLeftOut * high * glm::length(glm::dvec3(away, above_m))};
 }
 
 }  // namespace
@@ -266,7 +275,9 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
-    block.air_scale = static_cast<float>(air_scale(ground, inputs, block.eye_m.w));
+    const AerialAir air = aerial_air(ground, inputs, block.eye_m.w);
+    block.air_scale = static_cast<float>(air.scale);
+    block.air_near_m = static_cast<float>(air.near_m);
     block.beyond = inputs.in_the_air ? 1 : 0;
     block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));

@@ -186,12 +186,12 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
     return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
-/// A plot of some 400 x 250 m, a field or a block of houses: two numbers of it, 0..1, and how far single ones are seen.
+/// A plot of some 320 x 190 m, a field or a block of houses: two numbers of it, 0..1, and how far single ones are seen.
 vec3 cover_plot(in Surface s, in float across_m) {
-    const mat2 per_m = mat2(0.7986 / 420.0, 0.6018 / 260.0, -0.6018 / 420.0, 0.7986 / 260.0);
+    const mat2 per_m = mat2(0.7986 / 320.0, 0.6018 / 190.0, -0.6018 / 320.0, 0.7986 / 190.0);
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m, per_m, within);
-    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(40.0, 160.0, across_m));
+    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(30.0, 120.0, across_m));
 }
 
 /// Fields are green, ripe or bare, and most of them between; from afar their mean.
@@ -201,7 +201,7 @@ vec3 cover_field(in vec3 plot, in float green) {
     vec3 mean = mix(other, cover_crop, greens);
     one = mix(cover_crop, one, smoothstep(greens - 0.5, greens + 0.5, plot.x));
     // Half of a field is as all are: hedges, weeds and what the last year has left.
-    return mix(1.0, 0.72 + 0.56 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.6 * plot.z);
+    return mix(1.0, 0.72 + 0.56 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.5 * plot.z);
 }
 
 /// Ground without trees, by what covers land.

@@ -67,7 +67,7 @@ vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strengt
     if (eye_m > 0.0 || point_m > 0.0) {
         float edge = eye_m / (eye_m - point_m);  // share of the way up to the edge of the shadow
         AirBetween air = air_between_eye_and(view, edge * s.distance_m);
-        vec3 before = air.once * (1.0 - exp(-frame.air_scale * (air.depth + edge * strength)));
+        vec3 before = air.once * (1.0 - exp(-air_scale_at(edge * s.distance_m) * (air.depth + edge * strength)));
         lit = eye_m > 0.0 ? before : max(unshaded - before, 0.0);
     }
     // At the horizon the shadow is the Earth's, which the tables have.
@@ -82,7 +82,7 @@ void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     if (haze_air) {
         AirBetween air = air_between_eye_and(view, s.distance_m);
-        vec3 passed = exp(-frame.air_scale * (air.depth + haze_strength));
+        vec3 passed = exp(-air_scale_at(s.distance_m) * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
         air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength);
         radiance = radiance * passed + air_scattered;

@@ -1,9 +1,15 @@
-//! provides  air_radiance, air_ground, air_between_eye_and: the clear atmosphere as the eye of the frame sees it
+//! provides  air_radiance, air_ground, air_between_eye_and, air_scale_at: the clear atmosphere as the eye of the frame sees it
 //! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
 //!           with NO_MOON nothing of the moon, which then lights nothing
 //! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model
 
 //@ include lib/filtered.glsl
+
+/// Factor on the depth of the air up to a distance before the ground: below 1 in aerial views of wide DEMs, whose
+/// foreground is clear.
+float air_scale_at(in float distance_m) {
+    return frame.air_scale * max(1.0 - frame.air_near_m / max(distance_m, 1e-3), 0.0);
+}
 
 uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight that the aerosol scatters once, ground,
                                  // moonlight that the aerosol scatters once

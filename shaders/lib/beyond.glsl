@@ -3,6 +3,8 @@
 //! reads     with BEYOND, in programs of the sky, beyond_ground of beyond.frag.glsl
 //! frame     a sphere through the lowest ground of the DEM, around the Earth's centre below the eye
 
+//@ include lib/air.glsl
+
 uniform sampler2D beyond_ground;  // beyond.frag.glsl
 
 const float beyond_radius_m = 6371000.0;
@@ -27,10 +29,10 @@ float beyond_distance_m(in vec3 direction) {
     return meets ? over / (sqrt(max(inside, 0.0)) - down) : -1.0;
 }
 
-/// Factor on distances in the air before that ground: frame.air_scale near the DEM, 1 near the horizon.
+/// Factor on the depth of the air before that ground: as before the DEM, and that of the true air near the horizon.
 float beyond_air_scale(in float distance_m) {
     float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
-    return mix(frame.air_scale, 1.0, smoothstep(1.2, 6.0, widths));
+    return mix(air_scale_at(distance_m), 1.0, smoothstep(1.2, 6.0, widths));
 }
 
 #ifdef BEYOND

@@ -405,9 +405,9 @@ TEST_F(Toggles, ExposureHoldsFromNoonOnSnowToCivilTwilightToNight) {
     SKIP_WITHOUT_PLUGIN("cover");
     SKIP_WITHOUT_PLUGIN("sky");
     const auto shown = [&](const char* time, std::vector<std::string> more) {
-        more.insert(more.begin(),
-                    {"-q", "capture", bundled_dem(), "-o", (dir_ / "a.png").string(), "--size",
-                     "160x120", "--overwrite", "--view", "az=200,el=35,zoom=3", "--time", time});
+        more.insert(more.begin(), {"-q", "capture", bundled_dem(), "-o", (dir_ / "a.png").string(),
+                                   "--size", "160x120", "--overwrite", "--view",
+                                   "az=200,el=35,zoom=3", "--land-cover", "none", "--time", time});
         EXPECT_EQ(relevo(more).status, 0);
         return picture("a.png");
     };
