@@ -17,7 +17,7 @@ namespace relevo::climate {
 namespace {
 
 constexpr double kEarthRadius_m = 6371000;
-constexpr float kSoft = 0.2F;     // temperature of the choice while shares are met
+constexpr float kSoft = 0.35F;     // temperature of the choice while shares are met
 constexpr double kCell_deg = 0.1;  // in which shares are met
 constexpr std::size_t kIceLand = static_cast<std::size_t>(Land::Ice);
 
@@ -149,12 +149,12 @@ class Chance {
     void add(const glm::dvec3& at, LandShares& u) {
         const float woods = woods_.at(at), fields = fields_.at(at), open = open_.at(at);
         const float towns = towns_.at(at);
-        of(u, Land::Needleleaf) += 0.7F * woods + 0.4F * open;
-        of(u, Land::Broadleaf) += 0.7F * woods - 0.4F * open;
-        of(u, Land::Shrub) += 0.7F * open;
-        of(u, Land::Grass) -= 0.4F * woods + 0.4F * fields;
-        of(u, Land::Crop) += 0.9F * fields;
-        of(u, Land::Bare) += 0.6F * (open - fields);
+        of(u, Land::Needleleaf) += 0.6F * woods + 0.2F * open;
+        of(u, Land::Broadleaf) += 0.6F * woods - 0.2F * open;
+        of(u, Land::Shrub) += 0.5F * open;
+        of(u, Land::Grass) -= 0.5F * fields;
+        of(u, Land::Crop) += 0.8F * fields;
+        of(u, Land::Bare) += 0.4F * (open - fields);
         of(u, Land::Urban) += 1.5F * towns;
         of(u, Land::Wetland) -= towns;
         of(u, Land::Ice) += 0.3F * open;

@@ -32,7 +32,8 @@ struct LandSites {
 /// have the shares that the map has there. Where sites are 150 m apart and more, they have some of
 /// each.
 ///
-/// Shares are what the map knows; where a wood stands is not known. Of Sao Tome's land 92 % has the cover of a finer map (tests/climate/test_land_map.cpp).
+/// Shares are what the map knows; where a wood stands is not known. Of the posts of Sao
+/// Tome's land 90 % have the cover of a finer map (tests/climate/test_land_map.cpp).
 Array2d<LandShares> land_classes(const LandMap& map, const LandSites& sites);
 
 }  // namespace relevo::climate

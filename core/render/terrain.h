@@ -52,7 +52,7 @@ struct TerrainOptions {
     /// where they are known. Null: none.
     std::shared_ptr<const dem::Photo> land_cover{};
     bool climate_alone = false;  ///< lib/land.glsl knows nothing but that map
-    SkyViewFuture sky{};  ///< sky-view factor of the heightfield, if being computed
+    SkyViewFuture sky{};         ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
 };
 

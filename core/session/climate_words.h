@@ -39,6 +39,7 @@ std::string ground_text(const ClimateReport& report);
 
 /// Where the land cover of pictures comes from if no map is given.
 inline constexpr const char* kLandCoverText =
-    "generated from shares of 0.05 degrees, not mapped; MODIS MCD12C1 (NASA LP DAAC), NASA Blue Marble";
+    "generated from shares of 0.05 degrees, not mapped; MODIS MCD12C1 (NASA LP DAAC), NASA Blue "
+    "Marble";
 
 }  // namespace relevo::session

@@ -289,7 +289,8 @@ TEST(Legible, WhatIsSeenFromAboveIsRelief) {
         const Explained one = explained_of((data / "dem" / name).string());
         fmt::print(
             "[ accuracy ] {}: light explains {:.0f} % of the paper's picture, {:.0f} % of the "
-            "climate's, {:.0f} % of its luma, {:.0f} % of that with land cover, {:.0f} % on white\n",
+            "climate's, {:.0f} % of its luma, {:.0f} % of that with land cover, {:.0f} % on "
+            "white\n",
             name, 100 * one.paper, 100 * one.plain, 100 * one.plain_luma, 100 * one.covered,
             100 * one.white);
         EXPECT_GT(one.plain, 0.3) << name;
