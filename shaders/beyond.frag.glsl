@@ -20,7 +20,7 @@ Surface beyond_surface(in vec3 ray, in vec3 position_m, in float distance_m) {
     Surface s;
     s.position_m = position_m;
     s.distance_m = distance_m;
-    s.height_m = s.dem_height_m = beyond_height_m();
+    s.height_m = s.dem_height_m = frame.beyond_m;
     s.height_unit = height_unit_of(s.height_m);
     s.up = s.geometric_normal = s.ground_normal = s.normal = up_at(position_m);
     s.ground_m = ground_at(position_m, s.up, s.height_m);

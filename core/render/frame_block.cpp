@@ -169,6 +169,12 @@ AerialAir aerial_air(const Ground& ground, const FrameInputs& inputs, double eye
 
 }  // namespace
 
+double Ground::country_m() const {
+    constexpr double kSomeSea = 0.02;
+    if (sea_floor_share > 0) return std::max(lowest_m, 0.0);
+    return sea_rim_share > kSomeSea ? lowest_m : rim_m;
+}
+
 // In one piece: each member is assigned once.
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit) {
@@ -279,6 +285,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.air_scale = static_cast<float>(air.scale);
     block.air_near_m = static_cast<float>(air.near_m);
     block.beyond = inputs.in_the_air ? 1 : 0;
+    block.beyond_m = static_cast<float>(ground.country_m());
     block.seconds = block.still_seconds = static_cast<float>(inputs.seconds);
     block.time_of_year = static_cast<float>(time_of_year(inputs.unix_s));
     const Footprint& footprint = ground.footprint;

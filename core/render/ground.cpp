@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -98,6 +99,30 @@ void make_block(const dem::Heightfield& dem, Ground& ground) {
 
 }  // namespace
 
+namespace {
+
+/// Of heights along the edge, that which two fifths are below; the lowest of all if all are voids.
+double rim_m(const dem::Heightfield& dem) {
+    const Array2d<float>& heights = dem.height_m;
+    std::vector<float> rim;
+    const auto take = [&](int column, int row) {
+        if (const float height = heights.at(column, row); std::isfinite(height))
+            rim.push_back(height);
+    };
+    for (int column = 0; column < heights.width(); ++column)
+        for (const int row : {0, heights.height() - 1})
+            take(column, row);
+    for (int row = 0; row < heights.height(); ++row)
+        for (const int column : {0, heights.width() - 1})
+            take(column, row);
+    if (rim.empty()) return dem.about.statistics.min_m;
+    const auto at = rim.begin() + 2 * std::ssize(rim) / 5;
+    std::nth_element(rim.begin(), at, rim.end());
+    return *at;
+}
+
+}  // namespace
+
 Ground make_ground(const dem::Heightfield& dem) {
     return make_ground(dem, dem.grid);
 }
@@ -106,6 +131,7 @@ Ground make_ground(const dem::Heightfield& dem, const dem::Grid& whole) {
     Ground ground{.frame = geo::LocalFrame(whole.center())};
     ground.lowest_m = dem.about.statistics.min_m;
     ground.highest_m = dem.about.statistics.max_m;
+    ground.rim_m = rim_m(dem);
     const double columns = whole.columns() - 1, rows = whole.rows() - 1;
     ground.south_west_m = glm::dvec2(1e300);
     ground.north_east_m = glm::dvec2(-1e300);

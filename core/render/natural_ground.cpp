@@ -160,6 +160,7 @@ void NaturalGround::update_climate(int day, FrameBlock& block) {
 void NaturalGround::update_land(FrameBlock& block) {
     if (!has_land_) {
         has_land_ = true;
+        country_m_ = block.beyond_m;
         if (!climate_) update_climate(0, block);
         const climate::Box box = widened(box_of(grid_, frame_.origin()), kLeastAround_deg);
         land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
@@ -231,7 +232,7 @@ std::vector<Texel> NaturalGround::classes_around(const climate::LandMap& map,
                                                  const climate::Box& box) const {
     const double middle_rad = radians(0.5 * (box.south_deg + box.north_deg));
     const double wide_deg = (box.east_deg - box.west_deg) * std::max(std::cos(middle_rad), 0.05);
-    const Array2d<float> level(kAround, kAround, std::max(0.0F, all_of(pyramid_).lowest_m));
+    const Array2d<float> level(kAround, kAround, std::max(country_m_, 0.0F));
     return texels_of(climate::land_classes(
         map, {.height_m = level,
               .apart_m =

@@ -67,6 +67,7 @@ class NaturalGround {
     std::optional<ClimateVolume> climate_;
     mutable gl::Texture land_classes_, land_around_;
     glm::vec4 land_place_{0};
+    float country_m_ = 0;  // height of the level country around
     bool has_land_ = false, knows_land_ = false;
     // Last member: its thread reads the members above.
     mutable std::future<LandTexels> making_;

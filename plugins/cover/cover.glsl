@@ -406,7 +406,8 @@ void cover_on_albedo(inout Surface s) {
     float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny * shape.fine);
     LandCover map = land_cover_at(s.post, s.pixel_posts);
     LandClasses land = land_classes_at(s.post, s.pixel_posts, s.up);
-    land.known *= 1.0 - map.known;
+    // Where another climate is asked for, what grows in this one says nothing.
+    land.known *= cover_rain == 1 || cover_rain_factor != 1.0 ? 0.0 : 1.0 - map.known;
     cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
     if (map.known > 0.0) cover_take_map(map, shares, rain);
     s.forest = shares.forest * (1.0 - shares.rock);

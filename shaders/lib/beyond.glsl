@@ -1,7 +1,7 @@
-//! provides  beyond_seen: the level ground that is made up around a DEM seen from the air; beyond_height_m,
-//!           beyond_distance_m, beyond_horizon_m, beyond_air_scale: where it is
+//! provides  beyond_seen: the level ground that is made up around a DEM seen from the air; beyond_distance_m,
+//!           beyond_horizon_m, beyond_air_scale: where it is
 //! reads     with BEYOND, in programs of the sky, beyond_ground of beyond.frag.glsl
-//! frame     a sphere through the lowest ground of the DEM, around the Earth's centre below the eye
+//! frame     a sphere at the height frame.beyond_m, around the Earth's centre below the eye
 
 //@ include lib/air.glsl
 
@@ -9,20 +9,15 @@ uniform sampler2D beyond_ground;  // beyond.frag.glsl
 
 const float beyond_radius_m = 6371000.0;
 
-/// Of that ground above the DEM's zero, not exaggerated. A sea's floor is no ground that goes on.
-float beyond_height_m() {
-    return frame.sea_floor_share > 0.0 ? max(frame.height_range.x, 0.0) : frame.height_range.x;
-}
-
 /// To its horizon [m].
 float beyond_horizon_m() {
-    float above_m = max(frame.eye_m.w - beyond_height_m() * frame.height_range.z, 1.0);
+    float above_m = max(frame.eye_m.w - frame.beyond_m * frame.height_range.z, 1.0);
     return sqrt(above_m * (2.0 * beyond_radius_m + above_m));
 }
 
 /// To that ground [m]; below 0 where a ray passes over it, or where nothing is made up.
 float beyond_distance_m(in vec3 direction) {
-    float above_m = frame.eye_m.w - beyond_height_m() * frame.height_range.z;
+    float above_m = frame.eye_m.w - frame.beyond_m * frame.height_range.z;
     float down = (beyond_radius_m + above_m) * dot(direction, frame.eye_up.xyz);
     float over = above_m * (2.0 * beyond_radius_m + above_m), inside = down * down - over;
     bool meets = frame.beyond > 0.0 && above_m > 0.0 && down < 0.0 && inside > 0.0;

@@ -89,5 +89,6 @@ layout(std140, binding = 0) uniform Frame {
     float sea_rim_share;      // of the posts along the DEM's edge that are sea, 0..1
     float beyond;             // 1 where level ground is made up beyond the DEM (lib/beyond.glsl), else 0
     vec4 land_place;          // as climate_place, of land_around
+    float beyond_m;           // height of the level ground beyond the DEM, before exaggeration [m]
     float air_near_m;         // distance up to which the air is left out, in aerial views [m]
 } frame;

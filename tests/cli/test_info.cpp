@@ -53,7 +53,9 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "in pictures\nsun        azimuth 114.27, elevation 65.12 (65.13 with refraction) "
                   "at 2026-06-21T16:00:00Z\nclimate    January 1.4, July 22.8 degC at 656 m, 1250 "
                   "mm of rain a year\nground     trees up to 2650 m, permanent ice from 3480 m, "
-                  "snow from 2950 m on 2026-06-21\nnet        pieces of 64 posts: drawn positions "
+                  "snow from 2950 m on 2026-06-21\nland cover generated from shares of 0.05 "
+                  "degrees, not mapped; MODIS MCD12C1 (NASA LP DAAC), NASA Blue Marble\n"
+                  "net        pieces of 64 posts: drawn positions "
                   "are within 0.00024 m, 3.2e-06 of the post spacing\n");
 }
 

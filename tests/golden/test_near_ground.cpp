@@ -97,9 +97,13 @@ TEST(NearGround, HasReliefBelowThePostsAndTheLightOfTheDem) {
     if (!std::filesystem::exists(source_dir() / "plugins/bump"))
         GTEST_SKIP() << "the plugin bump is not there";
     // Without what else there is to see of plain ground.
-    const std::vector<std::string> near{
-        "--eye", "36.30,-84.24,80agl", "--heading", "250",           "--pitch", "-50",
-        "--set", "cover.trees=none",   "--set",     "cover.grain=0", "--set",   "bump.strength=0"};
+    const std::vector<std::string> near{"--eye",        "36.30,-84.24,80agl",
+                                        "--heading",    "250",
+                                        "--pitch",      "-50",
+                                        "--set",        "cover.trees=none",
+                                        "--set",        "cover.grain=0",
+                                        "--set",        "bump.strength=0",
+                                        "--land-cover", "none"};
     const Taken smooth = take("0", near), rough = take("1", near);
     fmt::print(
         "[ accuracy ] steps {:.2f} without and {:.2f} with relief, mean light {:.4f} and "

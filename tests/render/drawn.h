@@ -88,7 +88,8 @@ class Drawn {
             dem_, ground_.frame,
             render::TerrainOptions{.pixel_error = pixel_error,
                                    .vertex_budget = 100000000,
-                                   .max_array_layers = context_.info().max_array_layers});
+                                   .max_array_layers = context_.info().max_array_layers,
+                                   .climate_alone = true});
         for (const effect::Effect& effect : shipped_)
             for (const effect::FieldSpec& of_effect : effect.manifest.fields)
                 fields_[of_effect.resource] = nullptr;

@@ -41,7 +41,7 @@ const TestEffect kTell{
     "    radiance = vec3(0.0, 0.0, 1.0) / frame.exposure;\n"
     "}\n"};
 
-/// @returns distance to a sphere through the DEM's lowest ground [m]; below 0: none
+/// @returns distance to a sphere at the height of its rim [m]; below 0: none
 double distance_m(const Drawn& drawn, const glm::dvec3& ray) {
     constexpr double kRadius_m = 6371000;
     const geo::Geodetic eye = drawn.ground().frame.to_geodetic(drawn.frame().camera.eye_m);
@@ -52,7 +52,7 @@ double distance_m(const Drawn& drawn, const glm::dvec3& ray) {
     return down_m < 0 && inside > 0 ? -down_m - std::sqrt(inside) : -1;
 }
 
-TEST(Beyond, IsLevelGroundOfTheLowestHeightUpToTheHorizon) {
+TEST(Beyond, IsLevelGroundOfTheRimsHeightUpToTheHorizon) {
     Drawn drawn(ridge(), {kTell}, 240, 180, 2);
     drawn.frame().in_the_air = true;
     drawn.stand(0.5, 1.4, 3000, 0, -12);

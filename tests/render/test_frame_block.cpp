@@ -183,6 +183,40 @@ double bend(double sine) {
     return 0.00029043 / (sine + 0.0022149 / (sine + 0.0765018));
 }
 
+TEST(FrameBlock, OnlyAerialViewsHaveAClearForeground) {
+    Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(47, 11))};
+    ground.south_west_m = glm::dvec2(-30000);
+    ground.north_east_m = glm::dvec2(30000);
+    FrameInputs inputs = inputs_at({0, -60000, 15000});
+    const FrameBlock as_it_is = make_frame_block(inputs, ground, 640, 512, 4);
+    EXPECT_EQ(as_it_is.air_near_m, 0);
+    EXPECT_EQ(as_it_is.air_scale, 1);
+    inputs.in_the_air = true;
+    const FrameBlock aerial = make_frame_block(inputs, ground, 640, 512, 4);
+    EXPECT_NEAR(aerial.air_near_m, 0.9 * std::hypot(30000, 15000), 400);
+    EXPECT_NEAR(aerial.air_scale, std::sqrt(0.1), 1e-3);
+    // Near the ground the air is the true one.
+    const FrameBlock low = make_frame_block(
+        [] {
+            FrameInputs near_ground = inputs_at({0, -60000, 300});
+            near_ground.in_the_air = true;
+            return near_ground;
+        }(),
+        ground, 640, 512, 4);
+    EXPECT_LT(low.air_near_m, 3000);
+    EXPECT_GT(low.air_scale, 0.9);
+}
+
+TEST(FrameBlock, TheCountryAroundIsAsHighAsTheRimOrItsSea) {
+    Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(47, 11)), .lowest_m = -20};
+    ground.rim_m = 700;
+    EXPECT_EQ(ground.country_m(), 700);
+    ground.sea_rim_share = 0.1;
+    EXPECT_EQ(ground.country_m(), -20);
+    ground.sea_floor_share = 0.3;
+    EXPECT_EQ(ground.country_m(), 0);
+}
+
 TEST(FrameBlock, SaysHowMuchTheAirBendsStarlight) {
     std::vector<double> high_arcsec, low_arcsec;
     for (const double height_m : {0.0, 1500.0, 4000.0}) {

@@ -27,6 +27,7 @@ scene::Scene scene_of(const std::filesystem::path& dem, const std::string& view)
     scene.width_px = 640;
     scene.height_px = 480;
     scene.time.at = "2026-06-21T16:30:00Z";
+    scene.land_cover.climate_alone = true;  // ground that is even beside a border
     scene.view = scene::parse_view(view);
     return scene;
 }
