@@ -19,7 +19,7 @@ namespace {
 using climate::Land;
 using climate::LandShares;
 
-constexpr int kMostSites = 640;       // along a side of the DEM
+constexpr int kMostSites = 512;       // along a side of the DEM
 constexpr double kLeastApart_m = 12;  // nearer sites show houses and trees as slopes
 constexpr int kAround = 256;          // texels along a side of what is around
 constexpr double kLeastAround_deg = 0.5;
