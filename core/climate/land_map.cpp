@@ -19,9 +19,9 @@ constexpr std::array<EarthGrids::Layer, kLandLayers> kLandGrids{
     {{"class", 1, 8}, {"ground", 3, 8}, {"towns", 1, 8}}};
 
 constexpr double kClass_deg = 0.05, kGround_deg = 0.2;
-constexpr int kMostCells = 400;  // along a side of the net
-constexpr int kMargin = 14;      // cells around the box, for what reaches into it
-constexpr int kCity = 13;        // IGBP
+constexpr int kMostCells = 400, kMostGround = 64;  // along a side of the nets
+constexpr int kMargin = 14;                        // cells around the box, for what reaches into it
+constexpr int kCity = 13;                          // IGBP
 
 /// What IGBP's classes 0 to 16 are made of, by their definitions.
 enum Part { kTree, kBare = 4, kUrban = 5, kWater = 8, kParts };  // as Land, but for the trees
@@ -151,7 +151,8 @@ LandMap::LandMap(const ClimateMap& climate, const Box& box) {
     const double side_deg = std::max(box.east_deg - box.west_deg, box.north_deg - box.south_deg);
     const double step = std::max(1.0, std::ceil(side_deg / kClass_deg / kMostCells));
     net_ = Net::over(box, kClass_deg * step, kMargin);
-    ground_net_ = Net::over(box, kGround_deg * std::max(1.0, std::round(step / 2)), 1);
+    const double ground_step = std::max(1.0, std::ceil(side_deg / kGround_deg / kMostGround));
+    ground_net_ = Net::over(box, kGround_deg * ground_step, 1);
     EarthGrids grids(share_dir() / "data/climate/land.bin", "land 1", kLandGrids);
     read_shares(grids, climate);
     read_ground(grids);

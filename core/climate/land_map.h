@@ -24,7 +24,7 @@ using Colour = std::array<float, 3>;
 /// Boxes of more than 20 degrees have larger cells.
 ///
 /// data/README.md has the sources, and what is known to be wrong.
-/// Accuracy: the largest share of 131 of 132 known places is one that is right there, and the
+/// Accuracy: the largest share of 130 of 132 known places is one that is right there, and the
 /// colour of 6 of 7 measured places is within 35 % (tests/climate/test_land_map.cpp).
 class LandMap {
   public:
@@ -39,7 +39,7 @@ class LandMap {
     float water(double lat_deg, double lon_deg) const;
     /// The colour of ground without snow; none where the map has none.
     std::optional<Colour> ground(double lat_deg, double lon_deg) const;
-    /// How the ground's colour differs from what its covers usually have, as factors of 0.25 to 4;
+    /// How the ground's colour differs from what its covers usually have, as factors of 0.3 to 3.4;
     /// 1 where the map has no colour.
     Colour tint(double lat_deg, double lon_deg) const;
 
