@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -382,16 +382,14 @@ class Sites {
     // Of covers that climate and shape may bring where the map has none.
     static constexpr LandShares kLeast{0, 0, .002F, .004F, 0, .004F, 0, 0, .002F};
 
-    static Array2d<float> filled(Array2d<float> heights) {
-        float sum = 0, count = 0;
-        for (const float height : heights)
-            if (std::isfinite(height)) {
-                sum += height;
-                count += 1;
-            }
-        for (float& height : heights)
-            if (!std::isfinite(height)) height = sum / std::max(count, 1.0F);
-        return heights;
+    /// Voids as high as what is beside them, so that they have no cliffs around.
+    static Array2d<float> filled(const Array2d<float>& heights) {
+        Array2d<float> whole = heights;
+        for (float& height : whole)
+            if (!std::isfinite(height)) height = 0;
+        fill_outwards(std::span(&whole, 1),
+                      [&](int column, int row) { return std::isfinite(heights.at(column, row)); });
+        return whole;
     }
 
     Shape shape_at(int column, int row) const {

@@ -200,8 +200,8 @@ vec3 cover_field(in vec3 plot, in float green) {
     vec3 other = mix(cover_soil, cover_ripe, 0.5), one = mix(cover_soil, cover_ripe, plot.y);
     vec3 mean = mix(other, cover_crop, greens);
     one = mix(cover_crop, one, smoothstep(greens - 0.5, greens + 0.5, plot.x));
-    // Half of a field is as all are: hedges, weeds and what the last year has left.
-    return mix(1.0, 0.72 + 0.56 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.5 * plot.z);
+    // More than half of a field is as all are: hedges, weeds and what the last year has left.
+    return mix(1.0, 0.82 + 0.36 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.4 * plot.z);
 }
 
 /// Ground without trees, by what covers land.

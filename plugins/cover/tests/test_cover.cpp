@@ -131,7 +131,7 @@ std::vector<glm::vec4> shares(const std::string& inputs, int count) {
     return gpu.run(
         "float t = float(x) / " + std::to_string(count - 1) +
             ".0;\n"
-            "float steep = 0.0, rain = 2.5, growth = 2.0;\n"
+            "float steep = 0.0, rain = 2.5, growth = 2.0, trees = 0.0, known = 0.0;\n"
             "vec2 white = vec2(-5.0, 0.0);\n" +
             inputs +
             "cover_Shape shape;\n"
@@ -139,8 +139,9 @@ std::vector<glm::vec4> shares(const std::string& inputs, int count) {
             "shape.sunny = 0.0;\n"
             "shape.small = shape.broad = vec4(0.0);\n"
             "shape.ragged = 0.0;\n"
-            "cover_Shares found = cover_shares(ClimateGround(rain, growth, 1.0, 1.0), white, rain, "
-            "growth, shape);\n"
+            "LandClasses land = LandClasses(trees, 0.0, 0.0, 0.0, 0.0, vec3(0.0), known);\n"
+            "cover_Shares found = cover_shares(ClimateGround(rain, growth, 1.0, 1.0), land, white, "
+            "rain, growth, shape);\n"
             "result = vec4(found.rock, found.forest, found.ice, found.snow);",
         count, 1);
 }
@@ -196,6 +197,14 @@ TEST(Cover, NearGroundIsAllOfOneKindAndAsMuchInTheMean) {
                worst, 100 * part);
     EXPECT_LT(worst, 0.03);
     EXPECT_GT(part, 0.8);
+}
+
+TEST(Cover, TreesThatAreKnownStandUpToTheirLineAndOffCliffs) {
+    const std::string known = "known = 1.0; trees = 0.8; rain = 0.3;\n";
+    EXPECT_NEAR(shares(known, 2).front().y, 0.8, 0.01) << "also where the climate has desert";
+    EXPECT_NEAR(shares("known = 1.0; rain = 3.0;\n", 2).front().y, 0, 0.01);
+    expect_soft(shares(known + "trees = 1.0; growth = 2.0 - 2.0 * t;\n", 101), 1, 1, 0);
+    EXPECT_EQ(shares(known + "steep = 3.0;\n", 2).front().y, 0);
 }
 
 TEST(Cover, CliffsHoldNeitherTreesNorSnow) {
