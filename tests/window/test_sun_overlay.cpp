@@ -254,7 +254,9 @@ TEST_F(Viewer, LaysTheShownDaysSunHoursOnTheGroundAndSavesThem) {
     EXPECT_GT(orange(display_.screen()), plain + 50000);
     // In no file yet: it is in no scene.
     EXPECT_FALSE(scene().contains("overlay"));
-    EXPECT_THAT(program_->output(), testing::HasSubstr("without the overlay"));
+    EXPECT_TRUE(wait([&] {
+        return program_->output().find("without the overlay") != std::string::npos;
+    })) << program_->output();
     act({"key", "ctrl+e"});
     ASSERT_TRUE(wait([&] { return std::filesystem::exists(folder_ / "relevo-1.tif"); }));
     ASSERT_TRUE(settles());
