@@ -24,7 +24,7 @@ constexpr int kMargin = 14;                        // cells around the box, for 
 constexpr int kCity = 13;                          // IGBP
 
 /// What IGBP's classes 0 to 16 are made of, by their definitions.
-enum Part { kTree, kBare = 4, kUrban = 5, kWater = 8, kParts };  // as Land, but for the trees
+enum Part { kTreePart, kGrassPart = 2, kBarePart = 4, kUrbanPart = 5, kWaterPart = 8, kParts };
 using Parts = std::array<float, kParts>;
 constexpr std::array<Parts, 17> kMade{{{0, 0, 0, 0, 0, 0, 0, 0, 1},
                                        {.84F, .05F, .08F, 0, .03F, 0, 0, 0, 0},
@@ -62,8 +62,13 @@ float expected_needles(const CoverColumn& column) {
     return static_cast<float>(std::clamp(share, 0.05, 0.95));
 }
 
-int wrapped(int column, int columns) {
-    return ((column % columns) + columns) % columns;
+/// Of the cell that a place is in.
+int value_at(EarthGrids& grids, LandLayer layer, int plane, double lat_deg, double lon_deg) {
+    const int columns = grids.columns(layer), rows = grids.rows(layer);
+    const double x = (lon_deg + 180) / 360, y = (90 - lat_deg) / 180;
+    return grids.cell(layer, plane,
+                      std::clamp(static_cast<int>((x - std::floor(x)) * columns), 0, columns - 1),
+                      std::clamp(static_cast<int>(y * rows), 0, rows - 1));
 }
 
 struct MappedCell {
@@ -73,25 +78,21 @@ struct MappedCell {
 
 /// @param wetter  how far open shrub and barren ground have more plants than in deserts
 MappedCell cell_at(EarthGrids& grids, double lat_deg, double lon_deg, float wetter) {
-    const int y =
-        std::clamp(static_cast<int>((90 - lat_deg) / kClass_deg), 0, grids.rows(kClass) - 1);
-    const int x =
-        wrapped(static_cast<int>(std::floor((lon_deg + 180) / kClass_deg)), grids.columns(kClass));
-    MappedCell cell{.igbp = std::clamp(grids.cell(kClass, 0, x, y), 0, 16)};
+    MappedCell cell{.igbp = std::clamp(value_at(grids, kClass, 0, lat_deg, lon_deg), 0, 16)};
     cell.parts = kMade[static_cast<std::size_t>(cell.igbp)];
     Parts& parts = cell.parts;
-    if (cell.igbp != kCity && parts[kWater] < 0.5F) {  // lights tell of towns where it does not
-        const float light = static_cast<float>(grids.cell(kTowns, 0, x / 2, y / 2)) / 15;
+    if (cell.igbp != kCity && parts[kWaterPart] < 0.5F) {  // lights tell of towns where it does not
+        const float light = static_cast<float>(value_at(grids, kTowns, 0, lat_deg, lon_deg)) / 15;
         const float town = 0.5F * light * light;
-        const float more = std::max(0.0F, town - parts[kUrban]);
+        const float more = std::max(0.0F, town - parts[kUrbanPart]);
         for (float& part : parts)
-            part *= 1 - more / std::max(1 - parts[kUrban], 0.2F);
-        parts[kUrban] = std::max(parts[kUrban], town);
+            part *= 1 - more / std::max(1 - parts[kUrbanPart], 0.2F);
+        parts[kUrbanPart] = std::max(parts[kUrbanPart], town);
     }
     if (cell.igbp >= 6 && cell.igbp <= 10) {
-        const float plants = 0.75F * wetter * parts[kBare];
-        parts[kBare] -= plants;
-        parts[kGrass] += plants;
+        const float plants = 0.75F * wetter * parts[kBarePart];
+        parts[kBarePart] -= plants;
+        parts[kGrassPart] += plants;
     }
     return cell;
 }
@@ -184,14 +185,14 @@ void LandMap::read_shares(EarthGrids& grids, const ClimateMap& climate) {
             }
     const Array2d<float> needles = forests.needles(5.0 / step, expected_needles(middle));
     std::array<Array2d<float>, kLands> lands;
-    lands[0] = lands[1] = parts[kTree];
+    lands[0] = lands[1] = parts[kTreePart];
     for (std::size_t i = 0; i < needles.size(); ++i) {
         lands[0].data()[i] *= needles.data()[i];
         lands[1].data()[i] *= 1 - needles.data()[i];
     }
     for (std::size_t land = 2; land < kLands; ++land)
         lands[land] = std::move(parts[land - 1]);
-    water_ = std::move(parts[kWater]);
+    water_ = std::move(parts[kWaterPart]);
     spread_shares(std::move(lands));
 }
 
@@ -225,20 +226,14 @@ void LandMap::read_ground(EarthGrids& grids) {
     for (Array2d<float>& band : ground_)
         band = Array2d<float>(columns, rows);
     for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column) {
-            const int y =
-                std::clamp(static_cast<int>((90 - ground_net_.lat_deg(row)) / kGround_deg), 0,
-                           grids.rows(kGround) - 1);
-            const int x = wrapped(
-                static_cast<int>(std::floor((ground_net_.lon_deg(column) + 180) / kGround_deg)),
-                grids.columns(kGround));
+        for (int column = 0; column < columns; ++column)
             for (int band = 0; band < 3; ++band) {
-                const int value = grids.cell(kGround, band, x, y);
+                const int value = value_at(grids, kGround, band, ground_net_.lat_deg(row),
+                                           ground_net_.lon_deg(column));
                 const float root = 3 * static_cast<float>(value) / 255;
                 ground_[static_cast<std::size_t>(band)].at(column, row) = root * root;
                 if (value > 0) has_ground_.at(column, row) = 1;
             }
-        }
 }
 
 LandShares LandMap::shares(double lat_deg, double lon_deg) const {
