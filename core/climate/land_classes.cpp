@@ -71,29 +71,42 @@ class Relief {
     Array2d<float> low_, high_, mean_;
 };
 
+/// What the climate of a site permits, each 0 to 1.
+struct Limits {
+    float humid, lush;   // lush: warm, too
+    float alpine, rock;  // above the tree line; and above closed plants
+    float far_below;     // the tree line: 1 some 600 m below it
+
+    explicit Limits(const Growing& growing)
+        : humid(ramp(growing.dryness, 0.6F, 1.8F)),
+          lush(humid * ramp(growing.temperature_c, 12, 20)) {
+        const float season_c = 3.2F + 3.2F * growing.growth;  // mean of the growing season
+        alpine = 1 - ramp(season_c, 6.0F, 6.8F);
+        rock = alpine * (0.10F + 0.90F * ramp(-season_c, -5.4F, -3.0F));
+        far_below = ramp(season_c, 6.0F, 9.5F);
+    }
+};
+
 /// Shares that the map cannot know: no trees above their line, rock above the plants and on cliffs,
 /// shrubs and open woods where warm grassland is rough and half dry.
-void correct(LandShares& shares, const Growing& growing, const Shape& shape, float season) {
-    const float tree = ramp(season, 6.0F, 6.8F), alpine = 1 - tree;
+void correct(LandShares& shares, const Growing& growing, const Limits& limits, const Shape& shape) {
     const auto move = [&](Land from, Land to, float amount) {
         of(shares, from) -= amount;
         of(shares, to) += amount;
     };
     for (const Land land : {Land::Needleleaf, Land::Broadleaf, Land::Crop, Land::Urban}) {
-        const float gone = of(shares, land) * alpine * (land == Land::Urban ? 0.8F : 0.95F);
+        const float gone = of(shares, land) * limits.alpine * (land == Land::Urban ? 0.8F : 0.95F);
         move(land, Land::Grass, 0.7F * gone);
         move(land, Land::Shrub, 0.3F * gone);
     }
-    const float lush = ramp(growing.dryness, 0.6F, 1.8F) * ramp(growing.temperature_c, 12, 20);
-    const float rock = alpine * (0.10F + 0.90F * ramp(-season, -5.4F, -3.0F));
-    const float cliff = ramp(shape.slope_deg, 34, 48) * 0.8F * (1 - 0.8F * lush);
-    for (const float share : {0.95F * rock, cliff})
+    const float cliff = ramp(shape.slope_deg, 34, 48) * 0.8F * (1 - 0.8F * limits.lush);
+    for (const float share : {0.95F * limits.rock, cliff})
         for (const Land land :
              {Land::Needleleaf, Land::Broadleaf, Land::Shrub, Land::Grass, Land::Crop, Land::Urban})
             move(land, Land::Bare, of(shares, land) * share);
     const float rough = 0.6F * ramp(shape.relief_m, 80, 330) * ramp(growing.dryness, 0.35F, 0.65F) *
                         ramp(-growing.dryness, -1.9F, -1.4F) * ramp(growing.temperature_c, 2, 6) *
-                        tree;
+                        (1 - limits.alpine);
     for (const Land land : {Land::Grass, Land::Bare}) {
         const float part = of(shares, land) * rough * (land == Land::Bare ? 0.5F : 1.0F);
         move(land, Land::Shrub, 0.5F * part);
@@ -102,12 +115,10 @@ void correct(LandShares& shares, const Growing& growing, const Shape& shape, flo
 }
 
 /// How well a site suits each cover, as a logarithm.
-LandShares suitability(const Growing& growing, const Shape& shape, float season, float mapped_ice) {
-    const float humid = ramp(growing.dryness, 0.6F, 1.8F), dry = 1 - humid;
-    const float tree = ramp(season, 6.0F, 6.8F), alpine = 1 - tree;
-    const float rock = alpine * (0.10F + 0.90F * ramp(-season, -5.4F, -3.0F));
-    const float near = ramp(season, 6.0F, 9.5F);  // 0 at the tree line, 1 some 600 m below
-    const float lush = humid * ramp(growing.temperature_c, 12, 20);
+LandShares suitability(const Growing& growing, const Limits& limits, const Shape& shape,
+                       float mapped_ice) {
+    const auto& [humid, lush, alpine, rock, far_below] = limits;
+    const float dry = 1 - humid;
     const float slope = shape.slope_deg;
     const float low = (1 - ramp(shape.above_m, 0, 60)) * (1 - ramp(slope, 0, 12));
     const float cliff = ramp(slope, 33, 45) * (1 - 0.8F * lush);
@@ -118,17 +129,17 @@ LandShares suitability(const Growing& growing, const Shape& shape, float season,
                          0.25F * shape.hollow * dry;
     const float level = (slope / 7) * (slope / 7);
     LandShares u{};
-    of(u, Land::Needleleaf) = forest + 0.9F * (1 - near);
-    of(u, Land::Broadleaf) = forest - 2.2F * (1 - near) + 0.3F * low;
+    of(u, Land::Needleleaf) = forest + 0.9F * (1 - far_below);
+    of(u, Land::Broadleaf) = forest - 2.2F * (1 - far_below) + 0.3F * low;
     of(u, Land::Shrub) = 0.7F * alpine * (1 - rock) - 2 * rock - cliff +
                          0.4F * dry * ramp(slope, 0, 15) - 0.3F * low;
     of(u, Land::Grass) = 1.8F * alpine * (1 - rock) - 3 * rock - 2 * cliff -
-                         0.3F * say * ramp(slope, 0, 25) * tree + 0.5F * say * low;
-    of(u, Land::Crop) = -6 * (1 - near) - 0.7F * level + 0.8F * say * low - 1.6F * ridge * say;
+                         0.3F * say * ramp(slope, 0, 25) * (1 - alpine) + 0.5F * say * low;
+    of(u, Land::Crop) = -6 * (1 - far_below) - 0.7F * level + 0.8F * say * low - 1.6F * ridge * say;
     of(u, Land::Bare) = 3.5F * rock + 3.2F * cliff + 0.9F * dry * ramp(slope, 4, 24) -
                         0.6F * shape.hollow * dry +
                         say * humid * (1.4F * ridge + 1.4F * ramp(slope, 0, 30) - 1.4F);
-    of(u, Land::Urban) = -5 * (1 - near) - 0.7F * level + 1.3F * say * low - 2 * ridge * say;
+    of(u, Land::Urban) = -5 * (1 - far_below) - 0.7F * level + 1.3F * say * low - 2 * ridge * say;
     of(u, Land::Wetland) = -(slope / 1.2F) * (slope / 1.2F) + 0.8F * low + 0.8F * shape.hollow;
     const float ice =
         std::max(ramp(growing.ice_m, -0.3F, 0.3F), mapped_ice * ramp(growing.ice_m, -2.0F, -1.0F));
@@ -365,13 +376,13 @@ class Sites {
         const geo::Geodetic place = geo::geodetic_deg(at.x, at.y);
         const float height_m = heights_.at(column, row);
         const Growing growing = sites_.growing(place, height_m);
-        const float season = 3.2F + 3.2F * growing.growth;  // mean of the growing season [degC]
+        const Limits limits(growing);
         const Shape shape = shape_at(column, row);
         LandShares shares = map_.shares(at.x, at.y);
         const float mapped_ice = shares[kIceLand] > 0.25F ? 1.0F : 0.0F;
-        correct(shares, growing, shape, season);
+        correct(shares, growing, limits, shape);
         if (goal) *goal = shares;
-        LandShares u = suitability(growing, shape, season, mapped_ice);
+        LandShares u = suitability(growing, limits, shape, mapped_ice);
         chance.add(places_.from_centre_m(column, row), u);
         for (std::size_t i = 0; i < kLands; ++i)
             u[i] += rough_log(std::max(shares[i], kLeast[i]) + 1e-7F);
@@ -382,7 +393,7 @@ class Sites {
     // Of covers that climate and shape may bring where the map has none.
     static constexpr LandShares kLeast{0, 0, .002F, .004F, 0, .004F, 0, 0, .002F};
 
-    /// Voids as high as what is beside them, so that they have no cliffs around.
+    /// Voids get the height of the ground beside them: else there would be cliffs around them.
     static Array2d<float> filled(const Array2d<float>& heights) {
         Array2d<float> whole = heights;
         for (float& height : whole)

@@ -2,38 +2,41 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace relevo::climate {
 namespace {
 
-/// @param along  of (cells, first index, step, count): one row or column
-template <typename Line>
-void each_line(Array2d<float>& cells, const Line& line) {
+/// Filters rows, then columns.
+/// @param value  of a line's cells before and an index: what is there afterwards
+template <typename Value>
+void filter(Array2d<float>& cells, const Value& value) {
+    std::vector<float> before;
+    const auto line = [&](float* first, std::size_t step, int count) {
+        before.clear();
+        for (int i = 0; i < count; ++i)
+            before.push_back(first[static_cast<std::size_t>(i) * step]);
+        for (int i = 0; i < count; ++i)
+            first[static_cast<std::size_t>(i) * step] = value(std::as_const(before), i);
+    };
     const auto width = static_cast<std::size_t>(cells.width());
     for (int row = 0; row < cells.height(); ++row)
-        line(cells.data() + static_cast<std::size_t>(row) * width, std::size_t{1}, cells.width());
+        line(cells.data() + static_cast<std::size_t>(row) * width, 1, cells.width());
     for (int column = 0; column < cells.width(); ++column)
         line(cells.data() + column, width, cells.height());
 }
 
 template <typename Better>
-Array2d<float> extreme_around(const Array2d<float>& cells, int reach, const Better& better) {
-    Array2d<float> result = cells;
-    std::vector<float> values;
-    each_line(result, [&](float* line, std::size_t step, int count) {
-        values.resize(static_cast<std::size_t>(count));
-        for (int i = 0; i < count; ++i)
-            values[static_cast<std::size_t>(i)] = line[static_cast<std::size_t>(i) * step];
-        for (int i = 0; i < count; ++i) {
-            float best = values[static_cast<std::size_t>(i)];
-            for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k)
-                best = better(best, values[static_cast<std::size_t>(k)]);
-            line[static_cast<std::size_t>(i) * step] = best;
-        }
+Array2d<float> extreme_around(Array2d<float> cells, int reach, const Better& better) {
+    filter(cells, [&](const std::vector<float>& line, int i) {
+        const auto first = line.begin() + std::max(0, i - reach);
+        return *std::min_element(
+            first, line.begin() + std::min<std::ptrdiff_t>(std::ssize(line), i + reach + 1),
+            better);
     });
-    return result;
+    return cells;
 }
 
 }  // namespace
@@ -47,27 +50,23 @@ void smooth(Array2d<float>& cells, double sigma) {
         weights.push_back(static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma))));
         sum += weights.back();
     }
-    std::vector<float> values;
-    each_line(cells, [&](float* line, std::size_t step, int count) {
-        values.resize(static_cast<std::size_t>(count));
-        for (int i = 0; i < count; ++i)
-            values[static_cast<std::size_t>(i)] = line[static_cast<std::size_t>(i) * step];
-        for (int i = 0; i < count; ++i) {
-            float total = 0;
-            for (int k = -reach; k <= reach; ++k)
-                total += weights[static_cast<std::size_t>(k + reach)] *
-                         values[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
-            line[static_cast<std::size_t>(i) * step] = total / sum;
+    filter(cells, [&](const std::vector<float>& line, int i) {
+        float total = 0;
+        for (int k = -reach; k <= reach; ++k) {
+            const int at = std::clamp(i + k, 0, static_cast<int>(line.size()) - 1);
+            total +=
+                weights[static_cast<std::size_t>(k + reach)] * line[static_cast<std::size_t>(at)];
         }
+        return total / sum;
     });
 }
 
 Array2d<float> lowest_around(const Array2d<float>& cells, int reach) {
-    return extreme_around(cells, reach, [](float a, float b) { return std::min(a, b); });
+    return extreme_around(cells, reach, std::less{});
 }
 
 Array2d<float> highest_around(const Array2d<float>& cells, int reach) {
-    return extreme_around(cells, reach, [](float a, float b) { return std::max(a, b); });
+    return extreme_around(cells, reach, std::greater{});
 }
 
 void fill_outwards(std::span<Array2d<float>> layers, const std::function<bool(int, int)>& has) {

@@ -53,8 +53,8 @@ std::array<float, Count> bilinear(const Array2d<std::array<float, Count>>& cells
 /// @param sigma  in cells
 void smooth(Array2d<float>& cells, double sigma);
 
-/// The lowest or highest value of the squares around all cells, rounded as `smooth` would.
-/// @param reach  cells from the middle of a square to its sides
+/// The lowest and the highest value of the square around each cell.
+/// @param reach  cells from its middle to its sides
 Array2d<float> lowest_around(const Array2d<float>& cells, int reach);
 Array2d<float> highest_around(const Array2d<float>& cells, int reach);
 
