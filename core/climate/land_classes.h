@@ -18,7 +18,7 @@ struct Growing {
 
 /// Sites of a raster on the ground.
 struct LandSites {
-    const Array2d<float>& height_m;                               ///< NaN where there is none
+    const Array2d<float>& height_m;                               ///< NaN in voids
     glm::dvec2 apart_m;                                           ///< of columns and rows
     std::function<geo::Geodetic(double, double)> place;           ///< of a column and a row
     std::function<Growing(const geo::Geodetic&, float)> growing;  ///< at a place and height
@@ -27,10 +27,9 @@ struct LandSites {
 /// What covers each site: the map's shares, shared out by relief, climate and chance.
 ///
 /// A cover is likelier where the shape of the ground suits it: woods on slopes, fields and towns on
-/// valley floors, bare ground on cliffs and above the plants. Noise that hangs on the place alone
-/// makes the rest of the decision, so that a site has one cover. In each cell of 0.1 degrees covers
-/// have the shares that the map has there. Where sites are 150 m apart and more, they have some of
-/// each.
+/// valley floors, bare ground on cliffs and above the plants. Noise decides the rest, so that a
+/// site has one cover; it depends on the place alone. In each cell of 0.1 degrees covers have the
+/// shares that the map has there. Where sites are 150 m apart and more, they have some of each.
 ///
 /// Shares are what the map knows; where a wood stands is not known. Of the posts of Sao
 /// Tome's land 90 % have the cover of a finer map (tests/climate/test_land_map.cpp).

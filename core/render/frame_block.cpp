@@ -150,7 +150,7 @@ namespace {
 /// its far half. Towards the ground it becomes the true one.
 struct AerialAir {
     double scale = 1;   // on depths
-    double near_m = 0;  // up to where it is left out, so that the foreground is clear
+    double near_m = 0;  // there is none before this distance: the foreground is clear
 };
 
 AerialAir aerial_air(const Ground& ground, const FrameInputs& inputs, double eye_height_m) {

@@ -136,12 +136,13 @@ struct Ground {
     /// Depth of the block below the DEM's lowest post [m]; 0 for a globe, which has no block.
     double block_m = 0;
     double floor_m = 0;          ///< least z in the local frame of the rim at height 0
-    double rim_m = 0;            ///< of two fifths of the posts along its edge heights are lower
+    double rim_m = 0;            ///< two fifths of the posts along the DEM's edge are lower
     double sea_floor_share = 0;  ///< dem::Water::sea_floor_share()
     double sea_rim_share = 0;    ///< dem::Water::sea_rim_share()
 
-    /// Height of the level country around, which is made up [m]: that of a sea along its edge, else
-    /// of much of its edge, so that little of it hangs over the country or lies below.
+    /// Height of the level country that pictures have around the DEM [m]. Where the sea is along
+    /// the DEM's edge, its height; elsewhere rim_m, so that the edge is nowhere far above it or
+    /// below.
     double country_m() const;
     /// Height of the block's lower side as drawn [m].
     double base_m(double exaggeration) const { return lowest_m * exaggeration - block_m; }

@@ -21,7 +21,7 @@ using climate::LandShares;
 
 constexpr int kMostSites = 512;       // along a side of the DEM
 constexpr double kLeastApart_m = 12;  // nearer sites show houses and trees as slopes
-constexpr int kAround = 256;          // texels along a side of what is around
+constexpr int kAround = 160;          // texels along a side of what is around
 constexpr double kLeastAround_deg = 0.5;
 
 using Texel = LandTexel;
@@ -162,16 +162,25 @@ void NaturalGround::update_land(FrameBlock& block) {
         has_land_ = true;
         country_m_ = block.beyond_m;
         if (!climate_) update_climate(0, block);
-        const climate::Box box = widened(box_of(grid_, frame_.origin()), kLeastAround_deg);
-        land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
-        const auto map = std::make_shared<const climate::LandMap>(climate_map(), box);
-        knows_land_ = map->is_known() && !climate_alone_;
-        making_ = std::async(std::launch::async | std::launch::deferred,
-                             [this, map, box] { return make_land(*map, box); });
+        begin_land();
     }
     block.land_place = land_place_;
     block.land_cover = {block.land_cover.x, knows_land_ ? 1 : 0,
                         glm::vec2(1.0F / static_cast<float>(1 << level_of_sites()))};
+}
+
+void NaturalGround::begin_land() {
+    std::shared_ptr<const climate::LandMap> map;
+    const climate::Box box = widened(box_of(grid_, frame_.origin()), kLeastAround_deg);
+    if (!climate_alone_) map = std::make_shared<const climate::LandMap>(climate_map(), box);
+    knows_land_ = map && map->is_known();
+    if (!knows_land_) {
+        upload({.classes = {{Texel{}}}, .around = {{Texel{}, Texel{}, Texel{}}}}, {1, 1}, 1);
+        return;
+    }
+    land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
+    making_ = std::async(std::launch::async | std::launch::deferred,
+                         [this, map, box] { return make_land(*map, box); });
 }
 
 LandTexels NaturalGround::make_land(const climate::LandMap& map, const climate::Box& box) const {
@@ -191,14 +200,16 @@ LandTexels NaturalGround::make_land(const climate::LandMap& map, const climate::
 
 void NaturalGround::finish_land() const {
     if (!making_.valid()) return;
-    const LandTexels made = making_.get();
-    const glm::ivec2 size = pyramid_.size(level_of_sites());
+    upload(making_.get(), pyramid_.size(level_of_sites()), kAround);
+}
+
+void NaturalGround::upload(const LandTexels& made, const glm::ivec2& size, int around) const {
     land_classes_ = gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, {size.x, size.y, 1}, 0,
                                 kLandClassesTexture);
     land_classes_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
     write(land_classes_, made.classes);
-    land_around_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {kAround, kAround, 3},
-                               0, kLandAroundTexture);
+    land_around_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {around, around, 3}, 0,
+                               kLandAroundTexture);
     land_around_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
     write(land_around_, made.around);
 }

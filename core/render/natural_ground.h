@@ -49,7 +49,7 @@ class NaturalGround {
     const gl::Texture* texture(std::string_view name) const;
 
   private:
-    /// Of the ground around a place, at the coarsest level; NaN where there is none [m].
+    /// Height of the ground around a place, at the coarsest level [m]; NaN outside of the DEM.
     float mean_height_m(const geo::Geodetic& place) const;
     void make_climate();
     int level_of_sites() const;
@@ -57,7 +57,10 @@ class NaturalGround {
     std::vector<LandTexel> classes_around(const climate::LandMap& map,
                                           const climate::Box& box) const;
     LandTexels make_land(const climate::LandMap& map, const climate::Box& box) const;
+    void begin_land();
     void finish_land() const;
+    /// @param size, around  of land_classes, and of the sides of land_around [px]
+    void upload(const LandTexels& made, const glm::ivec2& size, int around) const;
 
     const dem::Grid& grid_;
     const geo::LocalFrame& frame_;

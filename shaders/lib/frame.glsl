@@ -90,5 +90,5 @@ layout(std140, binding = 0) uniform Frame {
     float beyond;             // 1 where level ground is made up beyond the DEM (lib/beyond.glsl), else 0
     vec4 land_place;          // as climate_place, of land_around
     float beyond_m;           // height of the level ground beyond the DEM, before exaggeration [m]
-    float air_near_m;         // distance up to which the air is left out, in aerial views [m]
+    float air_near_m;         // in aerial views: there is no air before this distance [m]
 } frame;
