@@ -116,6 +116,8 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.over_overlay = loaded.selection.over_overlay;
     inputs.stitch.lit_overlay_is_over_all = loaded.selection.lit_overlay_is_over_all;
     inputs.stitch.values = &values;
+    inputs.stitch.constants = constants;
+    if (mapped) inputs.stitch.capabilities.emplace_back("mapped");
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
     for (const effect::LoadedTexture& texture : loaded.textures) {
@@ -207,7 +209,8 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
     std::vector<std::string> said =
         effect::apply_settings(changed, registry, loaded.selection, presets, settings);
     for (const shader::Param* param : changed.params())
-        if (param->is_static && changed.value(param->address) != values.value(param->address))
+        if (shader::may_be_constant(*param, constants) &&
+            changed.value(param->address) != values.value(param->address))
             return std::nullopt;
     for (const shader::TextParam* text : changed.texts())
         if (changed.text(text->address) != values.text(text->address)) return std::nullopt;

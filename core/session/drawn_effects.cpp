@@ -14,16 +14,13 @@ bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
     return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
            effects.plugin_path == other.effects.plugin_path &&
            effects.weather == other.effects.weather && compared == other.compared &&
-           ground == other.ground && overlay_raster == other.overlay_raster &&
-           hides_shadows == other.hides_shadows;
+           constants == other.constants && mapped == other.mapped && ground == other.ground &&
+           overlay_raster == other.overlay_raster && hides_shadows == other.hides_shadows;
 }
 
 bool EffectsRequest::operator==(const EffectsRequest& other) const {
-    const auto same = [](const effect::Setting& a, const effect::Setting& b) {
-        return a.address == b.address && a.text == b.text && a.folder == b.folder;
-    };
     return has_selection_of(other) &&
-           std::ranges::equal(effects.settings, other.effects.settings, same);
+           std::ranges::equal(effects.settings, other.effects.settings, effect::same_value);
 }
 
 DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
@@ -47,6 +44,10 @@ DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
         drawn.others_ =
             ActiveEffects::of(session::without(asked.effects, asked.compared, *drawn.effects_),
                               /*report=*/false, asked.ground);
+    for (const Half& half : drawn.halves()) {
+        half.effects.constants = asked.constants;
+        half.effects.mapped = asked.mapped;
+    }
     drawn.stamp_files();
     return drawn;
 }
@@ -105,9 +106,10 @@ bool DrawnEffects::take(const EffectsRequest& request) {
 void DrawnEffects::set(const std::string& address, const std::string& value) {
     for (const Half& half : halves()) {
         const shader::Param* const param = half.effects.values.find(address);
-        if ((param && param->is_static) || half.effects.values.find_text(address))
-            bad_input(fmt::format(
-                "session: {}: is a static parameter; another value needs another shader", address));
+        if ((param && shader::may_be_constant(*param, half.effects.constants)) ||
+            half.effects.values.find_text(address))
+            bad_input(fmt::format("session: {}: is a constant; another value needs another shader",
+                                  address));
         half.effects.values.set(address, value);
         half.renderer->set_values(half.effects.values);
     }

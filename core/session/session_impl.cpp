@@ -101,6 +101,8 @@ void Session::Impl::open_device(FilesInUse& files) {
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
     request.allow_unmet = options.allow_unmet;
+    request.constants = options.constants;
+    request.mapped = !state.scene.land_cover.file.empty();
     request.effects.weather = state.weather ? state.weather->facts : weather::Facts{};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
@@ -231,7 +233,9 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
         state.scene.station_height_m = next.station_height_m;
         state.weather = weather_of(next, *state.dem());
     }
-    if (const EffectsRequest wanted = request(next.effects); wanted != drawn->request()) {
+    EffectsRequest wanted = request(next.effects);
+    wanted.mapped = !next.land_cover.file.empty();
+    if (wanted != drawn->request()) {
         switch_to(wanted);
         take_effects();
     }

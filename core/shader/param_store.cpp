@@ -150,7 +150,6 @@ bool operator==(const BlockLayout& a, const BlockLayout& b) {
 BlockLayout block_layout(const std::vector<Param>& params) {
     BlockLayout layout;
     for (const Param& param : params) {
-        if (param.is_static) continue;
         const auto count = static_cast<std::size_t>(component_count(param.type));
         // A vec3 has the alignment of a vec4, but the next member may use its last four bytes.
         const std::size_t alignment = 4 * (count == 3 ? 4 : count);

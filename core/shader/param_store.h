@@ -71,7 +71,7 @@ struct BlockMember {
     std::size_t offset = 0;  ///< bytes
 };
 
-/// The std140 block of all parameters that are not static (OpenGL 4.5 core, 7.6.2.2).
+/// The std140 block of all parameters that are not constants (OpenGL 4.5 core, 7.6.2.2).
 struct BlockLayout {
     std::vector<BlockMember> members;
     std::size_t size = 0;  ///< bytes, a multiple of 16; 0 for no members
@@ -79,7 +79,7 @@ struct BlockLayout {
     friend bool operator==(const BlockLayout& a, const BlockLayout& b);
 };
 
-/// Lays out the parameters in their order, without static ones.
+/// Lays out the parameters in their order.
 BlockLayout block_layout(const std::vector<Param>& params);
 
 /// The block's bytes, for the uniform buffer at binding 1.

@@ -92,11 +92,25 @@ class Stitcher {
         result_.varying_targets = stored_.targets();
     }
 
+    ParamValue value_of(const Param& param) const {
+        const Param* const known = input_.values ? input_.values->find(param.address) : nullptr;
+        return known && known->type == param.type ? input_.values->value(param.address)
+                                                  : param.initial;
+    }
+
+    bool is_constant(const Param& param) const {
+        if (param.is_static || !may_be_constant(param, input_.constants)) return param.is_static;
+        const bool divides = param.type != ParamType::Bool && param.words.empty();
+        const ParamValue value = value_of(param);
+        return !divides || std::none_of(value.begin(), value.begin() + component_count(param.type),
+                                        [](double component) { return component == 0; });
+    }
+
     void read_params() {
         std::vector<Param> params;
         for (const Snippet* snippet : input_.snippets)
-            params.insert(params.end(), snippet->source.params.begin(),
-                          snippet->source.params.end());
+            std::ranges::copy_if(snippet->source.params, std::back_inserter(params),
+                                 [&](const Param& param) { return !is_constant(param); });
         result_.params = block_layout(params);
     }
 
@@ -201,13 +215,9 @@ class Stitcher {
         }
         for (const Snippet* snippet : input_.snippets) {
             for (const Param& param : snippet->source.params) {
-                if (!param.is_static || !stage.reaches(param.name)) continue;
-                const bool known = input_.values && input_.values->find(param.address) &&
-                                   input_.values->find(param.address)->type == param.type;
-                const ParamValue value =
-                    known ? input_.values->value(param.address) : param.initial;
+                if (!is_constant(param) || !stage.reaches(param.name)) continue;
                 out.line(fmt::format("const {} {} = {};", glsl_name(param.type), param.name,
-                                     glsl_value(param, value)),
+                                     glsl_value(param, value_of(param))),
                          origin(stage, param.name, param.file, param.line));
             }
         }
@@ -343,7 +353,7 @@ class Stitcher {
                 result_.names.insert(result_.names.end(), item.names.begin(), item.names.end());
             for (const Param& param : source.params) {
                 result_.names.push_back(param.name);
-                if (!param.is_static) result_.values.push_back(param.name);
+                if (!is_constant(param)) result_.values.push_back(param.name);
             }
             for (const Sampler& sampler : source.samplers)
                 result_.names.push_back(sampler.name);

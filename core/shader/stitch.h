@@ -50,7 +50,10 @@ struct StitchInput {
     std::vector<std::string> capabilities;  ///< that they provide: HAS_<word> is 1
     std::vector<PluginPass> passes{};       ///< of the enabled plugins
     std::vector<InstanceSet> instances{};   ///< of the enabled plugins
-    const ParamStore* values = nullptr;     ///< of static parameters; null: their defaults
+    const ParamStore* values = nullptr;     ///< of constant parameters; null: their defaults
+    /// All parameters may be constants: may_be_constant(). Numbers that are 0 are none: what is
+    /// divided by them is infinite on devices, and anything where a compiler divides.
+    bool constants = false;
     /// Ids of plugins that draw over the scene's overlay. nullopt: all that have the hook display
     /// do, and a lit overlay is over the materials of all.
     std::optional<std::vector<std::string>> over_overlay{};
@@ -95,7 +98,7 @@ struct Stitched {
     std::vector<HookUse> hooks;
     std::vector<std::string> plugins;  ///< ids of those whose text it has, each once
     std::vector<std::string> names;    ///< of all globals of the plugins, for suggestions
-    std::vector<std::string> values;   ///< of their parameters that are not static
+    std::vector<std::string> values;   ///< of their parameters that are not constants
     /// Number of RGBA32F targets with the stored varyings of a geometry or shading program. The
     /// shading program reads them as the layers of `varyings`.
     int varying_targets = 0;

@@ -404,12 +404,16 @@ void cover_on_albedo(inout Surface s) {
     vec2 white = cover_white_at(place, s.height_m - cover_aspect_m * shape.sunny);
     float growth = cover_growth(ground, s.height_m);
     float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny * shape.fine);
+#if HAS_mapped
     LandCover map = land_cover_at(s.post, s.pixel_posts);
+#else
+    const LandCover map = LandCover(0.0, 0.0, 0.0, 0.0);
+#endif
     LandClasses land = land_classes_at(s.post, s.pixel_posts, s.up);
     // Where another climate is asked for, what grows in this one says nothing.
     land.known *= cover_rain == 1 || cover_rain_factor != 1.0 ? 0.0 : 1.0 - map.known;
     cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
-    if (map.known > 0.0) cover_take_map(map, shares, rain);
+    cover_take_map(map, shares, rain);
     s.forest = shares.forest * (1.0 - shares.rock);
     cover_part(shares, land, shape);
 

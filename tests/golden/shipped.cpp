@@ -81,7 +81,7 @@ std::set<Ids> Shipped::everything() const {
 
 render::StitchedFrames stitched(const effect::Selection& selection,
                                 const shader::ParamStore& values,
-                                const render::ProgramOptions& options) {
+                                const render::ProgramOptions& options, bool constants) {
     static const shader::FolderTexts core{share_dir() / "shaders"};
     shader::StitchInput input;
     input.snippets = selection.snippets();
@@ -89,6 +89,7 @@ render::StitchedFrames stitched(const effect::Selection& selection,
     input.instances = selection.instances();
     input.capabilities = selection.capabilities;
     input.values = &values;
+    input.constants = constants;
     input.max_texture_units = 32;
     input.same_textures = same_textures(selection);
     return render::stitch_frames(core, input, options);

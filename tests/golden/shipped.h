@@ -36,6 +36,6 @@ class Shipped {
 /// The programs of a selection's frames, as a renderer stitches them. No device is needed.
 render::StitchedFrames stitched(const effect::Selection& selection,
                                 const shader::ParamStore& values,
-                                const render::ProgramOptions& options);
+                                const render::ProgramOptions& options, bool constants = false);
 
 }  // namespace relevo::test

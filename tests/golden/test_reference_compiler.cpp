@@ -68,8 +68,8 @@ class Programs {
     /// All programs that a selection is drawn with.
     void add(const effect::Selection& selection, const shader::ParamStore& values,
              const std::string& what, const std::string& with,
-             const render::ProgramOptions& options) {
-        for (render::ProgramText& text : stitched(selection, values, options).programs)
+             const render::ProgramOptions& options, bool constants = false) {
+        for (render::ProgramText& text : stitched(selection, values, options, constants).programs)
             add({fmt::format("{} of {}, {}", text.name, what, with), text.stitched.vertex.text,
                  text.stitched.fragment.text, text.stitched.compute.text});
     }
@@ -119,9 +119,12 @@ TEST(ReferenceCompiler, TakesTheProgramsOfEverySelection) {
     Programs programs;
     for (const auto& [what, switches] : shipped.selections()) {
         const effect::Selection selection = effect::select(shipped.registry, {}, switches);
-        for (const auto& [with, options] : kOptions)
+        for (const auto& [with, options] : kOptions) {
+            if (with == "picture")
+                programs.add(selection, values, what, with, options, /*constants=*/true);
             if (switches.disable.empty() || with == "picture")
                 programs.add(selection, values, what, with, options);
+        }
     }
     EXPECT_GE(programs.all().size(), 20 * shipped.registry.effects().size());
     EXPECT_EQ(refusals(programs.all()), "");
@@ -133,7 +136,7 @@ TEST(ReferenceCompiler, SeesTheProgramsOfACapture) {
     const Ids ids = *shipped.everything().begin();
     Programs programs;
     programs.add(effect::select(shipped.registry, {}, {.only = ids}), shipped.values(), "all", "",
-                 {.shown = true, .software = true, .natives = kNatives});
+                 {.shown = true, .software = true, .natives = kNatives}, /*constants=*/true);
     const std::filesystem::path dir = scratch_dir(), dump = dir / "shaders";
     const Result taken =
         relevo({"-q", "capture", bundled_dem(), "-o", (dir / "a.png").string(), "--size", "64x48",

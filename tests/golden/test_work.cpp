@@ -40,12 +40,13 @@ void add_targets(const std::string& name, const render::FrameGraph& graph, Work&
     work[name] = {bytes, 0};
 }
 
-/// Of the effects that are on by default, with water.
+/// Of the effects that are on by default, with water, as a capture has them.
 Work default_work() {
     const Shipped shipped;
     const shader::ParamStore values = shipped.values();
     const render::StitchedFrames frames =
-        stitched(effect::select(shipped.registry, {}, {}), values, {.shown = true});
+        stitched(effect::select(shipped.registry, {}, {}), values, {.shown = true},
+                 /*constants=*/true);
     Work work;
     for (const render::ProgramText& text : frames.programs) {
         const ReferenceProgram program =

@@ -47,6 +47,10 @@ const std::vector<Change>& changes() {
         {"pixel error", [](scene::Scene& s) { s.pixel_error = 60; }},
         {"size", [](scene::Scene& s) { s.width_px = 120; }},
         {"effects", [](scene::Scene& s) { s.effects.switches.only = std::vector<std::string>{}; }},
+        {"a parameter",
+         [](scene::Scene& s) {
+             s.effects.settings = {{"skylight.strength", "3"}};
+         }},
         {"stamps", [](scene::Scene& s) { s.stamps.scale = s.stamps.north = true; }},
     };
     return all;
@@ -57,25 +61,26 @@ image::Image8 picture_of(Session& session) {
     return session.picture();
 }
 
-image::Image8 alone(const scene::Scene& scene) {
+image::Image8 alone(const scene::Scene& scene, bool constants = false) {
     FilesInUse files;
-    Session session(scene, {.device = test::gl_device()}, files);
+    Session session(scene, {.device = test::gl_device(), .constants = constants}, files);
     return picture_of(session);
 }
 
 /// @param begin  of which each change is made, shown, and taken back
-void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& changes) {
-    const image::Image8 first = alone(begin);
+void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& changes,
+                         bool constants = false) {
+    const image::Image8 first = alone(begin, constants);
     const sun::Instant begin_utc = sun::parse_time(begin.time.at).utc;
     FilesInUse files;
-    Session session(begin, {.device = test::gl_device()}, files);
+    Session session(begin, {.device = test::gl_device(), .constants = constants}, files);
     ASSERT_EQ(picture_of(session).values, first.values);
     for (const Change& change : changes) {
         scene::Scene scene = begin;
         change.make(scene);
         session.show(scene, sun::parse_time(scene.time.at).utc);
         const image::Image8 next = picture_of(session);
-        EXPECT_EQ(next.values, alone(scene).values) << change.what;
+        EXPECT_EQ(next.values, alone(scene, constants).values) << change.what;
         EXPECT_NE(next.values, first.values) << change.what << " changes nothing";
         session.show(begin, begin_utc);
         EXPECT_EQ(picture_of(session).values, first.values) << "after " << change.what;
@@ -84,6 +89,17 @@ void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& c
 
 TEST(Show, APictureIsTheSameWhateverWasShownBefore) {
     expect_nothing_kept(evening(), changes());
+}
+
+TEST(Show, ConstantsOfProgramsChangeNoPicture) {
+    expect_nothing_kept(evening(), changes(), /*constants=*/true);
+    scene::Scene set = evening();
+    set.effects.settings = {{"skylight.strength", "3"}, {"block.side", "#804020"}};
+    const image::Image8 with = alone(set, true), without = alone(set);
+    ASSERT_EQ(with.values.size(), without.values.size());
+    // Compilers compute functions of constants more exactly than devices do.
+    for (std::size_t i = 0; i < with.values.size(); ++i)
+        ASSERT_NEAR(with.values[i], without.values[i], 1) << i;
 }
 
 /// A value that is not the default.

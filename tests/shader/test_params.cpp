@@ -331,7 +331,6 @@ TEST(BlockLayout, FollowsStd140) {
         block_layout(params("uniform float haze_a = 0; //@ range(0, 1)\n"
                             "uniform vec3 haze_b = vec3(0);\n"
                             "uniform bool haze_c = true;\n"
-                            "uniform int haze_s = 1; //@ range(0, 1) static\n"
                             "uniform float haze_d = 0; //@ range(0, 1)\n"
                             "uniform vec2 haze_e = vec2(0);\n"
                             "uniform vec4 haze_f = vec4(0);\n"

@@ -423,6 +423,25 @@ TEST(Params, StaticOnesAreConstantsOfTheirValue) {
         EXPECT_NE(member.param.name, "haze_steps");
 }
 
+TEST(Params, AllAreConstantsWhereThatIsAskedForButWhatModulesWrite) {
+    const Written haze =
+        plugins({{"haze",
+                  "uniform float haze_density = 1.5; //@ range(0, 2)\n"
+                  "uniform float haze_turn = 180; //@ angle range(-180, 180)\n"
+                  "uniform float haze_none = 0; //@ range(-1, 1)\n"
+                  "uniform float haze_wind = 1; //@ host\n"
+                  "void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+                  "    radiance *= haze_density * haze_turn + haze_wind / haze_none;\n}\n"}});
+    StitchInput input = haze.input();
+    input.constants = true;
+    const Stitched stitched = stitch(Texts(), terrain_program(), input);
+    EXPECT_THAT(stitched.fragment.text, HasSubstr("const float haze_density = 1.5;\n"));
+    EXPECT_THAT(stitched.fragment.text, HasSubstr("const float haze_turn = 3.14159"));
+    // What would be divided by is no constant.
+    EXPECT_THAT(stitched.fragment.text, HasSubstr("    float haze_none;\n    float haze_wind;\n"));
+    EXPECT_EQ(stitched.params.members.size(), 2u);
+}
+
 TEST(Params, CoresOwnAreASnippetWithoutHooks) {
     const Texts texts =
         core_with({{"terrain.frag.glsl",
