@@ -85,7 +85,7 @@ std::string local_time(const session::Session& session) {
 }
 
 /// What the program chose because the command line does not say it, in one line.
-void report_chosen(const session::Session& session) {
+void report_chosen(const session::Session& session, bool chose_exaggeration) {
     const bool time = !session.time_reason().empty(), view = !session.view_reason().empty();
     if (!time && !view) return;
     const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
@@ -95,9 +95,11 @@ void report_chosen(const session::Session& session) {
     if (view && azimuth_deg)
         text += fmt::format("{}seen from the {}", time ? ", " : "",
                             geo::compass_point(std::fmod(*azimuth_deg + 360, 360)));
-    log::info(text + (time && view ? "; --time and --view set others"
-                      : time       ? "; --time sets another"
-                                   : "; --view sets another"));
+    if (chose_exaggeration) text += fmt::format(", heights × {:g}", session.scene().exaggeration);
+    log::info(text + (chose_exaggeration ? "; --time, --view and --exaggerate set others"
+                      : time && view     ? "; --time and --view set others"
+                      : time             ? "; --time sets another"
+                                         : "; --view sets another"));
 }
 
 /// Place, time, sun and the assumptions about the ground.
@@ -132,6 +134,8 @@ void capture(const CaptureArguments& arguments) {
     if (linear) scene.stamps.margin = false;  // without stamps
     scene::check_panorama(scene);
     scene::check_stereo(scene);
+    // What is measured in a picture has its true heights.
+    if (arguments.audit || !format.layers.empty() || linear) scene.chooses_exaggeration = false;
     session::SceneTimes times;
     times.fit_map(scene);
     if (arguments.audit && !compared.empty())
@@ -237,7 +241,7 @@ void capture(const CaptureArguments& arguments) {
     files.finish_outputs();
     notices.release();
     if (audit) log::info(audit->text());
-    report_chosen(session);
+    report_chosen(session, scene.chooses_exaggeration && session.scene().exaggeration != 1);
 }
 
 /// The folders of the plugins and of the presets that a picture is made from.

@@ -236,6 +236,7 @@ void MainWindow::hand_over_scene() {
     if (state_.new_effects) thread.want_effects(*state_.new_effects);
     for (const auto& [address, value] : state_.new_values)
         thread.want_value(address, value);
+    show_true_heights();
     if (const double now = state_.document.scene.exaggeration; now != wanted_exaggeration_) {
         wanted_exaggeration_ = now;
         thread.want_exaggeration(now);

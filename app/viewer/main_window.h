@@ -93,6 +93,9 @@ class MainWindow {
     void complete_scene(const Opened& before);
     /// After the exaggeration has changed.
     void take_shape();
+    /// Ends the choice of the vertical scale once the time is another one than that it was opened
+    /// at.
+    void show_true_heights();
     void use_dem();
     /// Moves the eye to where the image was drawn from: the thread raises it above drawn ground.
     void raise_eye();
@@ -208,6 +211,7 @@ class MainWindow {
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
     double wanted_exaggeration_ = 1;
+    sun::Instant first_utc_{};                     ///< at which the scene began
     std::optional<Pose> home_;                     // of the whole DEM,
     glm::vec2 home_size_{0};                       // in a window of this size
     Clock::time_point checked_at_ = Clock::now();  // files

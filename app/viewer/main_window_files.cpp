@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dem/camera_photo.h"
+#include "scene/exaggeration.h"
 #include "scene/job.h"
 #include "session/record.h"
 #include "session/trust.h"
@@ -89,6 +90,10 @@ void MainWindow::open_dem(const RecentDem& dem) {
     scene.land_cover = {};
     scene.time.at.clear();
     scene.time.date.clear();
+    if (state_.chooses_exaggeration) {
+        scene.exaggeration = 1;
+        scene.chooses_exaggeration = scene::may_exaggerate(scene);
+    }
     open_scene(std::move(scene));
 }
 

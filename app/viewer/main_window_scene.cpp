@@ -55,7 +55,10 @@ Wanted MainWindow::first_wanted() const {
 
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
-    wanted_exaggeration_ = state_.document.scene.exaggeration;
+    wanted_exaggeration_ = opening_->opened()->scene.exaggeration;
+    scene::Scene& scene = state_.document.scene;
+    state_.chooses_exaggeration = std::exchange(scene.chooses_exaggeration, false);
+    scene.exaggeration = wanted_exaggeration_;
     export_sheet_.take_scene(state_.document.scene);
     point_->clear();
     overlay_->clear();
@@ -179,6 +182,10 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     view ? home_.reset() : note_home();
     const bool has_time = is_first || !opening_->scene().time.at.empty();
     state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
+    first_utc_ = document.utc;
+    if (state_.chooses_exaggeration && wanted_exaggeration_ != 1)
+        messages_.note(
+            tr_format("heights × {:g}; View, Heights sets another", wanted_exaggeration_));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     const std::vector<std::string> names = absolute_names(scene.dems);
@@ -231,6 +238,14 @@ void MainWindow::complete_scene(const Opened& before) {
     state_.set_utc(document.utc);
     point_->invalidate();
     if (SceneThread* const compared = comparison_->thread()) compared->want_dem(opened.dem);
+}
+
+void MainWindow::show_true_heights() {
+    double& times = state_.document.scene.exaggeration;
+    if (!state_.chooses_exaggeration || state_.document.utc == first_utc_) return;
+    state_.chooses_exaggeration = false;
+    if (std::exchange(times, 1) == 1) return;
+    messages_.note(tr("heights are true now, as shadows of another time need: View, Heights"));
 }
 
 void MainWindow::take_shape() {

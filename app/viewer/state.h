@@ -48,7 +48,8 @@ struct State {
     int sensor = 0;                  ///< of the panel View
     float dragged_exaggeration = 1;  ///< while its slider is dragged
     bool drags_exaggeration = false;
-    bool compare_is_wanted = false;  ///< with the effects at the time it starts
+    bool chooses_exaggeration = false;  ///< by the DEM, as long as nobody sets it or moves the time
+    bool compare_is_wanted = false;     ///< with the effects at the time it starts
 
     Settings settings;
     std::vector<RecentDem> recent;  ///< DEMs, latest first

@@ -89,6 +89,7 @@ void exaggeration(State& state) {
     if (!ImGui::IsItemDeactivatedAfterEdit()) return;
     const scene::Option& option = scene::option("--exaggerate");
     taken = std::clamp(std::round(100.0 * times) / 100, option.min, option.max);
+    state.chooses_exaggeration = false;
     state.step = true;
 }
 

@@ -242,13 +242,14 @@ scene::AerialGround aerial_ground(const scene::GroundNet& net, const Ground& gro
 GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
                             double exaggeration) {
     const Array2d<float>& height_m = dem.height_m;
-    const Collector collector(dem, ground, exaggeration);
+    const Collector collector(dem, ground, exaggeration), as_it_is(dem, ground, 1);
     GroundToShow result;
     const int step_x = std::max(1, height_m.width() / kPiecesAcross);
     const int step_y = std::max(1, height_m.height() / kPiecesAcross);
     result.net =
         scene::GroundNet((height_m.width() + step_x - 1) / step_x,
                          (height_m.height() + step_y - 1) / step_y, glm::dvec3(std::nan("")));
+    scene::GroundNet drawn = result.net;
     std::vector<std::vector<glm::dvec3>> rows(static_cast<std::size_t>(result.net.height()));
     const auto take_row = [&](int j) {
         std::vector<glm::dvec3>& points = rows[static_cast<std::size_t>(j)];
@@ -269,7 +270,8 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
             collector.add(highest.x, highest.y, points);
             const glm::ivec2 middle((x0 + x1) / 2, (y0 + y1) / 2);
             const glm::ivec2 post = collector.has(middle.x, middle.y) ? middle : highest;
-            result.net.at(x0 / step_x, j) = collector.at(post.x, post.y);
+            result.net.at(x0 / step_x, j) = as_it_is.at(post.x, post.y);
+            drawn.at(x0 / step_x, j) = collector.at(post.x, post.y);
         }
     };
     parallel_for(0, result.net.height(), 1, [&](int first, int last) {
@@ -278,7 +280,8 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
     });
     for (const std::vector<glm::dvec3>& points : rows)
         result.points.insert(result.points.end(), points.begin(), points.end());
-    result.aerial = aerial_ground(result.net, ground, exaggeration);
+    result.aerial = aerial_ground(drawn, ground, exaggeration);
+    result.true_aerial = aerial_ground(result.net, ground, 1);
     collector.add_ends(result.rim);
     result.points.insert(result.points.end(), result.rim.begin(), result.rim.end());
     return result;

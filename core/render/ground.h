@@ -28,8 +28,11 @@ struct GroundToShow {
     /// (tests/render/test_ground.cpp).
     std::vector<glm::dvec3> points;
     std::vector<glm::dvec3> rim;  ///< the ends of rows and columns among them
-    scene::GroundNet net;         ///< one post of each piece
     scene::AerialGround aerial;   ///< what aerial views frame
+    /// One post of each piece and what aerial views frame, at their true heights: sides are chosen
+    /// by these.
+    scene::GroundNet net;
+    scene::AerialGround true_aerial;
 };
 GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground, double exaggeration);
 

@@ -209,6 +209,7 @@ const std::vector<std::pair<std::string_view, bool Stamps::*>>& stamp_words() {
         {"graticule", &Stamps::graticule},
         {"date", &Stamps::date},
         {"sun", &Stamps::sun},
+        {"exaggeration", &Stamps::exaggeration},
         {"attribution", &Stamps::attribution}};
     return words;
 }

@@ -65,6 +65,7 @@ struct Stamps {
     bool legend = true;  ///< of what colours mean, where there is something to tell
     bool title = false, scale = false, north = false, graticule = false, date = false, sun = false,
          attribution = false;
+    bool exaggeration = false;     ///< where it is not 1
     bool margin = false;           ///< they stand around the view, not on it
     std::string title_text;        ///< empty: the DEM's name
     std::string attribution_text;  ///< needed with `attribution`
@@ -103,6 +104,9 @@ struct Scene {
     LandCover land_cover;
     Stamps stamps;
     double exaggeration = 1;
+    /// The session chooses the exaggeration by the DEM, and then resets this. Of the command line:
+    /// no file has it.
+    bool chooses_exaggeration = false;
     Effects effects;
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
     double seconds = 0;  ///< of effects that move, frame.seconds in their shaders; to kMaxSeconds

@@ -1,11 +1,13 @@
 #include "session/scene_state.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "geo/format.h"
+#include "scene/exaggeration.h"
 #include "scene/map_view.h"
 #include "scene/stereo.h"
 #include "session/active_effects.h"
@@ -23,6 +25,26 @@ namespace relevo::session {
 void SceneState::take_dem(std::shared_ptr<const LoadedDem> dem) {
     dem_ = std::move(dem);
     ground_ = ground_of(*dem_);
+}
+
+void SceneState::choose_exaggeration(const LoadedDem& dem) {
+    if (!std::exchange(scene.chooses_exaggeration, false)) return;
+    // Steeper ground needs finer tiles.
+    if (scene.dem.memory.mib() < MemoryBudget::kDefault_mib) return;
+    constexpr int kLeast_px = 320;  // that words have room in
+    const render::Ground ground = ground_of(dem);
+    scene.exaggeration =
+        scene::chosen_exaggeration(dem.field.height_m, ground.north_east_m - ground.south_west_m);
+    // What is drawn too high is drawn more coarsely: twice as many triangles would not be seen.
+    is_coarser_ = scene.exaggeration != 1 && scene.pixel_error == scene::Scene().pixel_error;
+    if (is_coarser_) scene.pixel_error *= std::min(scene.exaggeration, 2.0);
+    scene.stamps.exaggeration = scene.exaggeration != 1 && scene.width_px >= kLeast_px;
+}
+
+bool SceneState::end_choice() {
+    if (!std::exchange(is_coarser_, false)) return false;
+    scene.pixel_error = scene::Scene().pixel_error;
+    return true;
 }
 
 void SceneState::take_shape(bool other) {
@@ -86,7 +108,7 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
         return;
     }
     if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
-        framing_ = scene::frame_ground(view.orbit, to_show_.net, to_show_.aerial, *day_);
+        framing_ = scene::frame_ground(view.orbit, to_show_.net, to_show_.true_aerial, *day_);
         view.orbit = framing_->orbit;
     }
     const auto camera_of = [&](const scene::View& of) {

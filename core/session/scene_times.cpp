@@ -58,7 +58,7 @@ struct SceneTimes::Dem {
     std::optional<dem::Posts> posts;  ///< of `loaded`
     /// Zones at the DEM's centre, by the requested names.
     std::map<std::string, std::string> zones;
-    std::map<double, Shown> shown;  ///< by vertical exaggeration
+    std::optional<Shown> shown;
 
     const dem::Source& open() const { return *source; }
 };
@@ -125,25 +125,21 @@ std::shared_ptr<const LoadedDem> SceneTimes::loaded(const scene::Scene& scene) {
 
 SceneTimes::Shown& SceneTimes::shown_of(const scene::Scene& scene) {
     const auto heights = loaded(scene);
-    auto& known = dem_of(scene).shown;
-    const auto found = known.find(scene.exaggeration);
-    if (found != known.end()) return found->second;
-    if (known.size() >= kMostShown) known.clear();
+    std::optional<Shown>& shown = dem_of(scene).shown;
+    if (shown) return *shown;
     const render::Ground ground = ground_of(*heights);
-    render::GroundToShow to_show =
-        render::ground_to_show(heights->field, ground, scene.exaggeration);
-    Shown shown{std::move(to_show.net), std::move(to_show.aerial),
-                scene::DefaultDay(ground.frame.origin(), ground.block_m <= 0)};
-    return known.emplace(scene.exaggeration, std::move(shown)).first->second;
+    render::GroundToShow to_show = render::ground_to_show(heights->field, ground, 1);
+    shown.emplace(Shown{std::move(to_show.net), std::move(to_show.true_aerial),
+                        scene::DefaultDay(ground.frame.origin(), ground.block_m <= 0)});
+    return *shown;
 }
 
 scene::View SceneTimes::settled_view(const scene::Scene& scene) {
     scene::View view = scene.view;
     if (scene.ortho) return view;  // which has none
     if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
-    auto& known = dem_of(scene).shown;
-    const auto found = known.find(scene.exaggeration);
-    Shown& shown = found == known.end() ? shown_of(scene) : found->second;
+    Dem& dem = dem_of(scene);
+    Shown& shown = dem.shown ? *dem.shown : shown_of(scene);
     if (shown.framed.size() >= kMostShown) shown.framed.clear();
     const auto [framed, fresh] = shown.framed.try_emplace(
         {view.orbit.aerial, view.orbit.azimuth_deg, view.orbit.elevation_deg});

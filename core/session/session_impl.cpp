@@ -58,6 +58,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     dem::add_all(scene.dems, files);
     // Which effects are on may depend on the DEM.
     drawn->take_ground(loaded->ground_words(scene.holes));
+    state.choose_exaggeration(*loaded);
     const auto began = Clock::now();
     compile(*drawn, loaded.get());
     stages.emplace_back("compile", milliseconds_since(began));

@@ -71,6 +71,8 @@ class Stamper {
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
         if (wanted_.date) add_line("", of_.clock, "date", stamps);
         if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);
+        if (const double times = of_.scene.exaggeration; wanted_.exaggeration && times != 1)
+            stamps.lines.push_back(fmt::format("Heights × {:g}", times));
         return stamps;
     }
 

@@ -105,8 +105,9 @@ TEST_F(Capture, SaysWhatItChoseInOneLine) {
     const auto picture = dir_ / "chosen.png";
     const auto chosen = lines_of(bundled_dem(), picture);
     ASSERT_EQ(chosen.size(), 1u);
-    EXPECT_THAT(chosen[0], MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+, seen from the "
-                                        "[NESW]+; --time and --view set others"));
+    EXPECT_THAT(chosen[0],
+                MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+, seen from the "
+                             "[NESW]+, heights × 2.2; --time, --view and --exaggerate set others"));
     const auto time = lines_of(bundled_dem(), picture, {"--view", "az=200,el=30"});
     ASSERT_EQ(time.size(), 1u);
     EXPECT_THAT(time[0], MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+; --time sets "

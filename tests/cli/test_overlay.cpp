@@ -241,7 +241,7 @@ TEST_F(OverlayOption, StampsThatAreNoneAreRefused) {
     EXPECT_EQ(
         capture("refused.png", {"--stamp", "title,scael"}).err,
         "relevo: error: --stamp: scael: expected all, none, or words of legend, title, scale, "
-        "north, graticule, date, sun, attribution\n");
+        "north, graticule, date, sun, exaggeration, attribution\n");
     EXPECT_EQ(capture("refused.png", {"--stamp", "attribution"}).err,
               "relevo: error: --stamp: attribution: its text is missing; add --attribution TEXT\n");
 }

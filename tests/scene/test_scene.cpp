@@ -141,7 +141,7 @@ TEST_F(SceneFile, StampsComeBackAsTheyWereWritten) {
 TEST_F(SceneFile, StampsThatAreNoneAreRefused) {
     EXPECT_EQ(error(with("\"stamps\": {\"show\": [\"scael\"]}")),
               "2: stamps.show: scael: expected all, none, or words of legend, title, scale, north, "
-              "graticule, date, sun, attribution");
+              "graticule, date, sun, exaggeration, attribution");
     EXPECT_EQ(error(with("\"stamps\": {\"show\": [\"attribution\"]}")),
               "2: stamps.attribution: expected the words that name the data's source, which show "
               "asks for");

@@ -45,6 +45,37 @@ TEST(ExaggeratedRecord, SaysTheEyesHeightAsItWasAskedFor) {
     }
 }
 
+TEST(ChosenScale, KeepsSideAndSunAndIsOfTheFirstPictureAlone) {
+    scene::Scene scene = scene_of(1);
+    scene.time.at.clear();
+    FilesInUse files;
+    Session plain(scene, {.device = test::gl_device()}, files);
+    scene.chooses_exaggeration = true;
+    Session chosen(scene, {.device = test::gl_device()}, files);
+    EXPECT_EQ(chosen.scene().exaggeration, 2.2);  // Cumberland: relief of 754 m over 30 km
+    EXPECT_FALSE(chosen.scene().chooses_exaggeration);
+    EXPECT_TRUE(chosen.scene().stamps.exaggeration);
+    EXPECT_EQ(chosen.time(), plain.time());
+    EXPECT_EQ(chosen.scene().view.orbit.azimuth_deg, plain.scene().view.orbit.azimuth_deg);
+    EXPECT_EQ(chosen.scene().view.orbit.elevation_deg, plain.scene().view.orbit.elevation_deg);
+    // A picture of its record is the same, and nothing is chosen again.
+    chosen.draw();
+    Session again(chosen.scene(), {.device = test::gl_device()}, files);
+    again.draw();
+    EXPECT_EQ(chosen.picture().values, again.picture().values);
+    // Another scale ends the choice.
+    Session other(scene, {.device = test::gl_device()}, files);
+    EXPECT_EQ(other.scene().pixel_error, 8);
+    other.set_exaggeration(1);
+    EXPECT_EQ(other.scene().pixel_error, plain.scene().pixel_error);
+    // What is shown next has what it says.
+    chosen.show(plain.scene(), plain.time());
+    EXPECT_EQ(chosen.scene().exaggeration, 1);
+    chosen.draw();
+    plain.draw();
+    EXPECT_EQ(chosen.picture().values, plain.picture().values);
+}
+
 /// Which pixels a graticule changes, and which show the DEM.
 struct Lines {
     std::vector<char> drawn;
