@@ -31,6 +31,21 @@ Drawing lines_panel(const std::vector<std::string>& lines, double size, bool bol
     return drawing;
 }
 
+/// Light words with a shade, without a panel.
+Drawing bare_lines(const std::vector<std::string>& lines, double size) {
+    const Drawing panel = lines_panel(lines, size, false);
+    Drawing bare(panel.width(), panel.height());
+    double y = kStampPadding + size * 0.8;
+    for (const std::string& line : lines) {
+        for (const glm::dvec2& off : {glm::dvec2(1, 1), {-1, 1}, {1, -1}, {-1, -1}})
+            bare.text(glm::dvec2(kStampPadding, y) + 0.8 * off, line,
+                      {.size = size, .color = {0x202020, 0.55}});
+        bare.text({kStampPadding, y}, line, {.size = size, .color = {0xffffff, 0.9}});
+        y += size * 1.4;
+    }
+    return bare;
+}
+
 /// Black and white parts, 0 at the left end.
 Drawing scale_panel(const Stamps::Scale& scale, double width_px, double unit_px) {
     const double most_px = std::min(kMostBar * unit_px, kMostOfWidth * width_px);
@@ -90,7 +105,9 @@ struct Panels {
             attribution = lines_panel(
                 wrapped(stamps.attribution, 0.85 * kStampLetters, 0.45 * width_px / unit_px),
                 0.85 * kStampLetters, false);
-        if (!stamps.lines.empty()) lines = lines_panel(stamps.lines, kStampLetters, false);
+        if (!stamps.lines.empty())
+            lines = stamps.bare_lines ? bare_lines(stamps.lines, 0.85 * kStampLetters)
+                                      : lines_panel(stamps.lines, kStampLetters, false);
         if (stamps.north) north = north_panel(*stamps.north);
     }
 };

@@ -27,7 +27,8 @@ struct Stamps {
     std::vector<Legend> legends;
     std::optional<Scale> scale;
     std::optional<glm::dvec2> north;  ///< unit, right and down: where it points in the picture
-    std::vector<std::string> lines;   ///< date and sun
+    std::vector<std::string> lines;   ///< date, sun and exaggeration
+    bool bare_lines = false;  ///< small and without a panel, for pictures without other stamps
     std::string attribution;
     std::vector<Label> graticule;
 };

@@ -108,8 +108,8 @@ void DrawnEffects::set(const std::string& address, const std::string& value) {
         const shader::Param* const param = half.effects.values.find(address);
         if ((param && shader::may_be_constant(*param, half.effects.constants)) ||
             half.effects.values.find_text(address))
-            bad_input(fmt::format("session: {}: is a constant; another value needs another shader",
-                                  address));
+            bad_input(fmt::format(
+                "session: {}: is a static parameter; another value needs another shader", address));
         half.effects.values.set(address, value);
         half.renderer->set_values(half.effects.values);
     }

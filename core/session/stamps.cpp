@@ -73,6 +73,8 @@ class Stamper {
         if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);
         if (const double times = of_.scene.exaggeration; wanted_.exaggeration && times != 1)
             stamps.lines.push_back(fmt::format("Heights × {:g}", times));
+        stamps.bare_lines =
+            wanted_.exaggeration && !wanted_.date && !wanted_.sun && !wanted_.margin;
         return stamps;
     }
 

@@ -12,9 +12,9 @@ uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") descri
 
 void skylight_on_ambient(in Surface s, inout vec3 irradiance) {
     float seen = pow(max(surface_open_sky(s), 1e-5), skylight_strength);  // 0 to the power of 0 is undefined
-    // What hides the sky is taken to be lit as level ground.
+    // What hides the sky is taken to be level ground, half of it in the sun.
     vec3 to_sun;
     vec3 direct = sun_light_at(s.height_m, s.up, to_sun);
-    vec3 level = light_of_sky_at(s.height_m, s.up) + max(dot(to_sun, s.up), 0.0) * direct;
+    vec3 level = light_of_sky_at(s.height_m, s.up) + 0.5 * max(dot(to_sun, s.up), 0.0) * direct;
     irradiance = seen * irradiance + (1.0 - seen) * skylight_albedo * level;
 }

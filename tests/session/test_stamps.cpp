@@ -218,6 +218,36 @@ TEST(Stamps, AreOnPicturesOfScenesThatWantThem) {
     EXPECT_EQ(notes.front(), "stamp: title: no room in a picture of 48 x 36 pixels; omitted");
 }
 
+TEST(Stamps, OfAScaleAloneAreSmallLettersInACorner) {
+    scene::Scene scene = scene_of(160, 35);
+    scene.stamps.exaggeration = true;
+    const auto picture = [&] {
+        FilesInUse files;
+        Session session(scene, {.device = test::gl_device()}, files);
+        session.draw();
+        return session.picture();
+    };
+    scene.exaggeration = 2;
+    const image::Image8 with = picture();
+    scene.stamps.exaggeration = false;
+    const image::Image8 without = picture();
+    int changed = 0;
+    for (int y = 0; y < with.height; ++y)
+        for (int x = 0; x < with.width; ++x) {
+            const auto at = static_cast<std::size_t>(3 * (y * with.width + x));
+            if (with.values[at] == without.values[at]) continue;
+            ++changed;
+            EXPECT_TRUE(x > 0.7 * with.width && y > 0.85 * with.height) << x << ", " << y;
+        }
+    EXPECT_GT(changed, 100);
+    EXPECT_LT(changed, 1500);  // no panel
+    // True heights have nothing to tell.
+    scene.exaggeration = 1;
+    const image::Image8 plain = picture();
+    scene.stamps.exaggeration = true;
+    EXPECT_EQ(picture().values, plain.values);
+}
+
 TEST(Stamps, FollowASceneThatIsShownNext) {
     scene::Scene scene = scene_of(160, 35);
     FilesInUse files;
