@@ -193,7 +193,6 @@ void capture(const CaptureArguments& arguments) {
                              .radiance = linear,
                              .format = format,
                              .audited = arguments.audit,
-                             .constants = true,
                              .compared = compared};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const render::StitchedFrames& frames) {

@@ -26,7 +26,6 @@
 #include "session/picture_file.h"
 #include "session/record.h"
 #include "session/scene_inputs.h"
-#include "session/shot_session.h"
 
 namespace relevo::cli {
 namespace {
@@ -98,7 +97,6 @@ class Run {
             if (session::scene_in(shot.output, shot.scene) == session::SceneIn::Sidecar)
                 beside_.insert(shot.output);
         check_outputs();
-        constants_ = !shots_.empty() && session::one_setting(shots_);
         take_shard();
         const std::size_t all = shots_.size();
         const bool keeps = arguments_.resume || arguments_.missing || arguments_.plan.on;
@@ -235,7 +233,6 @@ class Run {
     session::BatchOptions options() const {
         session::BatchOptions result;
         result.device = arguments_.device;
-        result.constants = constants_;
         result.overwrite = arguments_.overwrite;
         result.parts = parts_;
         result.sidecar = wants_sidecar();
@@ -399,7 +396,6 @@ class Run {
     session::SceneInputs& inputs_;
     std::set<fs::path> beside_;  ///< pictures whose scene is in a sidecar, for want of room
     std::set<fs::path> parts_;   ///< pictures of which, or of whose sidecar, --resume finds one
-    bool constants_ = false;     ///< of BatchOptions
     std::size_t made_ = 0;       ///< pictures that --resume keeps
     std::size_t there_ = 0;      ///< names of the others that files have already
 };

@@ -44,7 +44,7 @@ struct ActiveEffects : InstalledEffects {
     effect::Switches switches;
     effect::GroundWords ground;
     effect::LoadedSelection loaded;    // points into registry
-    bool constants = false;            ///< as Options::constants
+    bool constants = false;            ///< StitchInput::constants
     bool mapped = false;               ///< a map of land cover has been given: HAS_mapped
     std::vector<std::string> notices;  ///< notices of apply_settings(), already logged
 

@@ -53,8 +53,7 @@ class Batch {
           session_of_({.device = options.device,
                        .radiance = linear,
                        .format = options.format,
-                       .audited = options.audit,
-                       .constants = options.constants},
+                       .audited = options.audit},
                       times, files) {}
 
     std::size_t run(const std::vector<scene::Shot>& shots) {
@@ -211,10 +210,7 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     FilesInUse files;
     PictureFormat format = options.format;
     format.layers.clear();
-    ShotSession sessions({.device = options.device,
-                          .format = format,
-                          .audited = options.audit,
-                          .constants = options.constants},
+    ShotSession sessions({.device = options.device, .format = format, .audited = options.audit},
                          times, files);
     const auto draw = [&](const scene::Shot& shot) {
         const auto began = Clock::now();

@@ -33,8 +33,6 @@ void order_for_drawing(std::vector<scene::Shot>& shots);
 
 struct BatchOptions {
     std::string device = "auto";  ///< as gl::Context
-    bool constants =
-        false;  ///< as Options; by one_setting() of all pictures, which make the same by any tasks
     bool overwrite = false;
     /// Pictures that are replaced even without `overwrite`, with their sidecars: OnDisk::Part.
     std::set<std::filesystem::path> parts;

@@ -24,7 +24,7 @@ struct EffectsRequest {
     /// The overlay shows sunlight of its own time: cast shadows are off unless enabled by id.
     bool hides_shadows = false;
     bool allow_unmet = false;  ///< as in Options
-    bool constants = false;    ///< as in Options
+    bool constants = false;    ///< StitchInput::constants
     bool mapped = false;       ///< by a map of land cover
 
     /// True if only parameter values may differ.

@@ -77,9 +77,7 @@ FilmReport draw_film(const std::vector<scene::Shot>& shots, const FilmOptions& o
                     first.scene.height_px, options.settings, options.comment);
     FilmReport report;
     {
-        ShotSession sessions(
-            {.device = options.device, .format = PictureFormat{}, .constants = one_setting(shots)},
-            times, files);
+        ShotSession sessions({.device = options.device, .format = PictureFormat{}}, times, files);
         Encoding encoding(film);
         std::size_t number = 0;
         for (const scene::Shot& shot : shots) {

@@ -100,9 +100,6 @@ struct Options {
     /// Effects that the scene switches on by name may lack what they require: they are off, with a
     /// notice. Otherwise that is an error.
     bool allow_unmet = false;
-    /// Parameters of effects are constants of programs, which then do less work. Scenes with other
-    /// values need other programs.
-    bool constants = false;
     /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
     /// Called with the shader sources before they are compiled.

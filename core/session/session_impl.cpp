@@ -102,7 +102,8 @@ void Session::Impl::open_device(FilesInUse& files) {
 EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     EffectsRequest request{.effects = effects, .compared = options.compared};
     request.allow_unmet = options.allow_unmet;
-    request.constants = options.constants;
+    // By the scene alone, so that each picture can be made again with the same bytes.
+    request.constants = options.format && effects.settings.empty();
     request.mapped = !state.scene.land_cover.file.empty();
     request.effects.weather = state.weather ? state.weather->facts : weather::Facts{};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);

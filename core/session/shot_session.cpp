@@ -1,6 +1,5 @@
 #include "session/shot_session.h"
 
-#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -14,15 +13,6 @@ std::string reason_of(const std::exception_ptr& thrown) {
     } catch (const std::exception& error) {
         return error.what();
     }
-}
-
-bool one_setting(const std::vector<scene::Shot>& shots) {
-    const scene::Scene& first = shots.front().scene;
-    return std::ranges::all_of(shots, [&](const scene::Shot& shot) {
-        return shot.scene.weather == first.weather &&
-               std::ranges::equal(shot.scene.effects.settings, first.effects.settings,
-                                  effect::same_value);
-    });
 }
 
 scene::Scene of_any_view(scene::Scene scene) {

@@ -3,7 +3,6 @@
 #include <exception>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "base/files_in_use.h"
 #include "scene/job.h"
@@ -18,10 +17,6 @@ std::string reason_of(const std::exception_ptr& thrown);
 
 /// The scene with a default camera: an impossible camera must fail its picture, not the session.
 scene::Scene of_any_view(scene::Scene scene);
-
-/// Whether shots have the same values of parameters, so that programs with constants draw all of
-/// them.
-bool one_setting(const std::vector<scene::Shot>& shots);
 
 /// The session that draws shots one after the other. Shots of one DEM that need the same of the
 /// renderer share it.

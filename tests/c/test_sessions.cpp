@@ -76,12 +76,8 @@ TEST_F(Sessions, MapsAndMarginsHaveTheirOwnSize) {
     expect_ok(relevo_set(session_.get(), R"({"picture": {"ortho": false, "size": [480, 320]},
         "stamps": {"show": ["title", "scale"], "margin": true}})"));
     const Colours framed = draw(session_.get());
-    const auto taken = captured(
-        {"--time", "2026-06-21T20:00Z", "--size", "480x320", "--stamp", "title,scale", "--margin"});
-    ASSERT_EQ(framed.rgba.size(), taken.size());
-    // Programs of captures have parameters as constants, which rounds otherwise.
-    for (std::size_t i = 0; i < taken.size(); ++i)
-        ASSERT_NEAR(framed.rgba[i], taken[i], 1) << i;
+    EXPECT_EQ(framed.rgba, captured({"--time", "2026-06-21T20:00Z", "--size", "480x320", "--stamp",
+                                     "title,scale", "--margin"}));
 }
 
 TEST_F(Sessions, TheSceneSaysWhatWasChosen) {

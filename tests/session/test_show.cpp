@@ -61,9 +61,16 @@ image::Image8 picture_of(Session& session) {
     return session.picture();
 }
 
+/// @param constants  as sessions of pictures have parameters, unless the scene sets values
+Options options(bool constants) {
+    Options result{.device = test::gl_device()};
+    if (constants) result.format = PictureFormat{};
+    return result;
+}
+
 image::Image8 alone(const scene::Scene& scene, bool constants = false) {
     FilesInUse files;
-    Session session(scene, {.device = test::gl_device(), .constants = constants}, files);
+    Session session(scene, options(constants), files);
     return picture_of(session);
 }
 
@@ -73,7 +80,7 @@ void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& c
     const image::Image8 first = alone(begin, constants);
     const sun::Instant begin_utc = sun::parse_time(begin.time.at).utc;
     FilesInUse files;
-    Session session(begin, {.device = test::gl_device(), .constants = constants}, files);
+    Session session(begin, options(constants), files);
     ASSERT_EQ(picture_of(session).values, first.values);
     for (const Change& change : changes) {
         scene::Scene scene = begin;
