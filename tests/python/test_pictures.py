@@ -172,5 +172,5 @@ def test_memory_of_views(dem):
             dem.capture(TIME, (32, 24), device="software")
 
     grown = growth_mib(open_10)
-    print(f"[ memory ] 10 views opened and closed: {grown:.1f} MiB more (limit 4)")
-    assert grown < 4
+    print(f"[ memory ] 10 views opened and closed: {grown:.1f} MiB more (limit 10)")
+    assert grown < 10  # buffers of threads that end come and go; a view holds 50
