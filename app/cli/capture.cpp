@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/exaggeration_argument.h"
 #include "cli/format_arguments.h"
 #include "cli/scene_arguments.h"
 #include "cli/timings.h"
@@ -35,6 +36,7 @@ namespace {
 
 struct CaptureArguments {
     SceneArguments scene;
+    ExaggerationArgument exaggeration;
     FormatArguments format;
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
@@ -129,6 +131,8 @@ void capture(const CaptureArguments& arguments) {
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
     const session::PictureFormat format = arguments.format.picture();
     auto [scene, compared] = wanted(arguments);
+    arguments.exaggeration.apply_to(scene,
+                                    !arguments.scene.file.empty() || !arguments.from.empty());
     const bool linear = image::holds_linear_light(output);
     const bool stamped = scene.stamps != scene::Stamps();
     if (linear) scene.stamps.margin = false;  // without stamps
@@ -282,6 +286,7 @@ void capture_and_watch(CaptureArguments arguments) {
 void add_capture(Verb app) {
     const auto arguments = std::make_shared<CaptureArguments>();
     const Verb verb = app.add_verb("capture", "Makes one picture");
+    arguments->exaggeration.add_to(verb);
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
                     "Picture to write: png, jpg, webp, avif, tif, or exr (linear light); - is "

@@ -46,13 +46,8 @@ void JobRun::read_job(const JobArguments& arguments) {
         job.output_may_leave = true;
         return;
     }
-    job = scene::read_job(arguments.job, [&](scene::Scene& scene) {
-        arguments.scene.apply_to(scene);
-        if (scene.chooses_exaggeration)
-            bad_usage(
-                "--exaggerate auto: of relevo capture and of the window; pictures of "
-                "a job have one scale, so give a number");
-    });
+    job = scene::read_job(arguments.job,
+                          [&](scene::Scene& scene) { arguments.scene.apply_to(scene); });
     if (!arguments.output.empty()) {
         job.output = arguments.output;
         job.output_given = false;

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/text.h"
-#include "scene/exaggeration.h"
 #include "scene/panorama.h"
 
 namespace relevo::cli {
@@ -42,33 +40,6 @@ void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
     scene.overlay->range = {*low, *high};
 }
 
-void ExaggerationArgument::add_to(Verb verb) {
-    const scene::Option& option = scene::option("--exaggerate");
-    verb.add_option("--exaggerate", text,
-                    "Vertical exaggeration, a number; auto: by the DEM in the default view from "
-                    "the air at the default "
-                    "time, else 1 (auto)")
-        .group(std::string(option.group))
-        .type_name("FLOAT")
-        .check({[&option](const std::string& word) {
-                    return word == kAuto ? std::string()
-                                         : scene::fault_of(option, scene::value_of(option, word));
-                },
-                fmt::format("auto or {} to {}", option.min, option.max)});
-}
-
-void ExaggerationArgument::apply_to(scene::Scene& scene) const {
-    if (text == kAuto && !scene::may_exaggerate(scene))
-        log::info(
-            "--exaggerate auto: 1, because the view, the time, an overlay or effects are given");
-    if (text == kAuto) scene.chooses_exaggeration = scene::may_exaggerate(scene);
-    if (!text.empty() && text != kAuto) scene.exaggeration = *parse_number(text);
-}
-
-void ExaggerationArgument::choose_for(scene::Scene& scene) const {
-    if (text.empty()) scene.chooses_exaggeration = scene::may_exaggerate(scene);
-}
-
 void SceneArguments::add_to(Verb verb, bool with_file) {
     dem.add_to(verb);
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
@@ -88,7 +59,6 @@ void SceneArguments::add_to(Verb verb, bool with_file) {
     view.add_to(verb);
     effects.add_to(verb);
     overlay.add_to(verb);
-    exaggeration.add_to(verb);
     verb.add_option("--stamp", stamps,
                     "Annotations: a list of title, scale, north, graticule, date, sun, "
                     "exaggeration, attribution; or all, none")
@@ -106,7 +76,6 @@ scene::Scene SceneArguments::scene() const {
     scene::Scene result;
     if (!file.empty()) result = scene::read_scene(file);
     apply_to(result);
-    if (file.empty()) exaggeration.choose_for(result);
     session::Trust trusted(named(), "scene: " + printable(file), session::NamedBy::File);
     trusted.check_names(result);
     trusted.keep_folders(result.effects);
@@ -125,7 +94,6 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     if (values.has("--fov") && values.has("--focal-length"))
         bad_usage("--fov and --focal-length exclude each other; use one");
     values.apply_to(result);
-    exaggeration.apply_to(result);
     check_map(result);
     apply_stamps_to(result.stamps);
     apply_size_to(result);

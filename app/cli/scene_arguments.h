@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "cli/effects.h"
 #include "cli/shared.h"
@@ -20,19 +19,6 @@ struct OverlayArguments {
     void apply_to(scene::Scene& scene, bool more) const;
 };
 
-/// --exaggerate: a number, or auto.
-struct ExaggerationArgument {
-    static constexpr std::string_view kAuto = "auto";
-    std::string text;
-
-    void add_to(Verb verb);
-    /// Puts what was given in the place of what a scene says. auto is 1, with a notice, for scenes
-    /// that may not choose.
-    void apply_to(scene::Scene& scene) const;
-    /// auto where nothing was given, of scenes that no file describes.
-    void choose_for(scene::Scene& scene) const;
-};
-
 /// Everything that a scene is made of: DEM..., --scene, and what else decides about a picture.
 struct SceneArguments {
     DemArguments dem;
@@ -41,7 +27,6 @@ struct SceneArguments {
     ViewArguments view;
     EffectArguments effects;
     OverlayArguments overlay;
-    ExaggerationArgument exaggeration;
     OptionArguments values;
     std::string file, size, stamps;
     bool trust = false;  ///< --trust

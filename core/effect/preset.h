@@ -34,11 +34,6 @@ struct Setting {
     std::string folder{};  ///< base of relative paths; empty: working folder
 };
 
-/// Whether they set the same, wherever they are written.
-inline bool same_value(const Setting& a, const Setting& b) {
-    return a.address == b.address && a.text == b.text && a.folder == b.folder;
-}
-
 /// A file of switches and values.
 struct Preset {
     std::string name;

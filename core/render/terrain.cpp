@@ -340,10 +340,14 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
     return selection;
 }
 
+double Terrain::pixel_error(double exaggeration) const {
+    return options_.pixel_error * std::clamp(exaggeration, 1.0, 2.0);
+}
+
 LodView Terrain::view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const {
     const bool around = inputs.part && inputs.part->of_panorama;
     const auto make = around ? LodView::around_camera : LodView::of_camera;
-    return make(inputs.camera, picture_px.x, picture_px.y, options_.pixel_error,
+    return make(inputs.camera, picture_px.x, picture_px.y, pixel_error(inputs.exaggeration),
                 inputs.exaggeration);
 }
 

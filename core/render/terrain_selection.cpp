@@ -91,8 +91,8 @@ bool Terrain::in_budget(const LodView& wanted, double tolerance,
 }
 
 TileSelection Terrain::select_below(const FrameInputs& inputs, const glm::ivec2& picture_px) {
-    const double pixel_error = options_.pixel_error;
     const double exaggeration = inputs.exaggeration;
+    const double pixel_error = this->pixel_error(exaggeration);
     const double tolerance = tolerance_in_budget(view_of(inputs, picture_px));
     scene::Camera vertical =
         GroundProbe::camera_below(inputs.camera, frame_, tolerance, pixel_error);

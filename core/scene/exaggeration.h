@@ -9,9 +9,9 @@
 /// true scale.
 namespace relevo::scene {
 
-/// Whether a picture may choose its vertical scale: a view from the air at the default time, with
-/// nothing on the ground and no other effects. Other pictures are looked at for the sun's shadows,
-/// which follow the drawn ground, or compared.
+/// Whether a picture may choose its vertical scale: a view from the air at the default time,
+/// without an overlay and with the effects and values that a scene begins with. In other pictures
+/// people look at the sun's shadows, which follow the drawn ground, or compare heights.
 bool may_exaggerate(const Scene& scene);
 
 /// The vertical scale of a DEM: 1 to 4, to a fifth; 20 at most where no ground is above the sea, or

@@ -209,8 +209,7 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
     std::vector<std::string> said =
         effect::apply_settings(changed, registry, loaded.selection, presets, settings);
     for (const shader::Param* param : changed.params())
-        if (shader::may_be_constant(*param, constants) &&
-            changed.value(param->address) != values.value(param->address))
+        if (param->is_static && changed.value(param->address) != values.value(param->address))
             return std::nullopt;
     for (const shader::TextParam* text : changed.texts())
         if (changed.text(text->address) != values.text(text->address)) return std::nullopt;

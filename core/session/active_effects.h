@@ -74,8 +74,8 @@ struct ActiveEffects : InstalledEffects {
     /// Switches off, with a warning, effects whose textures exceed the device's limits.
     /// @throws Error (BadInput) if such an effect was enabled by id
     void fit(const gl::DeviceInfo& device, bool report = true);
-    /// The parameter values under other settings; nullopt if these change a constant of
-    /// programs or a text, which needs another program or module.
+    /// The parameter values under other settings; nullopt if these change a static parameter or a
+    /// text, which needs another program or module.
     /// @param report  logs notices that were not logged before
     /// @throws Error (BadInput) as effect::apply_settings
     std::optional<shader::ParamStore> values_with(const std::vector<effect::Setting>& settings,

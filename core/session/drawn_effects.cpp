@@ -19,8 +19,11 @@ bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
 }
 
 bool EffectsRequest::operator==(const EffectsRequest& other) const {
+    const auto same = [](const effect::Setting& a, const effect::Setting& b) {
+        return a.address == b.address && a.text == b.text && a.folder == b.folder;
+    };
     return has_selection_of(other) &&
-           std::ranges::equal(effects.settings, other.effects.settings, effect::same_value);
+           std::ranges::equal(effects.settings, other.effects.settings, same);
 }
 
 DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
@@ -106,7 +109,7 @@ bool DrawnEffects::take(const EffectsRequest& request) {
 void DrawnEffects::set(const std::string& address, const std::string& value) {
     for (const Half& half : halves()) {
         const shader::Param* const param = half.effects.values.find(address);
-        if ((param && shader::may_be_constant(*param, half.effects.constants)) ||
+        if ((param && (param->is_static || half.effects.constants)) ||
             half.effects.values.find_text(address))
             bad_input(fmt::format(
                 "session: {}: is a static parameter; another value needs another shader", address));

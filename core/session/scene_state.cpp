@@ -1,6 +1,5 @@
 #include "session/scene_state.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -35,16 +34,7 @@ void SceneState::choose_exaggeration(const LoadedDem& dem) {
     const render::Ground ground = ground_of(dem);
     scene.exaggeration =
         scene::chosen_exaggeration(dem.field.height_m, ground.north_east_m - ground.south_west_m);
-    // What is drawn too high is drawn more coarsely: twice as many triangles would not be seen.
-    is_coarser_ = scene.exaggeration != 1 && scene.pixel_error == scene::Scene().pixel_error;
-    if (is_coarser_) scene.pixel_error *= std::min(scene.exaggeration, 2.0);
     scene.stamps.exaggeration = scene.exaggeration != 1 && scene.width_px >= kLeast_px;
-}
-
-bool SceneState::end_choice() {
-    if (!std::exchange(is_coarser_, false)) return false;
-    scene.pixel_error = scene::Scene().pixel_error;
-    return true;
 }
 
 void SceneState::take_shape(bool other) {

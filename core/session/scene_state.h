@@ -38,9 +38,6 @@ class SceneState {
     void take_dem(std::shared_ptr<const LoadedDem> dem);
     /// Chooses the exaggeration, if the scene wants that. @param dem  that is or will be drawn
     void choose_exaggeration(const LoadedDem& dem);
-    /// Another exaggeration is asked for. @returns true if the pixel error was that of the choice,
-    /// and is no more
-    bool end_choice();
     /// Updates exaggeration and exposure from the scene.
     /// @param other  true if the exaggeration or the DEM has changed
     void take_shape(bool other);
@@ -111,7 +108,6 @@ class SceneState {
     sun::Refraction air_ = sun::Refraction::none();
     render::GroundToShow to_show_;
     std::optional<MovedPoints> moved_;  // from to_show_
-    bool is_coarser_ = false;           // by choose_exaggeration()
     std::optional<scene::DefaultDay> day_;
     std::optional<scene::Framing> framing_;  // of the last view with an open angle
     std::string time_reason_;

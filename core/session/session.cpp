@@ -156,10 +156,7 @@ void Session::set_backdrop(scene::Backdrop backdrop) {
 }
 void Session::set_exaggeration(double exaggeration) {
     impl_->state.scene.exaggeration = exaggeration;
-    if (impl_->state.end_choice())
-        impl_->upload(impl_->state.dem());
-    else
-        impl_->state.take_shape(/*other=*/true);
+    impl_->state.take_shape(/*other=*/true);
 }
 void Session::set_seconds(double seconds) {
     impl_->state.scene.seconds = seconds;

@@ -53,13 +53,6 @@ struct Param {
     int line = 0;
 };
 
-/// Whether a parameter may be a constant in the text of programs, so that another value needs other
-/// programs.
-/// @param all  not only static ones are: such programs do less work
-inline bool may_be_constant(const Param& param, bool all) {
-    return param.is_static || (all && !param.is_host);
-}
-
 /// Reads a value as people write it: `0.2`, `true`, `0.1,0.2,0.3`, `linear` (an enum's word),
 /// `#ff8800` (a colour).
 /// @throws Error (BadInput) that names address, type and range:

@@ -99,7 +99,7 @@ class Stitcher {
     }
 
     bool is_constant(const Param& param) const {
-        if (param.is_static || !may_be_constant(param, input_.constants)) return param.is_static;
+        if (param.is_static || param.is_host || !input_.constants) return param.is_static;
         const bool divides = param.type != ParamType::Bool && param.words.empty();
         const ParamValue value = value_of(param);
         return !divides || std::none_of(value.begin(), value.begin() + component_count(param.type),

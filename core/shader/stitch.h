@@ -51,8 +51,8 @@ struct StitchInput {
     std::vector<PluginPass> passes{};       ///< of the enabled plugins
     std::vector<InstanceSet> instances{};   ///< of the enabled plugins
     const ParamStore* values = nullptr;     ///< of constant parameters; null: their defaults
-    /// All parameters may be constants: may_be_constant(). Numbers that are 0 are none: what is
-    /// divided by them is infinite on devices, and anything where a compiler divides.
+    /// Parameters are constants, as static ones always are, unless modules write them or they are
+    /// 0: a division by 0 is infinite on devices, but compilers may make anything of it.
     bool constants = false;
     /// Ids of plugins that draw over the scene's overlay. nullopt: all that have the hook display
     /// do, and a lit overlay is over the materials of all.

@@ -63,11 +63,6 @@ TEST(ChosenScale, KeepsSideAndSunAndIsOfTheFirstPictureAlone) {
     Session again(chosen.scene(), {.device = test::gl_device()}, files);
     again.draw();
     EXPECT_EQ(chosen.picture().values, again.picture().values);
-    // Another scale ends the choice.
-    Session other(scene, {.device = test::gl_device()}, files);
-    EXPECT_EQ(other.scene().pixel_error, 8);
-    other.set_exaggeration(1);
-    EXPECT_EQ(other.scene().pixel_error, plain.scene().pixel_error);
     // What is shown next has what it says.
     chosen.show(plain.scene(), plain.time());
     EXPECT_EQ(chosen.scene().exaggeration, 1);

@@ -100,9 +100,7 @@ TEST(Show, APictureIsTheSameWhateverWasShownBefore) {
 
 TEST(Show, ConstantsOfProgramsChangeNoPicture) {
     expect_nothing_kept(evening(), changes(), /*constants=*/true);
-    scene::Scene set = evening();
-    set.effects.settings = {{"skylight.strength", "3"}, {"block.side", "#804020"}};
-    const image::Image8 with = alone(set, true), without = alone(set);
+    const image::Image8 with = alone(evening(), /*constants=*/true), without = alone(evening());
     ASSERT_EQ(with.values.size(), without.values.size());
     // Compilers compute functions of constants more exactly than devices do.
     for (std::size_t i = 0; i < with.values.size(); ++i)
