@@ -336,7 +336,7 @@ void add_capture(Verb app) {
             failed(fmt::format(
                 "capture: --size {}: not enough memory for the picture and the DEM; "
                 "use a smaller --size or --memory",
-                arguments->scene.size.empty() ? "1280x1024" : printable(arguments->scene.size)));
+                arguments->scene.size.empty() ? "1280x720" : printable(arguments->scene.size)));
         }
     });
 }

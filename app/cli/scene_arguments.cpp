@@ -42,7 +42,7 @@ void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
 
 void SceneArguments::add_to(Verb verb, bool with_file) {
     dem.add_to(verb);
-    verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
+    verb.add_option("--size", size, "Width and height in pixels, 1280x720");
     if (with_file)
         verb.add_option_function(
             "--scene",

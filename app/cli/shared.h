@@ -105,7 +105,7 @@ Check whole_number();
 /// has U+FFFD for what cannot be said.
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// "1280x1024" as width and height. @throws Error (Usage)
+/// "1280x720" as width and height. @throws Error (Usage)
 glm::ivec2 parse_size(const std::string& text);
 
 }  // namespace relevo::cli

@@ -31,16 +31,14 @@ Drawing lines_panel(const std::vector<std::string>& lines, double size, bool bol
     return drawing;
 }
 
-/// Light words with a shade, without a panel.
+/// Light words on a dark ground that lets the picture through.
 Drawing bare_lines(const std::vector<std::string>& lines, double size) {
     const Drawing panel = lines_panel(lines, size, false);
     Drawing bare(panel.width(), panel.height());
+    bare.rect({0, 0, bare.width(), bare.height()}, {.fill = Color{0x182028, 0.5}});
     double y = kStampPadding + size * 0.8;
     for (const std::string& line : lines) {
-        for (const glm::dvec2& off : {glm::dvec2(1, 1), {-1, 1}, {1, -1}, {-1, -1}})
-            bare.text(glm::dvec2(kStampPadding, y) + 0.8 * off, line,
-                      {.size = size, .color = {0x202020, 0.55}});
-        bare.text({kStampPadding, y}, line, {.size = size, .color = {0xffffff, 0.9}});
+        bare.text({kStampPadding, y}, line, {.size = size, .color = {0xffffff, 0.95}});
         y += size * 1.4;
     }
     return bare;

@@ -89,16 +89,18 @@ sky::EyeTables tables_of(const sky::Air& air, const AirView& view) {
 }  // namespace
 
 std::vector<shader::Param> air_params() {
-    const sky::Air clean;
-    shader::Param aerosol = number(kAerosol, clean.angstrom_beta, {0, 0.5});
+    const sky::Air average;
+    shader::Param aerosol = number(kAerosol, average.angstrom_beta, {0, 0.5});
     aerosol.label = "Aerosol";
     aerosol.description =
-        "Optical depth of the aerosol at a wavelength of 1 um: 0.04 in clean air, 0.2 in turbid";
-    shader::Param ozone = number(kOzone, clean.ozone_du, {0, 600});
+        "Optical depth of the aerosol at a wavelength of 1 um: 0.04 in clean air, 0.08 on an "
+        "average "
+        "clear day, 0.2 in turbid air";
+    shader::Param ozone = number(kOzone, average.ozone_du, {0, 600});
     ozone.unit = "DU";
     ozone.label = "Ozone";
     ozone.description = "Column of ozone, which makes the dusk blue";
-    shader::Param albedo = number(kAlbedo, clean.ground_albedo, {0, 1});
+    shader::Param albedo = number(kAlbedo, average.ground_albedo, {0, 1});
     albedo.label = "Albedo below the air";
     albedo.description =
         "Albedo of the Earth's ground, whose light the air scatters: 0.8 over snow";

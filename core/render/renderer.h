@@ -25,7 +25,7 @@ namespace relevo::render {
 
 struct RendererOptions {
     int width_px = 1280;
-    int height_px = 1024;
+    int height_px = 720;
     bool antialias = true;
     /// Stores linear radiance for read_radiance(). Otherwise shading writes display-referred
     /// colours directly, which saves a pass.

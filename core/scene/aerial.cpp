@@ -12,7 +12,7 @@
 namespace relevo::scene {
 namespace {
 
-constexpr double kChoiceAspect = 1.25;
+constexpr double kChoiceAspect = 16.0 / 9;
 /// Of the camera from a side's normal: straight on, a block shows no depth.
 constexpr double kTurn_deg = 7;
 /// The camera stands so high that the horizon is this far below the upper edge of the picture, as a
@@ -45,6 +45,36 @@ std::vector<NodeInView> nodes_in(const Camera& camera, const GroundNet& net) {
             {node, x, y, -depth_m, -dot(node.normal, from_eye) / (depth_m * depth_m * depth_m)});
     }
     return seen;
+}
+
+/// Above the sea [m], in the local frame, whose plane leaves the Earth's.
+double height_m(const GroundNode& node) {
+    constexpr double kEarth_m = 6371e3;
+    const glm::dvec2 aside_m(node.at_m);
+    return node.at_m.z + dot(aside_m, aside_m) / (2 * kEarth_m);
+}
+
+/// Fills in what an aspect says of heights: where the summits are, and the sea.
+/// @param seen  of the net's nodes
+void look_at_heights(AerialAspect& aspect, const std::vector<NodeInView>& seen,
+                     const GroundNet& net) {
+    constexpr double kSummit = 0.8, kOffEdges = 0.9, kLevelSea_m = 0.5;
+    const std::vector<GroundNode> nodes = nodes_of(net);
+    if (seen.empty()) return;
+    const auto [lowest, highest] = std::ranges::minmax_element(nodes, {}, height_m);
+    const double summit_m = std::lerp(height_m(*lowest), height_m(*highest), kSummit);
+    double summits = 0, area = 0, sea = 0;
+    for (const NodeInView& node : seen) {
+        const bool whole = std::abs(node.x) < kOffEdges && std::abs(node.y) < kOffEdges;
+        if (whole && height_m(node) >= summit_m) ++summits;
+        const double faces = std::max(node.facing, 0.0);
+        area += faces;
+        if (std::abs(height_m(node)) < kLevelSea_m) sea += faces;
+    }
+    aspect.summits =
+        summits / static_cast<double>(std::ranges::count_if(
+                      nodes, [&](const auto& node) { return height_m(node) >= summit_m; }));
+    aspect.sea = area > 0 ? sea / area : 0;
 }
 
 /// Fraction of the picture between the lowest and the highest node of each column.
@@ -99,7 +129,8 @@ AerialFraming raised(Orbit orbit, const GroundNet& net, const AerialGround& grou
 }  // namespace
 
 double AerialAspect::score() const {
-    return std::min(filled, kFullPicture) * in_sight * in_sight * (0.6 + std::min(contrast, 1.0));
+    return std::min(filled, kFullPicture) * in_sight * in_sight * (0.6 + std::min(contrast, 1.0)) *
+           (0.5 + 0.5 * summits) * (1 - 0.5 * sea);
 }
 
 AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const AerialGround& ground,
@@ -109,6 +140,7 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
     aspect.posts = share_in_picture(camera, ground.posts, kChoiceAspect);
     const std::vector<NodeInView> seen = nodes_in(camera, net);
     aspect.filled = filled_of(seen);
+    look_at_heights(aspect, seen, net);
     const DefaultTime time = day.estimate(*orbit.azimuth_deg);
     const Sight sight =
         sight_of(seen, -1, 1, towards(*orbit.azimuth_deg + time.aside_deg, time.elevation_deg));

@@ -10,12 +10,14 @@
 /// Aerial views: out of an aeroplane above the near edge of a DEM, with a horizon.
 namespace relevo::scene {
 
-/// What an aerial view shows of a DEM in a picture 5 : 4.
+/// What an aerial view shows of a DEM in a picture 16 : 9.
 struct AerialAspect {
     double posts = 0;     ///< fraction of AerialGround::posts that is in the picture
     double filled = 0;    ///< fraction of the picture that is ground
     double in_sight = 0;  ///< fraction of the ground in the picture that no other ground hides
     double contrast = 0;  ///< of its light at the default time: spread over mean
+    double summits = 1;   ///< fraction of the highest ground that is in the picture, off its edges
+    double sea = 0;       ///< fraction of the ground in the picture that is a level sea
     double score() const;
 };
 

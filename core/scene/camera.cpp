@@ -52,7 +52,7 @@ struct Room {
 
 /// Of an aerial view: most of the ground lies in this part of the picture. The near corners are
 /// cut, and the far edge is whole.
-constexpr Insets kAerialMargins{-0.45, -0.45, -0.15, 0.2};
+constexpr Insets kAerialMargins{-0.9, -0.9, -0.15, 0.2};
 /// Of land with its sea around it.
 constexpr Insets kLandMargins{0.1, 0.1, 0.1, 0.25};
 /// The margins at the sides are narrower if else too few posts are in the picture.

@@ -58,7 +58,7 @@ struct AerialGround {
     std::vector<glm::dvec3> posts;
     bool land_alone = false;
     /// Fraction of the posts that is in the picture at least.
-    double least_in_picture = 0.82;
+    double least_in_picture = 0.81;
 };
 
 /// Vertical field of view of aerial views for which none is given: kAerialFov_deg, in very wide

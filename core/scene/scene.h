@@ -108,7 +108,7 @@ struct Scene {
     /// no file has it.
     bool chooses_exaggeration = false;
     Effects effects;
-    int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
+    int width_px = 1280, height_px = 720;  ///< 1 to kMaxSide_px
     double seconds = 0;  ///< of effects that move, frame.seconds in their shaders; to kMaxSeconds
     double exposure_ev = 0;
     std::optional<double> ev100;  ///< exposure of a camera, not that of the sun's elevation

@@ -186,12 +186,14 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
     return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
-/// A plot of some 320 x 190 m, a field or a block of houses: two numbers of it, 0..1, and how far single ones are seen.
-vec3 cover_plot(in Surface s, in float across_m) {
+/// A plot of some 320 x 190 m or twice that, a field or a block of houses, with bent borders: two numbers of it, 0..1, and
+/// how far single ones are seen.
+vec3 cover_plot(in Surface s, in cover_Shape shape) {
     const mat2 per_m = mat2(0.7986 / 320.0, 0.6018 / 190.0, -0.6018 / 320.0, 0.7986 / 190.0);
     vec2 within;
-    ivec2 cell = ground_cell(s.anchored_m, per_m, within);
-    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(30.0, 120.0, across_m));
+    ivec2 cell = ground_cell(s.anchored_m + 120.0 * shape.broad.rg, per_m, within), large = cell >> 1;
+    if (noise_random(large, 2u) < 0.4) cell = 2 * large;
+    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(30.0, 120.0, shape.across_m));
 }
 
 /// Fields are green, ripe or bare, and most of them between; from afar their mean.
@@ -210,7 +212,7 @@ vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in f
     vec3 grass = mix(cover_straw, cover_grass, ground.green);
     grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
-    vec3 plot = cover_plot(s, shape.across_m);
+    vec3 plot = cover_plot(s, shape);
     float gardens = 0.5 + plot.z * (0.9 * plot.x * plot.x - 0.3) + shape.small.a + 0.5 * shape.small.g;
     vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.2 + 0.6 * clamp(gardens, 0.0, 1.0));
     float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
@@ -418,8 +420,8 @@ void cover_on_albedo(inout Surface s) {
     cover_part(shares, land, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.
-    float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.01);
-    float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
+    float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.001);
+    float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r + 0.4 * shape.broad.a + 0.3 * shape.broad.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     open = mix(open, cover_land(land, s, ground, growth, shape), land.known);
     // Dry land lies as low as the shore of the Dead Sea.

@@ -82,7 +82,7 @@ void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     if (haze_air) {
         AirBetween air = air_between_eye_and(view, s.distance_m);
-        vec3 passed = exp(-air_scale_at(s.distance_m) * (air.depth + haze_strength));
+        vec3 passed = exp(-air_scale_before(s.post, s.distance_m) * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
         air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength);
         radiance = radiance * passed + air_scattered;

@@ -1,8 +1,8 @@
 //! provides  water where the DEM has sea and lakes, or up to a level: a mirror of the sky with the sun's
 //!           glitter and waves near the eye, the floor seen through it, and in overviews the floor's relief
-//! hook      displace, material, lit
+//! hook      displace, material, visibility, lit
 //! reads     water pages, height [m], diffuse, the sky's radiance without the sun's disc
-//! writes    position; normal, diffuse, ambient, specular, shininess; radiance
+//! writes    position; normal, diffuse, ambient, specular, shininess; factor; radiance
 //! source    light in water: R. M. Pope and E. S. Fry, Applied Optics 36 (1997), 8710, and A. Bricaud, A. Morel
 //!           and L. Prieur, Limnology and Oceanography 26 (1981), 43; waves: C. Cox and W. Munk,
 //!           J. Optical Society of America 44 (1954), 838; their mirror: E. Bruneton, F. Neyret and N.
@@ -91,10 +91,10 @@ float sea_shade(in vec3 normal, in vec3 up, in vec3 to_sun, in float steeper) {
 }
 
 /// Factor on the slopes of a floor for its shading. Slopes between points d apart fall with d^(H - 1),
-/// and H is near 2/3: coarse posts and pixels would make an ocean's mountains plains.
+/// and H is near 2/3: coarse posts and pixels would make an ocean's mountains plains. Exaggerated ones are steep already.
 float sea_steeper(in float pixel_m) {
     float apart_m = max(pixel_m, 1.0 / frame.normal_texels_per_m);
-    return sea_relief * max(pow(apart_m / sea_smooth_m, 1.0 / 3.0), 1.0);
+    return sea_relief * max(pow(apart_m / sea_smooth_m, 1.0 / 3.0) / frame.height_range.z, 1.0);
 }
 
 const float sea_rim = 0.08;  // of the DEM's shorter side: so far from its rim a seen floor becomes the sea beyond
@@ -112,7 +112,8 @@ float sea_at_rim(in vec2 post) {
 /// Factor on the slopes of land for its shading, where the floor is seen: as the floor's, but less, and only where
 /// posts are so far apart that mountains are plains.
 float sea_land_steeper() {
-    return pow(max(1.0 / (frame.normal_texels_per_m * sea_land_smooth_m), 1.0), 1.0 / 3.0);
+    float steeper = pow(max(1.0 / (frame.normal_texels_per_m * sea_land_smooth_m), 1.0), 1.0 / 3.0);
+    return max(steeper / frame.height_range.z, 1.0);
 }
 
 /// Mean square slope of the waves. source: Cox and Munk, clean surface
@@ -266,6 +267,7 @@ void sea_on_displace(in VertexFrame v, inout vec3 position_m) {
 float sea_here = 0.0;
 vec3 sea_normal = vec3(0.0, 0.0, 1.0);
 float sea_rough = 1.0;
+float sea_floor_here = 0.0;  // share of a seen floor
 
 /// @param overview  sea_seen()  @param share  of water
 void sea_shade_land(inout Surface s, in float overview, in float share) {
@@ -289,6 +291,7 @@ void sea_on_material(inout Surface s) {
 
     sea_Waves waves = sea_waves_of(s, water, 1.0 - seen);
     sea_here = water.share * (1.0 - seen * rim);  // the sea beyond mirrors nothing
+    sea_floor_here = water.share * seen;
     sea_rough = waves.roughness;
     sea_normal = normalize(s.up - vec3(waves.slope, 0.0));
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m, waves.roughness);
@@ -307,6 +310,13 @@ void sea_on_material(inout Surface s) {
 #else
     sea_shade_land(s, sea_seen(), 0.0);
 #endif
+}
+
+/// Mountains of a floor that is seen as on a map cast next to no shadows on it: they would be blots of ink, of a sun that
+/// does not reach there.
+void sea_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
+    const float shadowless = 0.8;
+    factor = mix(factor, 1.0, shadowless * sea_floor_here);
 }
 
 void sea_on_lit(in Surface s, inout vec3 radiance) {

@@ -320,7 +320,7 @@ vec3 sky_on_beyond(in Surface s, in vec3 view) {
     vec3 radiance = light * mix(s.diffuse, is_map ? surround_sea_albedo : surround_deep_albedo, sea);
     radiance = mix(radiance, sky_on_background_radiance(normalize(view + 2.0 * cosine * s.up), false), mirrored);
     AirBetween air = air_between_eye_and(view, s.distance_m);
-    return mix(air.radiance, radiance, exp(-beyond_air_scale(s.distance_m) * air.depth));
+    return mix(air.radiance, radiance, exp(-air_scale_beyond(s.distance_m) * air.depth));
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {

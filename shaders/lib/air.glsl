@@ -1,14 +1,30 @@
-//! provides  air_radiance, air_ground, air_between_eye_and, air_scale_at: the clear atmosphere as the eye of the frame sees it
+//! provides  air_radiance, air_ground, air_between_eye_and, air_scale_at, air_scale_before, air_scale_beyond: the clear atmosphere as the eye of the frame sees it
 //! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
 //!           with NO_MOON nothing of the moon, which then lights nothing
 //! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model
 
 //@ include lib/filtered.glsl
 
+const float air_rim = 0.3;  // width of the DEM's rim, as a share of its sides
+
 /// Factor on the depth of the air up to a distance before the ground: below 1 in aerial views of wide DEMs, whose
 /// foreground is clear.
 float air_scale_at(in float distance_m) {
     return frame.air_scale * max(1.0 - frame.air_near_m / max(distance_m, 1e-3), 0.0);
+}
+
+/// The same for a distance beyond the DEM: towards its far side the air becomes the true one.
+float air_scale_beyond(in float distance_m) {
+    float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
+    float whole = min(4.0 * frame.air_scale, 1.0);  // over more than 100 km true air would be all that is seen
+    return max(mix(air_scale_at(distance_m), whole, smoothstep(0.5, 1.3, widths)), smoothstep(2.0, 8.0, widths));
+}
+
+/// The same before ground of the DEM, whose far rim goes over into what is beyond. @param post  of Surface
+float air_scale_before(in vec2 post, in float distance_m) {
+    vec2 inside = min(post, frame.posts.xy - 1.0 - post) * frame.posts.zw;
+    float rim = 1.0 - smoothstep(0.0, air_rim, min(inside.x, inside.y));
+    return mix(air_scale_at(distance_m), air_scale_beyond(distance_m), rim);
 }
 
 uniform sampler2DArray air_sky;  // by azimuth and elevation; layers: air, sunlight that the aerosol scatters once, ground,

@@ -1,5 +1,5 @@
 //! provides  beyond_seen: the level ground that is made up around a DEM seen from the air; beyond_distance_m,
-//!           beyond_horizon_m, beyond_air_scale: where it is
+//!           beyond_horizon_m: where it is
 //! reads     with BEYOND, in programs of the sky, beyond_ground of beyond.frag.glsl
 //! frame     a sphere at the height frame.beyond_m, around the Earth's centre below the eye
 
@@ -22,12 +22,6 @@ float beyond_distance_m(in vec3 direction) {
     float over = above_m * (2.0 * beyond_radius_m + above_m), inside = down * down - over;
     bool meets = frame.beyond > 0.0 && above_m > 0.0 && down < 0.0 && inside > 0.0;
     return meets ? over / (sqrt(max(inside, 0.0)) - down) : -1.0;
-}
-
-/// Factor on the depth of the air before that ground: as before the DEM, and that of the true air near the horizon.
-float beyond_air_scale(in float distance_m) {
-    float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
-    return mix(air_scale_at(distance_m), 1.0, smoothstep(1.2, 6.0, widths));
 }
 
 #ifdef BEYOND

@@ -55,7 +55,7 @@ TEST(PluginTutorial, DoesWhatItSays) {
         int count = 0;
         for (int y = 0; y < of.height; ++y)
             for (int x = 0; x < of.width; ++x)
-                count += of.at(x, y, 2) > of.at(x, y, 0) + 40;
+                count += of.at(x, y, 2) > of.at(x, y, 0) + 60;
         return count;
     };
     EXPECT_EQ(picture("1.png").width, 480);

@@ -32,7 +32,7 @@ FrameInputs lit_from(double sun_deg, bool by_formulas = false) {
     const double sun = radians(sun_deg);
     inputs.sun.direction = {0, -std::cos(sun), std::sin(sun)};
     inputs.sun.refraction_rad = refraction_rad;
-    if (!by_formulas) inputs.atmosphere = sky::atmosphere_of(sky::Air{});
+    if (!by_formulas) inputs.atmosphere = sky::atmosphere_of(sky::Air{.angstrom_beta = 0.04});
     return inputs;
 }
 

@@ -76,11 +76,11 @@ TEST(MapView, LeavesOtherScenesAsTheyAre) {
     Scene scene;
     fit_map(scene, straight());
     EXPECT_EQ(scene.width_px, 1280);
-    EXPECT_EQ(scene.height_px, 1024);
+    EXPECT_EQ(scene.height_px, 720);
     scene.ortho = true;
     fit_map(scene, straight());
-    EXPECT_EQ(scene.width_px, 1280);
-    EXPECT_EQ(scene.height_px, 853);
+    EXPECT_EQ(scene.width_px, 1080);
+    EXPECT_EQ(scene.height_px, 720);
 }
 
 TEST(MapView, FindsPointsAgainAtAnyHeight) {

@@ -14,7 +14,7 @@ namespace relevo::sky {
 namespace {
 
 const Atmosphere& clean() {
-    static const Atmosphere kClean;
+    static const Atmosphere kClean(Air{.angstrom_beta = 0.04});
     return kClean;
 }
 
@@ -132,7 +132,8 @@ TEST(Atmosphere, SendsWhatItTakesAway) {
     EXPECT_NEAR(before, luminance(clean().radiance(view)), 1e-9);
     // Koschmieder: after 1 km at the sea extinction is what Air says.
     EXPECT_NEAR(-std::log(luminance(clean().transmittance(0, 0, 1000))),
-                1000 * white_extinction({}), 0.17 * 1000 * white_extinction({}));
+                1000 * white_extinction({.angstrom_beta = 0.04}),
+                0.17 * 1000 * white_extinction({.angstrom_beta = 0.04}));
 }
 
 TEST(Atmosphere, HasTheEarthsShadowAndTheBeltOfVenus) {
@@ -176,6 +177,33 @@ TEST(Atmosphere, IsBrighterAndWhiterWhereTheAirIsTurbid) {
     const SunRays rays(0);
     EXPECT_LT(luminance(turbid.sunlight(rays, radians(40))),
               0.75 * luminance(clean().sunlight(rays, radians(40))));
+}
+
+/// Share of the sky in the light of level ground from 400 to 700 nm.
+double share_of_sky(const Atmosphere& air, double height_m, double sun_deg) {
+    const SunRays rays(height_m);
+    const Spectrum direct = air.sunlight(rays, radians(sun_deg)),
+                   diffuse = air.sky_irradiance(height_m, sine(sun_deg));
+    double by_sun = 0, by_sky = 0;
+    for (std::size_t k = 0; k < kWavelengths; ++k) {
+        by_sun += solar_irradiance()[k] * sine(sun_deg) * direct[k];
+        by_sky += solar_irradiance()[k] * diffuse[k];
+    }
+    return by_sky / (by_sun + by_sky);
+}
+
+// Shares of all light in clear hours with the sun at 24 to 31 degrees, times 1.23 (ASTM G173) for
+// that from 400 to 700 nm: docs/accuracy-sky.md.
+TEST(Atmosphere, SharesItsLightAsOnAnAverageClearDay) {
+    const Atmosphere average;
+    const double denver = share_of_sky(average, 1650, 27.5),
+                 of_clean_air = share_of_sky(clean(), 1650, 27.5);
+    fmt::print(
+        "[ accuracy ] share of the sky, Denver {:.3f}, in clean air {:.3f}; Santiago {:.3f}\n",
+        denver, of_clean_air, share_of_sky(average, 474, 27.5));
+    EXPECT_NEAR(denver, 1.23 * 0.146, 0.015);
+    EXPECT_LT(of_clean_air, 1.23 * 0.146 - 0.015);
+    EXPECT_NEAR(share_of_sky(average, 474, 27.5), 1.23 * 0.285, 0.06);
 }
 
 }  // namespace

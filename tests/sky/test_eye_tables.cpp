@@ -17,9 +17,9 @@
 namespace relevo::sky::test_eye_tables {
 namespace {
 
-const Atmosphere& clean() {
-    static const Atmosphere kClean;
-    return kClean;
+const Atmosphere& average() {
+    static const Atmosphere kAverage;
+    return kAverage;
 }
 
 double luminance(const glm::dvec3& c) {
@@ -64,7 +64,7 @@ TEST(EyeTables, BetweenTheirTexelsAreTheAtmospheresRadiance) {
     for (const double height : {2.0, 300.0, 3e3, 11e3, 40e3, 400e3}) {
         for (const double sun_deg : {40.0, 5.0, 0.0, -4.0, -8.0}) {
             const double sun = std::sin(radians(sun_deg));
-            const EyeTables tables = eye_tables(clean(), height, sun);
+            const EyeTables tables = eye_tables(average(), height, sun);
             std::vector<double> errors;
             double brightest = 0;
             std::vector<double> of_brightest;
@@ -73,9 +73,9 @@ TEST(EyeTables, BetweenTheirTexelsAreTheAtmospheresRadiance) {
                     const double sine = tables.layout.sine_above(v);
                     const double azimuth_cos = EyeLayout::azimuth_cos(u);
                     const glm::dvec3 night = night_radiance(
-                        height, sine, colour_of(clean().transmittance(height, sine, 1e9)).g);
+                        height, sine, colour_of(average().transmittance(height, sine, 1e9)).g);
                     const double expected = luminance(
-                        colour_of(clean().radiance({height, sine, sun, azimuth_cos})) + night);
+                        colour_of(average().radiance({height, sine, sun, azimuth_cos})) + night);
                     const double phase = aerosol_phase(ray_sun_cosine(sine, {sun, azimuth_cos}));
                     constexpr int kLayer =
                         EyeLayout::kAzimuths * (EyeLayout::kAbove + EyeLayout::kBelow);
@@ -110,7 +110,7 @@ TEST(EyeTables, AirBetweenScattersAndPassesWhatTheAtmosphereDoes) {
     for (const double height : {2.0, 3e3, 11e3, 60e3, 400e3}) {
         for (const double sun_deg : {40.0, 5.0, -4.0}) {
             const double sun = std::sin(radians(sun_deg));
-            const EyeTables tables = eye_tables(clean(), height, sun);
+            const EyeTables tables = eye_tables(average(), height, sun);
             std::vector<double> errors, passed;
             // On texels, between distances.
             for (const int row : {2, 12, 20, 23, 26}) {
@@ -140,12 +140,12 @@ TEST(EyeTables, AirBetweenScattersAndPassesWhatTheAtmosphereDoes) {
                         const glm::dvec3 through =
                             glm::exp(-air.a * way * glm::dvec3(tables.colour));
                         const glm::dvec3 scattered = glm::dvec3(air) * (1.0 - through);
-                        const double expected = luminance(colour_of(clean().scattered_in(
+                        const double expected = luminance(colour_of(average().scattered_in(
                             {height, sine, sun, EyeLayout::azimuth_cos(u)}, distance)));
                         errors.push_back(std::abs(luminance(scattered) / expected - 1));
                         passed.push_back(
                             std::abs(through.g -
-                                     colour_of(clean().transmittance(height, sine, distance)).g));
+                                     colour_of(average().transmittance(height, sine, distance)).g));
                     }
                 }
             }
@@ -155,7 +155,7 @@ TEST(EyeTables, AirBetweenScattersAndPassesWhatTheAtmosphereDoes) {
                 "[ accuracy ] air between, from {:.0f} m, sun {:.0f}: scattered {:.1f} %, "
                 "passed {:.3f}\n",
                 height, sun_deg, 100 * worst, lost);
-            EXPECT_LT(worst, height < 20e3 ? 0.01 : 0.04) << height << " " << sun_deg;
+            EXPECT_LT(worst, height < 20e3 ? 0.012 : 0.04) << height << " " << sun_deg;
             EXPECT_LT(lost, 0.005) << height << " " << sun_deg;
         }
     }
@@ -180,7 +180,8 @@ TEST(EyeTables, AreMadeForHeightsAndSunsNearby) {
                                  away = (near_sine - layout.horizon) / (1 - layout.horizon),
                                  sine = here.horizon + away * (1 - here.horizon);
                     const auto light = [&](double h, double s, double of_sun) {
-                        return luminance(colour_of(clean().radiance({h, s, of_sun, azimuth_cos})));
+                        return luminance(
+                            colour_of(average().radiance({h, s, of_sun, azimuth_cos})));
                     };
                     const double found = light(nearest, near_sine, near_sun);
                     worst = std::max(worst, std::abs(found / light(height, sine, sun) - 1));
@@ -196,7 +197,7 @@ TEST(EyeTables, HaveTheHorizonsTwoSidesInTheirRows) {
     // The last row of air before space, the first of air before the ground.
     for (const double height : {2.0, 3000.0, 400e3}) {
         const double sun = std::sin(radians(20.0));
-        const EyeTables tables = eye_tables(clean(), height, sun);
+        const EyeTables tables = eye_tables(average(), height, sun);
         constexpr std::size_t kRow = EyeLayout::kAzimuths;
         for (const auto& [row, aside] :
              {std::pair{std::size_t{0}, 1e-9}, std::pair{std::size_t{EyeLayout::kAbove}, -1e-9}}) {
@@ -204,7 +205,7 @@ TEST(EyeTables, HaveTheHorizonsTwoSidesInTheirRows) {
                 const double azimuth_cos = EyeLayout::azimuth_cos(i / (kRow - 1.0));
                 const double sine = tables.layout.horizon + aside;
                 const Sun at{sun, azimuth_cos};
-                const Brought expected = clean().brought(height, sine, std::span(&at, 1)).front();
+                const Brought expected = average().brought(height, sine, std::span(&at, 1)).front();
                 Spectrum air{};
                 std::copy(expected.air.begin(), expected.air.end(), air.begin());
                 EXPECT_NEAR(
@@ -227,7 +228,7 @@ double night_seen(const EyeTables& tables, std::size_t row) {
 }
 
 TEST(EyeTables, FromOrbitTheEarthAtNightIsBrighterThanSpace) {
-    const EyeTables tables = eye_tables(clean(), 400e3, -1);
+    const EyeTables tables = eye_tables(average(), 400e3, -1);
     constexpr std::size_t kZenith = EyeLayout::kAbove - 1,
                           kNadir = EyeLayout::kAbove + EyeLayout::kBelow - 1;
     double limb = 0;
@@ -244,18 +245,18 @@ TEST(Night, ShedsTwoThousandthsOfALux) {
     constexpr int kSteps = 400;
     for (int i = 0; i < kSteps; ++i) {
         const double sine = (i + 0.5) / kSteps;
-        const glm::dvec3 through = colour_of(clean().transmittance(0, sine, 1e9));
+        const glm::dvec3 through = colour_of(average().transmittance(0, sine, 1e9));
         lux += 127500 * 2 * sine / kSteps * luminance(night_radiance(0, sine, through.g));
     }
     fmt::print("[ sky ] moonless night: {:.5f} lux\n", lux);
-    EXPECT_NEAR(lux, 0.002, 0.0001);
+    EXPECT_NEAR(lux, 0.002, 0.0002);
     EXPECT_NEAR(127500 * luminance(night_irradiance()), 0.002, 1e-4);
 }
 
 TEST(Shipped, TheDefaultAtmosphereIsTheOneThatIsComputed) {
     const auto shipped = atmosphere_of(Air{});
     EXPECT_EQ(shipped, atmosphere_of(Air{}));
-    const Diffuse &found = shipped->diffuse().at(7, 50), &expected = clean().diffuse().at(7, 50);
+    const Diffuse &found = shipped->diffuse().at(7, 50), &expected = average().diffuse().at(7, 50);
     for (std::size_t k = 0; k < kWavelengths; ++k)
         EXPECT_EQ(found.moments[0][k], expected.moments[0][k]);
     EXPECT_NE(atmosphere_of(Air{.angstrom_beta = 0.1}), shipped);
@@ -276,8 +277,8 @@ TEST(Night, KeepsItsBlueDownToTheHorizon) {
     for (const double height : {2.0, 1000.0, 3000.0})
         for (double v = 0; v < 1; v += 0.02) {
             const double sine = EyeLayout(height).sine_above(v) + 1e-6;
-            const glm::dvec3 light =
-                night_radiance(height, sine, colour_of(clean().transmittance(height, sine, 1e9)).g);
+            const glm::dvec3 light = night_radiance(
+                height, sine, colour_of(average().transmittance(height, sine, 1e9)).g);
             EXPECT_GT(light.b, 0.6 * light.g) << height << " " << sine;
             EXPECT_GT(light.r, 0.5 * light.g) << height << " " << sine;
         }

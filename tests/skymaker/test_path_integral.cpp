@@ -78,7 +78,7 @@ double single_scattering(const Medium& m, double sun_rad, const Sight& sight, st
 }
 
 TEST(PathIntegral, FirstOrderIsTheQuadratureAlongTheLineOfSight) {
-    Medium medium = medium_of({});
+    Medium medium = medium_of({.angstrom_beta = 0.04});
     medium.ground_albedo = 0;
     for (const double sun_deg : {60.0, 5.0, -3.0, -7.0}) {
         const PathIntegral integral(medium, radians(sun_deg), 0);
@@ -188,7 +188,7 @@ TEST(PathIntegral, WithoutAirTheSkyIsBlackAndTheGroundAsLit) {
 }
 
 TEST(PathIntegral, EyesAboveTheAirSeeWhatEyesAtItsTopSee) {
-    const PathIntegral integral(medium_of({}), radians(20.0));
+    const PathIntegral integral(medium_of({.angstrom_beta = 0.04}), radians(20.0));
     const Figure top =
         figure(integral.radiance({sky::kTopOfAir_m, radians(-90), 0}, {.paths = 200}), at(4));
     const Figure orbit =
@@ -198,7 +198,7 @@ TEST(PathIntegral, EyesAboveTheAirSeeWhatEyesAtItsTopSee) {
 
 /// The irradiance is the cosine-weighted mean of radiances.
 TEST(PathIntegral, IrradianceIsTheIntegralOfRadiance) {
-    const PathIntegral integral(medium_of({}), radians(8.0));
+    const PathIntegral integral(medium_of({.angstrom_beta = 0.04}), radians(8.0));
     double sum = 0, squares = 0;
     constexpr int kUp = 10, kAround = 12;
     for (int i = 0; i < kUp; ++i)
@@ -215,7 +215,7 @@ TEST(PathIntegral, IrradianceIsTheIntegralOfRadiance) {
 }
 
 TEST(PathIntegral, GivesTheSameNumbersAgain) {
-    const PathIntegral integral(medium_of({}), radians(-4.0));
+    const PathIntegral integral(medium_of({.angstrom_beta = 0.04}), radians(-4.0));
     const Sight sight{0, radians(10), 0};
     EXPECT_EQ(integral.radiance(sight, {.batches = 4, .paths = 20}),
               integral.radiance(sight, {.batches = 4, .paths = 20}));

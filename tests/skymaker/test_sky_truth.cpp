@@ -84,7 +84,7 @@ TEST(HillaireSky, IsAsFarFromTheTruthAsIsotropicHigherOrdersAre) {
     std::vector<test::SkyRow> rows;
     for (const test::SkyRow& row : test::sky_truth())
         if (row.air == "clean" && row.height_m == 0) rows.push_back(row);
-    const HillaireSky air;
+    const HillaireSky air(rows.front().parameters());
     const auto model = [&](const test::SkyRow& row) {
         return air.radiance(std::sin(radians(row.elevation_deg)), std::sin(radians(row.sun_deg)),
                             std::cos(radians(row.azimuth_deg)));

@@ -28,7 +28,7 @@ struct SkyRow {
     double error_uv;
 
     sky::Air parameters() const {
-        return air == "turbid" ? sky::Air{.angstrom_beta = 0.2} : sky::Air{};
+        return air == "turbid" ? sky::Air{.angstrom_beta = 0.2} : sky::Air{.angstrom_beta = 0.04};
     }
 };
 

@@ -37,7 +37,7 @@ Options parse(int argc, char** argv) {
 }
 
 void run(const Options& options) {
-    const sky::Atmosphere air;
+    const sky::Atmosphere air, clean(sky::Air{.angstrom_beta = 0.04});
     const std::filesystem::path folder = options.output / "sky";
     std::filesystem::create_directories(folder);
     sky::write_atmosphere(folder / "air.bin", air);
@@ -45,7 +45,7 @@ void run(const Options& options) {
     for (const auto& [name, deg] :
          {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
         write_ktx(folder / fmt::format("{}.ktx2", name),
-                  single_texture(air, std::sin(radians(deg))));
+                  single_texture(clean, std::sin(radians(deg))));  // of the paper's skies
     write_ktx(folder / "stars.ktx2", star_texture(read_stars(options.stars)));
 }
 

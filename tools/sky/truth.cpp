@@ -29,7 +29,7 @@ struct Place {
 
 /// Directions are at least 9 degrees from the sun.
 std::vector<Place> places() {
-    const sky::Air clean, turbid{.angstrom_beta = 0.2};
+    const sky::Air clean{.angstrom_beta = 0.04}, turbid{.angstrom_beta = 0.2};
     const std::vector<double> suns{60, 30, 10, 5, 2, 0, -2, -4, -6, -8};
     const std::vector<double> some{60, 10, 2, -2, -6};
     const std::vector<double> sky{2, 6, 15, 35, 55, 80}, round{15, 60, 100, 140, 180};

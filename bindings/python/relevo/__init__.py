@@ -3,7 +3,7 @@
     import relevo
 
     dem = relevo.open("alps.tif")
-    picture = dem.capture(time="2026-06-21T22:30Z", size=(1280, 1024))
+    picture = dem.capture(time="2026-06-21T22:30Z", size=(1280, 720))
     hours = dem.sun.hours("2026-06-21")
 
 Units are metres, degrees and hours; azimuths are clockwise from true north; places are WGS 84, east positive.

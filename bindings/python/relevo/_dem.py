@@ -123,7 +123,7 @@ class Dem:
         time: a datetime, a datetime64 (UTC), seconds since 1970, or a text as the program takes it:
             "2026-06-21T16:30Z", "2026-06-21T18:30" with `zone`, "sunset-30min" with `date`. A datetime or text without
             a time zone needs `zone`. None: a time that shows relief.
-        size: (columns, rows) of pictures [pixels]. None: 1280 x 1024.
+        size: (columns, rows) of pictures [pixels]. None: 1280 x 720.
         date: of an event
         zone: of a time that has none: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (that of the place)
         camera: as in scenes, such as {"orbit": {"azimuth": 210, "elevation": 30}}. None: one that shows relief.

@@ -60,7 +60,7 @@ class Picture:
     """A view to draw. Members that are None or empty are left to Relevo."""
 
     when: Optional[When] = None
-    size: Tuple[int, int] = (1280, 1024)  # [px]
+    size: Tuple[int, int] = (1280, 720)  # [px]
     is_map: bool = False  # seen from straight above, with a georeference
     resolution: Optional[float] = None  # of a map: the side of a pixel in the DEM's units, instead of the size
     side: Optional[str] = None  # where the camera is: "north" ... or "top"

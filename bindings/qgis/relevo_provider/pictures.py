@@ -38,7 +38,7 @@ class PictureAlgorithm(RelevoAlgorithm):
             QgsProcessingParameterRasterLayer(self.OVERLAY, "Raster to lay on the ground, such as hours of sun", None, True)
         )
         self.addParameter(QgsProcessingParameterNumber(self.WIDTH, "Width [pixels]", _WHOLE, 1280, False, 16, 65536))
-        self.addParameter(QgsProcessingParameterNumber(self.HEIGHT, "Height [pixels]", _WHOLE, 1024, False, 16, 65536))
+        self.addParameter(QgsProcessingParameterNumber(self.HEIGHT, "Height [pixels]", _WHOLE, 720, False, 16, 65536))
 
     def add_effects(self) -> None:
         self.addParameter(

@@ -303,10 +303,15 @@ TEST(Sea, ItsFloorEndsInTheSeaAroundTheDem) {
 
 TEST(Sea, LandOfCoarsePostsIsShadedSteeper) {
     test::GpuSnippet gpu("sea");
-    for (const auto& [apart_m, factor] : {std::pair{90.0, 1.0}, {300.0, 1.0}, {8100.0, 3.0}}) {
+    const auto steeper = [&](double apart_m, float exaggeration) {
         gpu.frame().normal_texels_per_m = static_cast<float>(1 / apart_m);
-        EXPECT_NEAR(gpu.run("result = vec4(sea_land_steeper());", 1, 1)[0].x, factor, 1e-3);
-    }
+        gpu.frame().height_range.z = exaggeration;
+        return gpu.run("result = vec4(sea_land_steeper());", 1, 1)[0].x;
+    };
+    for (const auto& [apart_m, factor] : {std::pair{90.0, 1.0}, {300.0, 1.0}, {8100.0, 3.0}})
+        EXPECT_NEAR(steeper(apart_m, 1), factor, 1e-3);
+    EXPECT_NEAR(steeper(8100, 2), 1.5, 1e-3) << "exaggerated slopes are steep already";
+    EXPECT_NEAR(steeper(8100, 4), 1, 1e-3);
     const auto steep = gpu.run(
         "vec3 n = sea_steep(normalize(vec3(-0.1, 0.0, 1.0)), vec3(0.0, 0.0, 1.0), 3.0);\n"
         "result.x = -n.x / n.z;",
