@@ -216,9 +216,21 @@ constexpr double kLeastLand = 0.002;
 /// Of long DEMs fewer posts have to be in the picture, so that enough of it is ground.
 constexpr double kElongated = 1.8, kLeastOfElongated = 0.77;
 
-scene::AerialGround aerial_ground(const scene::GroundNet& net, const Ground& ground,
-                                  double exaggeration) {
-    scene::AerialGround all, land;
+/// Where water is drawn over a sea's floor, its points are on the water.
+void lift_to_sea(std::vector<glm::dvec3>& points, const Ground& ground) {
+    if (ground.sea_floor_share <= 0) return;
+    for (glm::dvec3& point : points) {
+        geo::Geodetic place = ground.frame.to_geodetic(point);
+        if (place.height_m >= 0) continue;
+        place.height_m = 0;
+        point = ground.frame.to_local(place);
+    }
+}
+
+/// @param rim  its posts along the edges, drawn as the net's are
+scene::AerialGround aerial_ground(const scene::GroundNet& net, std::vector<glm::dvec3> rim,
+                                  const Ground& ground, double exaggeration) {
+    scene::AerialGround all{.rim = std::move(rim)}, land;
     std::size_t sea = 0;
     for (const glm::dvec3& post : net) {
         if (std::isnan(post.x)) continue;
@@ -234,6 +246,8 @@ scene::AerialGround aerial_ground(const scene::GroundNet& net, const Ground& gro
     const scene::GroundBox box = scene::box_of(net);
     const auto [shorter_m, longer_m] = std::minmax(box.size_m.x, box.size_m.y);
     if (longer_m >= kElongated * shorter_m) all.least_in_picture = kLeastOfElongated;
+    lift_to_sea(all.posts, ground);
+    lift_to_sea(all.rim, ground);
     return all;
 }
 
@@ -280,9 +294,11 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
     });
     for (const std::vector<glm::dvec3>& points : rows)
         result.points.insert(result.points.end(), points.begin(), points.end());
-    result.aerial = aerial_ground(drawn, ground, exaggeration);
-    result.true_aerial = aerial_ground(result.net, ground, 1);
     collector.add_ends(result.rim);
+    std::vector<glm::dvec3> true_rim;
+    as_it_is.add_ends(true_rim);
+    result.aerial = aerial_ground(drawn, result.rim, ground, exaggeration);
+    result.true_aerial = aerial_ground(result.net, std::move(true_rim), ground, 1);
     result.points.insert(result.points.end(), result.rim.begin(), result.rim.end());
     return result;
 }

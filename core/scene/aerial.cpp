@@ -104,6 +104,20 @@ double horizon_of(const Camera& camera) {
     return 0.5 * (1 - std::tan(-pitch - dip) / std::tan(camera.fov_y_rad / 2));
 }
 
+/// Whether much of the rectangle is void, and none of the ground is near the sea, which such voids
+/// of an island would be.
+bool is_cut_out(const GroundNet& net) {
+    constexpr double kLeastOfRectangle = 0.65, kInland_m = 20;
+    int ground = 0;
+    double lowest_m = 1e300;
+    for (const glm::dvec3& at_m : net) {
+        if (std::isnan(at_m.x)) continue;
+        ++ground;
+        lowest_m = std::min(lowest_m, height_m({at_m, {}}));
+    }
+    return ground < kLeastOfRectangle * static_cast<double>(net.size()) && lowest_m > kInland_m;
+}
+
 Camera choice_camera(const Orbit& orbit, const AerialGround& ground) {
     return aerial_camera(orbit, ground, radians(kAerialFov_deg), kChoiceAspect);
 }
@@ -150,7 +164,7 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
 }
 
 bool has_aerial_view(const GroundNet& net, const AerialGround& ground) {
-    if (ground.posts.empty()) return false;
+    if (ground.posts.empty() || is_cut_out(net)) return false;
     const GroundBox box = box_of(net);
     const auto [shorter_m, longer_m] = std::minmax(box.size_m.x, box.size_m.y);
     const bool is_strip = !ground.land_alone && longer_m > kLongest * shorter_m;

@@ -192,6 +192,8 @@ Fit aerial_fit(const Camera& camera, const AerialGround& ground, double aspect, 
     // A tall picture shows a strip of the DEM.
     const double tall = std::max(1 / aspect, 1.0);
     const double least_in_picture = ground.least_in_picture * std::pow(tall, -0.6);
+    std::vector<glm::dvec3> all = ground.posts;
+    all.insert(all.end(), ground.rim.begin(), ground.rim.end());
     Fit best;
     double least_bare = 1e300;
     Insets margins = kAerialMargins;
@@ -201,7 +203,7 @@ Fit aerial_fit(const Camera& camera, const AerialGround& ground, double aspect, 
         for (margins.bottom = kAerialMargins.bottom; margins.bottom >= kLowestMargin;
              margins.bottom -= kMarginStep) {
             const Fit fit = fit_above(camera, ground.posts, room_within(margins));
-            const double bare = fit.bare_below(camera, ground.posts, picture);
+            const double bare = fit.bare_below(camera, all, picture);
             const bool shows_enough =
                 fit.share_of(camera, ground.posts, picture) >= least_in_picture;
             if (shows_enough && bare < kBareBelow) return fit;

@@ -56,6 +56,8 @@ struct Orbit {
 struct AerialGround {
     /// Evenly spread posts; of the land alone where most of the DEM is a level sea.
     std::vector<glm::dvec3> posts;
+    /// The first and the last posts of rows and columns: the near ones are below the picture.
+    std::vector<glm::dvec3> rim{};
     bool land_alone = false;
     /// Fraction of the posts that is in the picture at least.
     double least_in_picture = 0.81;

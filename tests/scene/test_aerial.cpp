@@ -176,5 +176,35 @@ TEST(Aerial, VoidsAtTheEdgeLeaveEnoughPostsInThePicture) {
     EXPECT_NEAR(std::abs(std::remainder(*framing.orbit.azimuth_deg - 45, 90)), 7, 3);
 }
 
+TEST(Aerial, WhatIsCutOutInlandIsSeenAsAWholeAndAnIslandIsNot) {
+    for (const double lowest_m : {500.0, 0.0}) {
+        const auto cut_m = [&](double u, double v) {
+            return std::abs(u) + std::abs(v) < 0.5 ? lowest_m + 400 + hills_m(u, v) : std::nan("");
+        };
+        const GroundNet net = dem_net(20e3, 20e3, 0, cut_m);  // half of it is void
+        EXPECT_EQ(has_aerial_view(net, aerial_of(net)), lowest_m == 0);
+    }
+    const auto corner_m = [](double u, double v) { return u + v > 0.4 ? std::nan("") : 500.0; };
+    const GroundNet most = dem_net(20e3, 20e3, 0, corner_m);
+    EXPECT_TRUE(has_aerial_view(most, aerial_of(most)));
+}
+
+TEST(Aerial, LooksFromLandOverTheSeaAndKeepsSummitsInThePicture) {
+    const DefaultDay day({radians(46), 0, 0});
+    const auto coast_m = [](double, double v) {
+        return v > 0.05 ? 400 * std::sin(kPi * (v - 0.05) / 0.45) : 0.0;
+    };
+    const GroundNet coast = dem_net(40e3, 40e3, 0, coast_m);
+    const AerialFraming from_land = frame_aerial(kAerial, coast, aerial_of(coast), day);
+    EXPECT_GT(std::cos(radians(*from_land.orbit.azimuth_deg)), 0.9) << "the land is in the north";
+    EXPECT_LT(from_land.aspect.sea, 0.5);
+    // A lone summit in a corner.
+    const auto summit_m = [](double u, double v) {
+        return 100 + 3000 * std::exp(-60 * ((u - 0.4) * (u - 0.4) + (v + 0.4) * (v + 0.4)));
+    };
+    const GroundNet lone = dem_net(40e3, 40e3, 0, summit_m);
+    EXPECT_EQ(frame_aerial(kAerial, lone, aerial_of(lone), day).aspect.summits, 1);
+}
+
 }  // namespace
 }  // namespace relevo::scene
