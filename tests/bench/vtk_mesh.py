@@ -1,23 +1,30 @@
 #!/usr/bin/env python3
-"""What VTK takes for a frame of a DEM as one shaded mesh; bench_terrain.py runs it.
+"""What VTK takes for a frame of a DEM as one shaded mesh; bench_terrain.py and frame.py run it.
 
-Usage: vtk_mesh.py HEIGHTS.raw COLUMNS ROWS SPACING_M FRAMES [OUT.png]
+Usage: vtk_mesh.py HEIGHTS.raw COLUMNS ROWS SPACING_M FRAMES [OUT.png] [--size 1280x1024] [--zoom 1]
 
 Prints one JSON object: milliseconds of each frame after one that uploads, the triangles and the device.
 """
 
+import argparse
 import json
-import sys
 import time
 
 import vtkmodules.all as vtk
 
 
 def main():
-    path, columns, rows, spacing_m, frames = sys.argv[1], *map(float, sys.argv[2:6])
-    columns, rows, frames = int(columns), int(rows), int(frames)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("path")
+    for name, kind in (("columns", int), ("rows", int), ("spacing_m", float), ("frames", int)):
+        parser.add_argument(name, type=kind)
+    parser.add_argument("picture", nargs="?")
+    parser.add_argument("--size", default="1280x1024")
+    parser.add_argument("--zoom", type=float, default=1, help="how much nearer than the whole mesh the camera stands")
+    arguments = parser.parse_args()
+    columns, rows, spacing_m, frames = arguments.columns, arguments.rows, arguments.spacing_m, arguments.frames
     reader = vtk.vtkImageReader2()
-    reader.SetFileName(path)
+    reader.SetFileName(arguments.path)
     reader.SetFileDimensionality(2)
     reader.SetDataScalarTypeToFloat()
     reader.SetDataByteOrderToLittleEndian()
@@ -43,13 +50,15 @@ def main():
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
-    window.SetSize(1280, 1024)
+    window.SetSize(*map(int, arguments.size.split("x")))
     window.AddRenderer(renderer)
     camera = renderer.GetActiveCamera()
     camera.SetViewUp(0, 0, 1)
     camera.SetPosition(-1, -1, 0.66)
     camera.SetFocalPoint(0, 0, 0)
     renderer.ResetCamera()
+    camera.Dolly(arguments.zoom)
+    renderer.ResetCameraClippingRange()
     window.Render()
     times = []
     processor_began = time.process_time()
@@ -61,12 +70,12 @@ def main():
         window.WaitForCompletion()
         times.append((time.perf_counter() - began) * 1e3)
     processor_ms = (time.process_time() - processor_began) * 1e3 / frames
-    if len(sys.argv) > 6:
+    if arguments.picture:
         shot = vtk.vtkWindowToImageFilter()
         shot.SetInput(window)
         writer = vtk.vtkPNGWriter()
         writer.SetInputConnection(shot.GetOutputPort())
-        writer.SetFileName(sys.argv[6])
+        writer.SetFileName(arguments.picture)
         writer.Write()
     device = next((line for line in window.ReportCapabilities().splitlines() if "renderer string" in line), "")
     print(json.dumps({"times_ms": times, "processor_ms": processor_ms, "triangles": normals.GetOutput().GetNumberOfPolys(),

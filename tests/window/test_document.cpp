@@ -114,7 +114,7 @@ TEST(Command, IsQuotedForAShell) {
     EXPECT_EQ(capture_command(scene, "picture.png"),
               "relevo capture '/maps/it'\\''s here/a b.tif' --time 2026-06-21T18:30:00+02:00 "
               "--eye=-46.500000000,8.250000000,1200.000 --heading 12.500000 --pitch=-3.000000 "
-              "--fov 40 --disable haze --set sea.colour=0,0.1,0.2 --size 1280x1024 -o picture.png");
+              "--fov 40 --disable haze --set sea.colour=0,0.1,0.2 --size 1280x720 -o picture.png");
 }
 
 std::shared_ptr<const session::LoadedDem> jacksboro() {

@@ -244,7 +244,7 @@ TEST_F(Viewer, AnotherDemIsShownInSunlightUnlessTheTimeIsPinned) {
         ASSERT_TRUE(settles());
     };
     open({first, "--only"});
-    act({"key", "--repeat", "14", "--delay", "20", "bracketleft"});
+    act({"key", "--repeat", "28", "--delay", "20", "bracketleft"});
     ASSERT_THAT(scene()["time"]["at"].get<std::string>(), testing::HasSubstr("T0"));
     next();
     // At 50 degrees north the sun of June is 10 degrees high at about a quarter past six.
@@ -267,7 +267,9 @@ TEST_F(Viewer, WalksAtTheClickedPointElseInTheMiddleOfThePicture) {
     // Flying low it walks where it is.
     act({"key", "g"});
     act({"key", "g"});
-    EXPECT_EQ(eye(), middle);
+    const auto there = eye();
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(there[i].get<double>(), middle[i].get<double>(), 1e-9);
     ASSERT_TRUE(changes([&] { act({"key", "g", "Home"}); }));
     act({"mousemove", "700", "330"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
