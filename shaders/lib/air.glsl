@@ -1,4 +1,5 @@
-//! provides  air_radiance, air_ground, air_between_eye_and, air_scale_at, air_scale_before, air_scale_beyond: the clear atmosphere as the eye of the frame sees it
+//! provides  air_radiance, air_ground, air_between_eye_and: the clear atmosphere as the eye of the frame sees it;
+//!           air_scale_at, air_scale_before, air_scale_beyond: how much of it there is in aerial views
 //! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
 //!           with NO_MOON nothing of the moon, which then lights nothing
 //! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model

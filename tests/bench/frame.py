@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 VTK_PYTHON = "/usr/bin/python3"  # Debian's, which its package belongs to
 COLUMNS, ROWS, SPACING_M = 1200, 640, 90
 # The options of Relevo, and how much nearer than VTK's whole mesh its camera stands.
-CAMERAS = {"default": ([], 1.75), "block": (["--view", "az=225,el=30"], 1.0)}
+CAMERAS = {"default": ([], 2.6), "block": (["--view", "az=225,el=30"], 1.75)}
 
 
 def make_dem(build, path):
