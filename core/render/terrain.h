@@ -191,10 +191,10 @@ class Terrain {
     TileSelection select_in_background(const LodView& view);
     /// A selection of tiles with resident pages.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
-    /// What a frame draws, with the option's pixel error.
-    /// Of drawn ground [px]: heights that are exaggerated are drawn more coarsely, up to twice, as
-    /// their slopes would take twice as many triangles that nobody sees.
+    /// Largest error of drawn ground [px]: the option's, up to twice that for exaggerated heights,
+    /// whose slopes would take twice as many triangles that nobody sees.
     double pixel_error(double exaggeration) const;
+    /// What a frame draws, with that pixel error.
     LodView view_of(const FrameInputs& inputs, const glm::ivec2& picture_px) const;
     bool is_detailed(const Box& box, const glm::ivec2& first, const glm::ivec2& last,
                      const DetailedGround& detailed);

@@ -13,6 +13,7 @@ namespace relevo::scene {
 namespace {
 
 constexpr double kChoiceAspect = 16.0 / 9;
+constexpr double kEarth_m = 6371e3;
 /// Of the camera from a side's normal: straight on, a block shows no depth.
 constexpr double kTurn_deg = 7;
 /// The camera stands so high that the horizon is this far below the upper edge of the picture, as a
@@ -49,7 +50,6 @@ std::vector<NodeInView> nodes_in(const Camera& camera, const GroundNet& net) {
 
 /// Above the sea [m], in the local frame, whose plane leaves the Earth's.
 double height_m(const GroundNode& node) {
-    constexpr double kEarth_m = 6371e3;
     const glm::dvec2 aside_m(node.at_m);
     return node.at_m.z + dot(aside_m, aside_m) / (2 * kEarth_m);
 }
@@ -97,7 +97,6 @@ double filled_of(const std::vector<NodeInView>& seen) {
 
 /// How far the horizon is below the upper edge of a picture, as a fraction of its height.
 double horizon_of(const Camera& camera) {
-    constexpr double kEarth_m = 6371e3;
     const glm::dvec3 from_earth = camera.eye_m + glm::dvec3(0, 0, kEarth_m);
     const double dip = std::acos(std::min(kEarth_m / length(from_earth), 1.0));
     const double pitch = std::asin(dot(camera.forward, normalize(from_earth)));
