@@ -377,6 +377,7 @@ class ManifestReader {
                                   by));
         invention.address = manifest_.id + '.' + by;
         invention.pixel_posts = said.number("pixel_posts", 1, 0, 1e6, false);
+        invention.post_m = said.number("post_m", 0, 0, 1e6, false);
         said.finish();
     }
 

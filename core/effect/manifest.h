@@ -68,7 +68,8 @@ struct DisplaceSpec {
 struct Invention {
     std::string what;        ///< a sentence without a full stop
     std::string address;     ///< "bump.relief": a parameter; 0 removes the detail
-    double pixel_posts = 0;  ///< visible if a pixel side has fewer posts
+    double pixel_posts = 0;  ///< visible if a pixel side has fewer posts ...
+    double post_m = 0;       ///< ... which are at least so far apart
     int line = 0;            ///< in plugin.json
 };
 

@@ -147,19 +147,30 @@ geo::Geodetic SceneState::middle() const {
     return middle;
 }
 
+std::optional<double> SceneState::nearest_ground_m() const {
+    const glm::dvec3& eye_m = inputs.camera.eye_m;
+    if (inputs.in_the_air) {
+        const glm::dvec3 low(ground_->south_west_m, scene.exaggeration * ground_->lowest_m),
+            high(ground_->north_east_m, scene.exaggeration * ground_->highest_m);
+        return length(eye_m - clamp(eye_m, low, high));
+    }
+    const std::optional<geo::Geodetic> from = eye();
+    if (!from) return std::nullopt;
+    const double above_m = (from->height_m - dem_->height_m(*from)) * scene.exaggeration;
+    return std::isnan(above_m) ? std::nullopt : std::optional(above_m);
+}
+
 std::vector<std::string> SceneState::synthetic_detail(const ActiveEffects& effects,
                                                       glm::dvec2 post_spacing_m) const {
     std::vector<std::string> notes;
-    const std::optional<geo::Geodetic> from = eye();
-    if (!from) return notes;
-    const double ground_m = dem_->height_m(*from);
-    if (std::isnan(ground_m)) return notes;
+    const std::optional<double> nearest_m = nearest_ground_m();
+    if (!nearest_m) return notes;
     const double pixel_rad = 2 * std::tan(inputs.camera.fov_y_rad / 2) / scene.height_px;
-    const double pixel_posts = (from->height_m - ground_m) * scene.exaggeration * pixel_rad /
-                               std::sqrt(post_spacing_m.x * post_spacing_m.y);
+    const double post_m = std::sqrt(post_spacing_m.x * post_spacing_m.y);
+    const double pixel_posts = *nearest_m * pixel_rad / post_m;
     for (const effect::Effect* const effect : effects.loaded.selection.effects) {
         const auto& invents = effect->manifest.invents;
-        if (!invents || pixel_posts >= invents->pixel_posts) continue;
+        if (!invents || pixel_posts >= invents->pixel_posts || post_m < invents->post_m) continue;
         if (effects.values.value(invents->address)[0] > 0)
             notes.push_back(fmt::format("{}: {}; --set {}=0 removes it", effect->manifest.id,
                                         invents->what, invents->address));

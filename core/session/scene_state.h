@@ -56,6 +56,9 @@ class SceneState {
     /// The eye, if the sun is described as seen from there, as in `relevo sun position`. nullopt if
     /// it is described for the DEM's centre: for orbits and for eyes above 100 km.
     std::optional<geo::Geodetic> eye() const;
+    /// From the eye to the ground below it, in aerial views to the nearest part of the DEM's box,
+    /// as drawn. nullopt for other views, and above voids.
+    std::optional<double> nearest_ground_m() const;
     /// Sentences on synthetic detail that effects add and that is visible from the current camera.
     /// @param post_spacing_m  east-west and north-south
     std::vector<std::string> synthetic_detail(const ActiveEffects& effects,

@@ -1,4 +1,5 @@
-//! provides  bumps: a normal map for each material, and near the eye relief between the DEM's posts
+//! provides  bumps: a normal map for each material, gullies where the DEM's posts are far apart in the picture, and
+//!           near the eye relief between them
 //! hook      normal, facing
 //! reads     material, material_weight, texture_at, tangent frame, ground coordinates [m], slope
 //! writes    normal; factor of direct light
@@ -6,6 +7,7 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.2, figure 3; relief is not the
 //!           paper's: noise after K. Perlin, Improving Noise, ACM Transactions on Graphics 21 (2002), 681
 
+//@ include lib/ground.glsl
 //@ include lib/repeats.glsl
 
 uniform sampler2DArray bump_normals;
@@ -13,11 +15,18 @@ uniform sampler2DArray bump_normals;
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
 uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Bumps are lit only where the ground faces the sun too: off, as figure 3a of the paper, as figure 3b")
 uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("For the smooth correction: cosine of the incidence angle above which ground is fully lit")
-uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Synthetic detail between the DEM's posts, on ground near the camera; 0: none")
+uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Synthetic detail between the DEM's posts, on ground near the camera: gullies and roughness; 0: none")
 
 const float bump_coarsest_m = 25.0;  // cells of the relief's coarsest noise: what is wider passes for the DEM's own
 const float bump_finest_m = 0.8;     // below it is what the materials' maps have
 const int bump_octaves = 5;          // from the coarsest to the finest
+const float bump_gully_posts = 3.0;      // side of the coarsest gullies' cells: as far as they keep their course
+const float bump_gully_turns = 1.3;      // gullies across a cell
+const float bump_gully_finest_m = 12.0;  // finer cells have none: a DEM that fine has its own
+const float bump_gully_true_m = 60.0;    // posts as near as that show how steep the ground is
+const int bump_gully_octaves = 4;        // each starts on the sides of the one before, and so they branch
+const float bump_gully_depth = 0.36;     // greatest slope of a gully's sides, for a slope of 1 of the hillside
+const float bump_gully_octave = 0.47;    // from a cell's side to the next ones'
 const float bump_octave = 0.43;      // from a noise's cells to the next ones': no power of it is near that of a whole number
 
 /// Slopes of a material's map: how far its normal leans along tangent and bitangent, and its z.
@@ -55,6 +64,43 @@ vec2 bump_noise_slope(in ivec2 node, in vec2 f) {
     return slope / 0.51;  // the variance of its components, by a table of 400 000 of them
 }
 
+/// Slopes across gullies of one width, of mean 0, variance 0.3 and at most 1: waves along a hillside that begin
+/// anew, as high as chance has it, at each node of a grid.
+/// source: the principle of R. Skovbo Johansen's noise of phases (phacelle, 2023), with a bilinear quintic kernel
+/// @param across  level unit vector along the hillside, east and north
+/// @param size_m  a side of the grid's cells
+float bump_gully_wave(in vec2 anchored_m, in vec2 across, in float size_m) {
+    vec2 f;
+    uvec2 low = uvec2(ground_cell(anchored_m, mat2(1.0 / size_m), f)) * 1664525u + 1013904223u, high = low + 1664525u;
+    vec2 a = bump_random(low), b = bump_random(uvec2(high.x, low.y)), c = bump_random(uvec2(low.x, high.y)),
+         d = bump_random(high);
+    vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
+    vec4 weight = vec4(vec2(1.0 - u.x, u.x) * (1.0 - u.y), vec2(1.0 - u.x, u.x) * u.y);
+    vec2 turn = 6.2831853 * bump_gully_turns * across;
+    vec4 phase = dot(turn, f) - vec4(0.0, turn.x, turn.y, turn.x + turn.y) + 3.1415927 * vec4(a.x, b.x, c.x, d.x);
+    return dot(weight * (1.0 + vec4(a.y, b.y, c.y, d.y)), sin(phase));
+}
+
+/// Slopes of gullies that run down the DEM's hillsides, east and north: nothing on level ground.
+/// @param fall     tangent of the DEM's slope, pointing downhill
+/// @param pixel_m  the longer side of a pixel on the ground [m]
+vec2 bump_gully_slope(in vec2 anchored_m, in vec2 fall, in float pixel_m) {
+    vec2 sum = vec2(0.0);
+    float size_m = bump_gully_posts / frame.normal_texels_per_m;
+    // What posts far apart say is less steep than the ground, by a power of their distance.
+    float steep = min(length(fall) * max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0), 1.0);
+    for (int i = 0; i < bump_gully_octaves; ++i) {
+        float seen = 1.0 - smoothstep(0.15, 0.5, bump_gully_turns * pixel_m / size_m);
+        if (seen == 0.0 || size_m < bump_gully_finest_m) break;
+        vec2 across = vec2(-fall.y, fall.x) * inversesqrt(max(dot(fall, fall), 1e-9));
+        vec2 slope = bump_gully_depth * steep * bump_gully_wave(anchored_m, across, size_m) * across;
+        sum += seen * slope;
+        fall += slope;
+        size_m *= bump_gully_octave;
+    }
+    return sum;
+}
+
 /// Turns by 37 degrees, so that the grids of two noises never lie along each other.
 const mat2 bump_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
@@ -81,12 +127,21 @@ vec2 bump_relief_slope(in vec2 anchored_m, in float pixel_m, in float pixel_post
     return 0.5 * near * sum;
 }
 
-/// How far invented relief slopes: more on steep ground and on rock than on level ground and on snow.
-/// @param steep  tangent of the DEM's slope
-float bump_relief_strength(in Surface s, in float steep) {
+/// Invented slopes along the tangent and the bitangent: more on steep ground and on rock than on level ground and on
+/// snow.
+vec2 bump_invented_slope(in Surface s) {
     const vec4 rough = vec4(0.7, 0.8, 1.5, 0.6);  // sand, grass, rock, snow
     float kind = s.material_weight.x * rough[s.material.x] + s.material_weight.y * rough[s.material.y];
-    return bump_relief * kind * (0.05 + 0.13 * min(steep, 1.0));
+    vec3 east = east_at(s.up);
+    vec2 fall = vec2(dot(s.ground_normal, east), dot(s.ground_normal, cross(s.up, east))) /
+                clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
+    float pixel_m = max(length(s.ground_dx_m), length(s.ground_dy_m));
+    vec2 slope = sqrt(kind) * bump_gully_slope(s.anchored_m, fall, pixel_m);
+#if HAS_near
+    slope += kind * (0.05 + 0.13 * min(length(fall), 1.0)) *
+             bump_relief_slope(s.anchored_m, pixel_m, s.pixel_posts);
+#endif
+    return bump_relief * frame.height_range.z * slope;
 }
 
 /// A normal of the map in the tangent frame of the ground.
@@ -100,11 +155,8 @@ void bump_on_normal(inout Surface s) {
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
     vec3 ground = s.normal;
-#if !HAS_outside && HAS_near
-    float upright = clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
-    float steep = sqrt(1.0 - upright * upright) / upright;
-    vec2 slope = bump_relief_strength(s, steep) * frame.height_range.z *
-                 bump_relief_slope(s.anchored_m, max(length(s.ground_dx_m), length(s.ground_dy_m)), s.pixel_posts);
+#if !HAS_outside
+    vec2 slope = bump_invented_slope(s);
     ground -= slope.x * s.tangent + slope.y * s.bitangent;
 #endif
     s.normal = bump_normal(map, s.tangent, s.bitangent, ground);

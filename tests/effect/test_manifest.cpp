@@ -111,7 +111,7 @@ TEST(Manifest, SaysWhatItInvents) {
     const auto add = [&](const char* by) {
         plugins.add("haze",
                     fmt::format(R"("invents": {{"what": "it is greyer", "by": "{}", )"
-                                R"("pixel_posts": 0.05}})",
+                                R"("pixel_posts": 0.05, "post_m": 2}})",
                                 by),
                     "uniform float haze_grey = 1.0; //@ range(0, 2)\n"
                     "uniform int haze_kind = 0; //@ range(0, 2)\n"
@@ -123,6 +123,7 @@ TEST(Manifest, SaysWhatItInvents) {
     EXPECT_EQ(invents->what, "it is greyer");
     EXPECT_EQ(invents->address, "haze.grey");
     EXPECT_EQ(invents->pixel_posts, 0.05);
+    EXPECT_EQ(invents->post_m, 2);
     EXPECT_EQ(plugins.relative(error_of([&] { add("kind"); })),
               "exit 3: plugin: plugins/haze/plugin.json:1: invents: expected a parameter of "
               "type float, not host, but got \"haze.kind\", which is of type int");

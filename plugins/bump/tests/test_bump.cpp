@@ -191,5 +191,69 @@ TEST(Bump, ReliefRepeatsNowhere) {
     EXPECT_LT(worst, 0.15);
 }
 
+// ---- gullies
+
+/// Slopes of gullies over a square of a hillside that falls evenly, posts 30 m apart.
+/// @param fall  tangent of its slope, and which way is down, as GLSL
+std::vector<glm::vec4> gullies(int side, double step_m, double pixel_m, const std::string& fall) {
+    test::GpuSnippet gpu("bump");
+    gpu.frame().normal_texels_per_m = 1.0f / 30;
+    return gpu.run(fmt::format("vec2 at = {:.9f} * vec2(x, y);\n"
+                               "result = vec4(bump_gully_slope(at, {}, {:.9f}), 0.0, 0.0);",
+                               step_m, fall, pixel_m),
+                   side, side);
+}
+
+TEST(Bump, GulliesLieAcrossSlopesAndLeanNoWay) {
+    // Down to the east: the greatest slopes run north and south; finer ones, which start on the
+    // sides of those, turn aside.
+    const std::vector<glm::vec4> steep = gullies(500, 7.3, 1, "vec2(0.6, 0.0)");
+    glm::dvec2 mean{}, square{};
+    for (const glm::vec4& slope : steep) {
+        mean += glm::dvec2(slope.x, slope.y) / static_cast<double>(steep.size());
+        square +=
+            glm::dvec2(slope.x * slope.x, slope.y * slope.y) / static_cast<double>(steep.size());
+    }
+    fmt::print(
+        "[ accuracy ] gullies: mean slope {:.4f} {:.4f}, its root mean square {:.3f} {:.3f}\n",
+        mean.x, mean.y, std::sqrt(square.x), std::sqrt(square.y));
+    EXPECT_LT(length(mean), 0.01);
+    EXPECT_GT(square.y, 4 * square.x);
+    EXPECT_NEAR(std::sqrt(square.y), 0.235, 0.03);
+}
+
+TEST(Bump, LevelGroundAndWidePixelsHaveNoGullies) {
+    const double steep = variance(gullies(200, 7.3, 1, "vec2(0.6, 0.0)"));
+    EXPECT_GT(steep, 0.01);
+    EXPECT_EQ(variance(gullies(200, 7.3, 1, "vec2(0.0)")), 0);
+    EXPECT_LT(variance(gullies(200, 7.3, 15, "vec2(0.6, 0.0)")), 0.7 * steep);
+    EXPECT_EQ(variance(gullies(200, 7.3, 35, "vec2(0.6, 0.0)")), 0);
+}
+
+TEST(Bump, InventedSlopesAreAsHighAsTheGroundIsDrawn) {
+    constexpr int kSide = 30;
+    const auto slopes = [](float exaggeration) {
+        test::GpuSnippet gpu("bump");
+        gpu.frame().normal_texels_per_m = 1.0f / 90;
+        gpu.frame().height_range.z = exaggeration;
+        gpu.frame().polar_axis = {0, 1, 0, 0};
+        return gpu.run(
+            "Surface s;\n"
+            "s.up = vec3(0.0, 0.0, 1.0);\n"
+            "s.ground_normal = normalize(vec3(0.3, 0.4, 1.0));\n"
+            "s.anchored_m = 13.0 * vec2(x, y);\n"
+            "s.ground_dx_m = s.ground_dy_m = vec3(1.0, 1.0, 0.0);\n"
+            "s.pixel_posts = 0.01;\n"
+            "s.material = ivec2(1);\n"
+            "s.material_weight = vec2(1.0, 0.0);\n"
+            "result = vec4(bump_invented_slope(s), 0.0, 0.0);",
+            kSide, kSide);
+    };
+    const std::vector<glm::vec4> once = slopes(1), thrice = slopes(3);
+    EXPECT_GT(variance(once), 0.01);
+    for (std::size_t i = 0; i < once.size(); ++i)
+        EXPECT_LT(length(thrice[i] - 3.0f * once[i]), 1e-5);
+}
+
 }  // namespace
 }  // namespace relevo::test_bump
