@@ -25,7 +25,7 @@ const float bump_gully_turns = 1.3;      // gullies across a cell
 const float bump_gully_finest_m = 12.0;  // finer cells have none: a DEM that fine has its own
 const float bump_gully_true_m = 60.0;    // posts as near as that show how steep the ground is
 const int bump_gully_octaves = 4;        // each starts on the sides of the one before, and so they branch
-const float bump_gully_depth = 0.36;     // greatest slope of a gully's sides, for a slope of 1 of the hillside
+const float bump_gully_depth = 0.34;     // slope of a middling gully's sides, for a slope of 1 of the hillside
 const float bump_gully_octave = 0.47;    // from a cell's side to the next ones'
 const float bump_octave = 0.43;      // from a noise's cells to the next ones': no power of it is near that of a whole number
 
@@ -64,7 +64,7 @@ vec2 bump_noise_slope(in ivec2 node, in vec2 f) {
     return slope / 0.51;  // the variance of its components, by a table of 400 000 of them
 }
 
-/// Slopes across gullies of one width, of mean 0, variance 0.3 and at most 1: waves along a hillside that begin
+/// Slopes across gullies of one size, of mean 0, variance 0.3 and at most 2: waves along a hillside that begin
 /// anew, as high as chance has it, at each node of a grid.
 /// source: the principle of R. Skovbo Johansen's noise of phases (phacelle, 2023), with a bilinear quintic kernel
 /// @param across  level unit vector along the hillside, east and north
@@ -76,9 +76,10 @@ float bump_gully_wave(in vec2 anchored_m, in vec2 across, in float size_m) {
          d = bump_random(high);
     vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
     vec4 weight = vec4(vec2(1.0 - u.x, u.x) * (1.0 - u.y), vec2(1.0 - u.x, u.x) * u.y);
-    vec2 turn = 6.2831853 * bump_gully_turns * across;
-    vec4 phase = dot(turn, f) - vec4(0.0, turn.x, turn.y, turn.x + turn.y) + 3.1415927 * vec4(a.x, b.x, c.x, d.x);
-    return dot(weight * (1.0 + vec4(a.y, b.y, c.y, d.y)), sin(phase));
+    vec4 random = vec4(a.x, b.x, c.x, d.x), height = 1.0 + vec4(a.y, b.y, c.y, d.y);
+    vec4 along = dot(across, f) - vec4(0.0, across.x, across.y, across.x + across.y);
+    vec4 turns = bump_gully_turns * (0.6 + 0.8 * fract(256.0 * random));
+    return dot(weight * height, sin(6.2831853 * turns * along + 3.1415927 * random));
 }
 
 /// Slopes of gullies that run down the DEM's hillsides, east and north: nothing on level ground.

@@ -57,8 +57,8 @@ void haze_on_vertex(in VertexFrame v) {
 
 /// Sunlight that air and haze scatter once on the way to a point, without what the shadow of the terrain keeps off. Along
 /// the way, heights above the shadow are taken as linear.
-/// @param unshaded  all of it  @param strength  optical depth of the haze
-vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength) {
+/// @param unshaded  all of it  @param strength  optical depth of the haze  @param scale  on the air up to the point
+vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength, in float scale) {
 #if HAS_shadow
     float eye_m = sun_shadow_clearance(frame.eye_post.xy + frame.eye_post.zw) + frame.eye_above_ground;
     float point_m = sun_shadow_clearance(s.post);
@@ -67,7 +67,9 @@ vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strengt
     if (eye_m > 0.0 || point_m > 0.0) {
         float edge = eye_m / (eye_m - point_m);  // share of the way up to the edge of the shadow
         AirBetween air = air_between_eye_and(view, edge * s.distance_m);
-        vec3 before = air.once * (1.0 - exp(-air_scale_at(edge * s.distance_m) * (air.depth + edge * strength)));
+        // At the point itself the two scales agree, or the edge of its shadow would be one of the air's.
+        float nearer = scale * air_scale_at(edge * s.distance_m) / max(air_scale_at(s.distance_m), 1e-6);
+        vec3 before = air.once * (1.0 - exp(-nearer * (air.depth + edge * strength)));
         lit = eye_m > 0.0 ? before : max(unshaded - before, 0.0);
     }
     // At the horizon the shadow is the Earth's, which the tables have.
@@ -82,9 +84,10 @@ void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     if (haze_air) {
         AirBetween air = air_between_eye_and(view, s.distance_m);
-        vec3 passed = exp(-air_scale_before(s.post, s.distance_m) * (air.depth + haze_strength));
+        float scale = air_scale_before(s.post, s.distance_m);
+        vec3 passed = exp(-scale * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
-        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength);
+        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength, scale);
         radiance = radiance * passed + air_scattered;
     } else {
         radiance = mix(radiance, background_radiance(view, false), haze_strength);

@@ -11,6 +11,7 @@
 //!           Hasselmann et al., JONSWAP, Ergaenzungsheft zur Deutschen Hydrographischen Zeitschrift A 12 (1973)
 
 //@ include lib/ground.glsl
+//@ include lib/noise.glsl
 //@ include lib/repeats.glsl
 //@ include lib/surface.glsl
 //@ include lib/surround.glsl
@@ -22,6 +23,7 @@ uniform float sea_wind_m_s = 5.0; //@ range(0, 20) unit(m/s) label("Wind") descr
 uniform float sea_wind_deg = 240.0; //@ range(0, 360) unit(°) label("Wind from") description("Direction that the wind blows from, clockwise from north")
 uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substance") description("Absorption at 440 nm by dissolved matter: 0.01 in the open ocean, 0.2 near a coast, above 1 in an estuary")
 uniform int sea_floor = 0; //@ enum(auto, hidden, seen) label("Floor") description("Relief of the sea's floor. auto: seen from high above, where the DEM has the floor of a sea on more than a tenth of its posts")
+uniform float sea_shore = 1.0; //@ range(0, 1) label("Shores between posts") description("Synthetic bays and headlands between the DEM's posts; 0: straight from post to post")
 uniform float sea_relief = 1.0; //@ range(0, 10) label("Relief") description("Factor on the slopes that the floor is shaded with")
 
 const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 610, 550 and 465 nm [1/m]
@@ -226,11 +228,32 @@ struct sea_Water {
     float known;    // 1 where the DEM has the floor
 };
 
+/// How far shores run beside the lines between posts, as water_ashore() takes it: headlands by less than half of the way
+/// between posts, so that there are no islands without a post, bays by 0.28; none where a post has fewer than two pixels.
+float sea_shore_moved(in vec2 post, in float pixel_posts) {
+    const float outwards = 0.1;  // the sea's surface is level there, the land's is not
+    float per_post = 1.3, height = sea_shore * 0.4, sum = outwards * sea_shore;
+    vec2 at = post;
+    for (int i = 0; i < 4; ++i) {
+        float seen = 1.0 - smoothstep(0.2, 0.6, pixel_posts * per_post);
+        if (seen == 0.0) break;
+        at = mat2(0.8, 0.6, -0.6, 0.8) * at;
+        sum += seen * height * (noise_smooth(at * per_post, uint(i)) - 0.5);
+        per_post *= 2.1;
+        height *= 0.5;
+    }
+    return sum * (1.0 - smoothstep(0.2, 0.5, pixel_posts));
+}
+
 sea_Water sea_water(in Surface s, in float height_m) {
     float depth_m = max(sea_level_m - height_m, 0.0);
     if (sea_level_m != 0.0) return sea_Water(sea_share(height_m), depth_m, depth_m + sea_least_depth_m, 1.0, 1.0);
     const float unseen_m = 1000.0;
+#if HAS_outside || defined(ORTHOGRAPHIC)
     vec4 water = water_of(s);
+#else
+    vec4 water = water_ashore_of(s, sea_shore_moved(s.post, s.pixel_posts));
+#endif
     float known = water.y * water.z;
     return sea_Water(water.x, depth_m * known,
                     mix(unseen_m, depth_m + sea_tide_m + sea_shelf / frame.normal_texels_per_m, known), water.y, known);

@@ -18,9 +18,10 @@ float water_covered(in float beyond_px) {
 /// @param post         column and row
 /// @param pixel_posts  posts that a pixel is wide
 /// @param dx, dy       to the next pixel right and up [posts]: shores are smooth over that
+/// @param land         moves the shore towards the water, as a share of the way between posts, -0.5..0.5
 /// @returns x: share of water, 0 to 1; y: of it, the share that is sea, z: and whose floor the DEM has; w: of holes,
 ///          0.5 where they are filled and 1 where they are covered
-vec4 water_between(in vec2 post, in float pixel_posts, in vec2 dx, in vec2 dy) {
+vec4 water_ashore(in vec2 post, in float pixel_posts, in vec2 dx, in vec2 dy, in float land) {
     int most = textureQueryLevels(page_table) - 1;
     int level = clamp(int(log2(max(pixel_posts, 1.0)) + 0.5), 0, most);
     PagePlace at = page_place(post, level);
@@ -32,9 +33,14 @@ vec4 water_between(in vec2 post, in float pixel_posts, in vec2 dx, in vec2 dy) {
     vec2 along = mix(side.wx, side.zy, t.x);  // the row above and the one below
     vec2 slope = vec2(mix(side.z - side.w, side.y - side.x, t.y), along.y - along.x) * at.nodes_per_post;
     float a_pixel = length(vec2(dot(slope, dx), dot(slope, dy)));
-    float share = water_covered((mix(along.x, along.y, t.y) - 0.5) / max(a_pixel, 1e-4));
+    float share = water_covered((mix(along.x, along.y, t.y) - 0.5 + land) / max(a_pixel, 1e-4));
     vec3 kind = textureLod(water_pages, vec3((node + 0.5) / kNormalPage_px, float(at.layer)), 0.0).gba;
     return vec4(share, kind);
+}
+
+/// The same with shores where the DEM's posts have them.
+vec4 water_between(in vec2 post, in float pixel_posts, in vec2 dx, in vec2 dy) {
+    return water_ashore(post, pixel_posts, dx, dy, 0.0);
 }
 
 /// The same for pixels of one width each way. @param pixel_posts  posts that a pixel is wide
@@ -59,14 +65,19 @@ vec2 water_step(in Surface s, in vec3 ray_step) {
     return frame.light_axes.xy * dot(step_m, east) + frame.light_axes.zw * dot(step_m, cross(s.up, east));
 }
 
-/// At a visible point.
-vec4 water_of(in Surface s) {
+/// At a visible point. @param land  as water_ashore()
+vec4 water_ashore_of(in Surface s, in float land) {
 #ifdef ORTHOGRAPHIC
     mat2 step_posts = pixel_step_on_map();
-    return water_between(s.post, 0.5 * (length(step_posts[0]) + length(step_posts[1])), step_posts[0], step_posts[1]);
+    return water_ashore(s.post, 0.5 * (length(step_posts[0]) + length(step_posts[1])), step_posts[0], step_posts[1], land);
 #else
     float pixel_m = 0.5 * (length(s.ground_dx_m) + length(s.ground_dy_m));
-    return water_between(s.post, pixel_m * frame.normal_texels_per_m, water_step(s, frame.pixel_ray_dx.xyz),
-                         water_step(s, frame.pixel_ray_dy.xyz));
+    return water_ashore(s.post, pixel_m * frame.normal_texels_per_m, water_step(s, frame.pixel_ray_dx.xyz),
+                        water_step(s, frame.pixel_ray_dy.xyz), land);
 #endif
+}
+
+/// At a visible point.
+vec4 water_of(in Surface s) {
+    return water_ashore_of(s, 0.0);
 }

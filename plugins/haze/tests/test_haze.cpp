@@ -241,6 +241,50 @@ TEST(Haze, OfAirInTheShadeOfTerrainIsDark) {
     }
 }
 
+TEST(Haze, HasNoEdgeWhereTheShadowOfTerrainMeetsTheGround) {
+    // The same wall in an aerial view, at the DEM's rim, where the air is no longer scaled: black
+    // ground on both sides of the shadow's edge is seen through the same air.
+    const auto field = test::field_of(
+        300, 61, {480000, 200, 0, 5400000, 0, -200}, "EPSG:32632",
+        [](int column, int) { return column >= 4 && column <= 6 ? 3000.0 : 500.0; });
+    const std::filesystem::path share = RELEVO_SHARE_DIR;
+    const test::TestEffect black{
+        "lit", "void lit_on_lit(in Surface s, inout vec3 radiance) { radiance = vec3(0.0); }\n"};
+    const test::TestEffect probe{
+        "probe",
+        "//@ include lib/sun_share.glsl\n"
+        "void probe_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+        "    float at = sun_shadow_clearance(s.post);\n"
+        "    radiance = vec3(abs(at) < 1e4 ? at / 1024.0 : -9.0, 0.0, 1.0) / frame.exposure;\n"
+        "}\n"};
+    std::array<image::ImageF, 2> images;
+    for (const int of : {0, 1}) {
+        test::Drawn drawn(field, of == 0 ? std::vector{black} : std::vector{black, probe}, 16, 256,
+                          0,
+                          {effect::load_effect(share / "plugins/haze", {}),
+                           effect::load_effect(share / "plugins/sky", share / "data"),
+                           effect::load_effect(share / "plugins/shadows", {})});
+        drawn.shine("2026-03-20T16:00Z");
+        drawn.frame().in_the_air = true;
+        drawn.stand(136.0 / 299, 0.5, 6000, 265, -18);
+        drawn.frame().camera.fov_y_rad = 0.1;
+        images[static_cast<std::size_t>(of)] = drawn.radiance();
+    }
+    int edges = 0;
+    double worst = 0;
+    for (int y = 1; y < 256; ++y) {
+        const double above = test::Drawn::values(images[1], 8, y).x,
+                     below = test::Drawn::values(images[1], 8, y - 1).x;
+        if (std::min(above, below) < -5 || above * below > 0) continue;
+        ++edges;
+        worst = std::max(worst, std::abs(images[0].at(8, y, 1) / images[0].at(8, y - 1, 1) - 1.0));
+    }
+    fmt::print("[ accuracy ] {} edges of a shadow, a step of {:.4f} in the air there\n", edges,
+               worst);
+    EXPECT_GT(edges, 0);
+    EXPECT_LT(worst, 0.01);
+}
+
 TEST(Haze, IsNoClearerThanTheAtmosphere) {
     // Of an extinction, what the atmosphere does not have comes on top.
     test::GpuSnippet gpu("haze");

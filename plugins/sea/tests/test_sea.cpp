@@ -301,6 +301,36 @@ TEST(Sea, ItsFloorEndsInTheSeaAroundTheDem) {
     EXPECT_EQ(at_rim(0.5), std::vector<float>(101, 0.0F)) << "land may be around it";
 }
 
+/// How far the shore runs beside the lines between posts, over 60 x 60 posts.
+std::vector<double> shores(const std::string& shore, double pixel_posts) {
+    test::GpuSnippet gpu("sea");
+    gpu.values().set("sea.shore", shore);
+    std::vector<double> moved;
+    for (const glm::vec4& value : gpu.run(
+             fmt::format("result = vec4(sea_shore_moved(0.1 * vec2(x, y), {:f}));", pixel_posts),
+             600, 600))
+        moved.push_back(value.x);
+    return moved;
+}
+
+TEST(Sea, ShoresStayBetweenTheirPosts) {
+    // Half of the way would reach a post: land where it is sea, or a pond on land.
+    const std::vector<double> moved = shores("1", 0.01);
+    const auto [bay, headland] = std::ranges::minmax(moved);
+    double mean = 0;
+    for (const double m : moved)
+        mean += m / static_cast<double>(moved.size());
+    fmt::print("[ accuracy ] shores by {:.3f} to {:.3f} of the way between posts, mean {:.3f}\n",
+               bay, headland, mean);
+    EXPECT_GT(bay, -0.3);
+    EXPECT_LT(bay, -0.1);
+    EXPECT_LT(headland, 0.5);
+    EXPECT_GT(headland, 0.3);
+    EXPECT_NEAR(mean, 0.1, 0.02);
+    EXPECT_EQ(shores("0", 0.01), std::vector<double>(600 * 600, 0.0));
+    EXPECT_EQ(shores("1", 0.5), std::vector<double>(600 * 600, 0.0)) << "wide pixels";
+}
+
 TEST(Sea, LandOfCoarsePostsIsShadedSteeper) {
     test::GpuSnippet gpu("sea");
     const auto steeper = [&](double apart_m, float exaggeration) {
