@@ -244,9 +244,9 @@ TEST(Haze, OfAirInTheShadeOfTerrainIsDark) {
 TEST(Haze, HasNoEdgeWhereTheShadowOfTerrainMeetsTheGround) {
     // The same wall in an aerial view, at the DEM's rim, where the air is no longer scaled: black
     // ground on both sides of the shadow's edge is seen through the same air.
-    const auto field = test::field_of(
-        300, 61, {480000, 200, 0, 5400000, 0, -200}, "EPSG:32632",
-        [](int column, int) { return column >= 4 && column <= 6 ? 3000.0 : 500.0; });
+    const auto field =
+        test::field_of(300, 61, {480000, 200, 0, 5400000, 0, -200}, "EPSG:32632",
+                       [](int column, int) { return column >= 4 && column <= 6 ? 3000.0 : 500.0; });
     const std::filesystem::path share = RELEVO_SHARE_DIR;
     const test::TestEffect black{
         "lit", "void lit_on_lit(in Surface s, inout vec3 radiance) { radiance = vec3(0.0); }\n"};
