@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/verb.h"
+#include "light/point/refraction_at.h"
 #include "scene/options.h"
 #include "scene/scene.h"
 #include "session/words.h"
@@ -75,7 +76,7 @@ struct RefractionArguments {
     /// As scene::Scene has it.
     std::string name() const;
     sun::Refraction at(const geo::Geodetic& place) const {
-        return session::refraction_at(name(), place);
+        return light::refraction_at(name(), place);
     }
 };
 

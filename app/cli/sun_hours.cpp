@@ -15,8 +15,9 @@
 #include "base/text.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
-#include "session/hours_bands.h"
-#include "session/sun_raster.h"
+#include "figure/hours.h"
+#include "figure/hours_bands.h"
+#include "figure/sun_over_middle.h"
 
 namespace relevo::cli {
 namespace {
@@ -31,7 +32,7 @@ struct HoursArguments {
 };
 
 bool has_spells(const std::vector<std::string>& bands) {
-    return std::ranges::any_of(bands, session::needs_spells);
+    return std::ranges::any_of(bands, figure::needs_spells);
 }
 
 sun::TimeSpan time_of(const DaysArguments::Days& days) {
@@ -41,14 +42,14 @@ sun::TimeSpan time_of(const DaysArguments::Days& days) {
 constexpr const char* kCommas = "separate bands with commas and no blanks: hours,first";
 
 bool is_band(const std::string& word) {
-    return contains(session::hours_words(), word);
+    return contains(figure::hours_words(), word);
 }
 
 /// What is wrong with a band; empty: nothing.
 std::string check_band(const std::string& band) {
     if (is_band(band)) return {};
     if (trimmed(band).empty() || band.find(' ') != std::string::npos) return kCommas;
-    return fmt::format("expected some of {} but got {}", fmt::join(session::hours_words(), ", "),
+    return fmt::format("expected some of {} but got {}", fmt::join(figure::hours_words(), ", "),
                        band);
 }
 
@@ -64,7 +65,7 @@ void check(const HoursArguments& arguments) {
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
     if ((arguments.linke || arguments.albedo) &&
-        std::ranges::none_of(bands, session::needs_irradiation))
+        std::ranges::none_of(bands, figure::needs_irradiation))
         bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected",
                               arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
@@ -112,89 +113,32 @@ struct Summary {
     }
 };
 
-light::SunHoursOptions options_of(const HoursArguments& arguments) {
-    light::SunHoursOptions options;
-    options.refraction = arguments.raster.terrestrial_refraction;
-    options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-    options.step_s = step_s_of(arguments.step.value_or("3min"), 1, 3600);
-    options.spells = has_spells(arguments.bands);
-    if (std::ranges::any_of(arguments.bands, session::needs_irradiation)) {
-        options.irradiation.emplace();
-        if (arguments.linke) options.irradiation->linke = *arguments.linke;
-        if (arguments.albedo) options.irradiation->albedo = *arguments.albedo;
-    }
-    return options;
-}
-
-void warn_of_beyond(RasterRun& raster, const dem::Posts& posts,
-                    const light::SunHoursOptions& options, std::vector<light::SunOverDem> suns,
-                    const std::optional<double>& highest_m) {
-    raster.warn_of(
-        [&posts, options, suns = std::move(suns), highest_m](const dem::Window& window) {
-            return light::terrain_beyond(posts, window, suns,
-                                         {.refraction = options.refraction,
-                                          .air = options.air,
-                                          .soft = false,
-                                          .part = {},
-                                          .done = {}},
-                                         highest_m);
-        },
-        light::kHides);
-}
-
 void run_hours(const HoursArguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
-    const dem::Posts& posts = ground.posts;
-    const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
-    const auto [begin, end] = time_of(days);
-    light::SunHoursOptions options = options_of(arguments);
-    std::vector<output::RasterBand> bands;
-    for (const std::string& word : arguments.bands)
-        bands.push_back(session::hours_band(word));
-    const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
-    const std::string air = session::air_of_posts(arguments.refraction.name(), posts);
-    RasterRun raster(arguments.raster, file, files, ground,
-                     {.type = output::RasterType::Float,
-                      .bands = bands,
-                      .metadata = {{"TIME_FROM", from},
-                                   {"TIME_TO", to},
-                                   {"TIME_ZONE", days.zone.name()},
-                                   {"REFRACTION", air}},
-                      .calls = 1,
-                      .bytes_a_post = (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0),
-                      .halo_m = light::horizon_reach_m(posts, options.refraction)});
-    if (raster.is_done()) return;
-    warn_of_beyond(raster, posts, options, light::suns_of(posts.grid(), begin, end),
-                   arguments.raster.highest_m);
-    options.done = raster.done();
-    options.mixes_suns = arguments.raster.dry_run || arguments.raster.plan.on;
+    const DaysArguments::Days days = arguments.days.parse(ground.posts.grid().center());
+    figure::Hours figure;
+    arguments.raster.apply_to(figure);
+    figure.time = time_of(days);
+    figure.zone = days.zone;
+    figure.words = arguments.bands;
+    figure.refraction = arguments.refraction.name();
+    if (arguments.step) figure.step_s = step_s_of(*arguments.step, 1, 3600);
+    if (arguments.linke) figure.irradiation.linke = *arguments.linke;
+    if (arguments.albedo) figure.irradiation.albedo = *arguments.albedo;
     Summary sum;
-    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
-                              const dem::Window& window) -> PartMaker {
-        options.part = window;
-        options.around = around;
-        const auto plan = std::make_shared<light::SunHoursPlan>(of, begin, end, options);
-        return [&, plan](const dem::Window& part) -> PartFigures {
-            light::SunHours hours = plan->part(part);
-            if (options.irradiation)
-                hours.definition += "; " + session::definition_of(*options.irradiation);
-            sum.add(hours);
-            for (std::size_t k = 0; k < arguments.bands.size(); ++k)
-                raster.put(k, part, session::hours_values(arguments.bands[k], hours));
-            return {hours.holes, std::move(hours.definition)};
-        };
-    };
-    if (!raster.make_all(maker_of)) return;
+    figure.seen = [&](const light::SunHours& part) { sum.add(part); };
+    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
     sum.say_more_than_level();
-    fmt::print("time                {} to {}\n", from, to);
+    fmt::print("time                {} to {}\n", figure.from(), figure.to());
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
         "the middle of the DEM {:.2f}\n",
         sum.hours / std::max(1.0, sum.posts), sum.least, sum.most, sum.level_hours);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", sum.definition, air);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", sum.definition,
+               figure::air_of_posts(figure.refraction, ground.posts));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 #include "base/text.h"
 #include "dem/file_state.h"
 #include "dem/files_of.h"
-#include "session/sun_raster.h"
+#include "figure/about.h"
 
 namespace relevo::cli {
 namespace {
@@ -84,7 +84,7 @@ dem::Grid RasterGround::grid_of(const dem::Window& raster) const {
 }
 
 std::vector<dem::Window> RasterGround::parts_of(const dem::Window& raster) const {
-    return part_posts == 0 ? std::vector{raster} : session::raster_parts(raster, part_posts);
+    return part_posts == 0 ? std::vector{raster} : figure::raster_parts(raster, part_posts);
 }
 
 void RasterArguments::add_to(Verb verb_of_rasters) {
@@ -203,29 +203,25 @@ RasterGround RasterArguments::load() const {
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     const std::int64_t part_posts =
-        posts.in_memory() ? 0 : options.memory.posts / session::kPostsAPart;
+        posts.in_memory() ? 0 : options.memory.posts / figure::kPostsAPart;
     return {std::move(posts), window, part_posts, options, is_planned, std::move(stamp)};
 }
 
-output::RasterMetadata RasterArguments::about(const RasterGround& ground, const dem::Window& raster,
-                                              const PartFigures& figures,
-                                              const output::RasterMetadata& more) const {
-    std::optional<dem::Window> part;
-    if (raster != ground.whole()) part = raster;
-    output::RasterMetadata about =
-        session::raster_metadata(ground.posts, RELEVO_VERSION, figures.definition,
-                                 terrestrial_refraction, figures.holes, part);
-    about.insert(about.end(), more.begin(), more.end());
-    return about;
+void RasterArguments::apply_to(figure::Figure& figure) const {
+    figure.terrestrial_refraction = terrestrial_refraction;
+    figure.highest_m = highest_m;
 }
 
 RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,
-                     const RasterGround& ground, RasterWanted wanted)
+                     const RasterGround& ground, const figure::Figure& figure)
     : arguments_(arguments),
       ground_(ground),
       files_(files),
       file_(file),
-      wanted_(std::move(wanted)) {
+      figure_(figure),
+      bands_(figure.bands()),
+      metadata_(figure.metadata(ground.posts)),
+      halo_m_(figure.halo_m(ground.posts)) {
     if (arguments.tiles.given())
         choose_tiles();
     else
@@ -236,7 +232,7 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
     }
     if (!is_dry() && !is_done()) {
         if (file_)
-            writer_.emplace(*file_, ground.grid_of(ground.window), wanted_.type, wanted_.bands,
+            writer_.emplace(*file_, ground.grid_of(ground.window), figure_.type(), bands_,
                             options_of_file());
         bar_.emplace(printable(arguments.output.path));
     }
@@ -268,11 +264,11 @@ void RasterRun::choose_tiles() {
                                     ground_.options.memory);
         far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
                      arguments_.output.path, ground_.is_planned);
-        wanted_.metadata.emplace_back("FAR_GROUND", far_->description());
-        wanted_.halo_m = *arguments_.tiles.halo_km * 1000;
+        metadata_.emplace_back("FAR_GROUND", far_->description());
+        halo_m_ = *arguments_.tiles.halo_km * 1000;
     }
-    output::RasterMetadata meaning = wanted_.metadata;
-    for (const output::RasterBand& band : wanted_.bands) {
+    output::RasterMetadata meaning = metadata_;
+    for (const output::RasterBand& band : bands_) {
         meaning.emplace_back("band", band.name);
         meaning.insert(meaning.end(), band.metadata.begin(), band.metadata.end());
     }
@@ -299,27 +295,47 @@ void RasterRun::choose_tiles() {
     }
 }
 
-std::function<void(double)> RasterRun::done() {
-    return [this](double of_call) {
-        const double step = of_call * part_share_ / static_cast<double>(wanted_.calls);
-        share_ += step;
-        passed_s_ = seconds_since(began_);
-        sampled_.end_step(step, passed_s_);
-        if (bar_) bar_->show(share_);
-        if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1 &&
-            sampled_.suffices())
-            throw Enough();
-    };
+void RasterRun::count(double of_call) {
+    const double step = of_call * part_share_ / static_cast<double>(figure_.calls());
+    share_ += step;
+    passed_s_ = seconds_since(began_);
+    sampled_.end_step(step, passed_s_);
+    if (bar_) bar_->show(share_);
+    if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1 &&
+        sampled_.suffices())
+        throw Enough();
 }
 
-bool RasterRun::make_all(const MakerOf& maker_of) {
+void RasterRun::put(std::size_t band, const dem::Window& part, const Array2d<float>& values) {
+    if (!writer_) return;
+    const int column = part.column - raster_.column, row = part.row - raster_.row;
+    if (figure_.type() == output::RasterType::Byte)
+        writer_->put(band, column, row, figure::mask_of(values));
+    else
+        writer_->put(band, column, row, values);
+}
+
+figure::PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Posts* around,
+                                      const dem::Window& window) {
+    return figure_.maker({.posts = posts,
+                          .around = around,
+                          .window = window,
+                          .middle = ground_.posts.grid().center(),
+                          .put = [this](std::size_t band, const dem::Window& part,
+                                        const Array2d<float>& values) { put(band, part, values); },
+                          .done = [this](double of_call) { count(of_call); },
+                          .is_estimate = is_dry()});
+}
+
+bool RasterRun::make_all() {
+    if (is_done()) return false;
     try {
-        PartMaker make_part;
+        figure::PartMaker make_part;
         if (!far_) make_part = maker_of(ground_.posts, nullptr, window_);
         ready_s_ = passed_s_ = seconds_since(began_);
         for (const output::PlannedTile& tile : todo_)
             if (far_)
-                make_far(tile, maker_of);
+                make_far(tile);
             else
                 make(tile, tile.window, make_part, ground_.posts);
     } catch (const Enough&) {
@@ -339,10 +355,10 @@ std::vector<dem::Window> RasterRun::parts_of(const dem::Window& raster) const {
     return far_ ? std::vector{raster} : ground_.parts_of(raster);
 }
 
-void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_of) {
+void RasterRun::make_far(const output::PlannedTile& tile) {
     const Progress::Clock::time_point began = Progress::Clock::now();
     const FarGround::Site site = far_->site_of(tile.window);
-    const PartMaker make_part = maker_of(*site.posts, site.around, site.tile);
+    const figure::PartMaker make_part = maker_of(*site.posts, site.around, site.tile);
     sites_s_ += seconds_since(began);
     ++sites_;
     make(tile, site.tile, make_part, *site.posts);
@@ -350,7 +366,7 @@ void RasterRun::make_far(const output::PlannedTile& tile, const MakerOf& maker_o
 
 /// @param raster  the tile's window of `posts`, from which it is made
 void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
-                     const PartMaker& make_part, const dem::Posts& posts) {
+                     const figure::PartMaker& make_part, const dem::Posts& posts) {
     raster_ = raster;
     std::optional<OutputFile> own;
     if (folder_ && !is_dry()) {
@@ -360,18 +376,17 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
             if (has_been_made(tile)) return;
             throw;
         }
-        writer_.emplace(*own, ground_.grid_of(tile.window), wanted_.type, wanted_.bands,
+        writer_.emplace(*own, ground_.grid_of(tile.window), figure_.type(), bands_,
                         options_of_file());
     }
-    output::RasterMetadata metadata = wanted_.metadata;
+    output::RasterMetadata metadata = metadata_;
     if (writer_) look_beyond(tile.window, metadata);
-    PartFigures sum;
+    figure::PartMade sum;
     for (const dem::Window& part : parts_of(raster)) {
         part_share_ = posts_of(part) / posts_;
         sampled_.begin_part(part_share_, seconds_since(began_));
-        PartFigures figures = make_part(part);
-        sum.holes += figures.holes;
-        sum.definition = std::move(figures.definition);
+        figure::PartMade made = make_part(part);
+        sum = {sum.holes + made.holes, std::move(made.definition)};
     }
     if (!writer_) return;
     inner_voids_ += inner_voids_of(tile.window, posts, raster);
@@ -380,7 +395,12 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
     }
     try {
-        writer_->finish(arguments_.about(ground_, tile.window, sum, metadata));
+        std::optional<dem::Window> clip;
+        if (tile.window != ground_.whole()) clip = tile.window;
+        output::RasterMetadata about =
+            figure::metadata_of(figure_, ground_.posts, RELEVO_VERSION, sum, clip);
+        about.insert(about.end(), metadata.begin(), metadata.end());
+        writer_->finish(about);
     } catch (const Error&) {
         if (!has_been_made(tile)) throw;
     }
@@ -411,18 +431,12 @@ std::int64_t RasterRun::inner_voids_of(const dem::Window& raster, const dem::Pos
     return count;
 }
 
-void RasterRun::warn_of(std::function<std::optional<light::Beyond>(const dem::Window&)> look,
-                        std::string would) {
-    look_ = std::move(look);
-    would_ = std::move(would);
-}
-
 void RasterRun::look_beyond(const dem::Window& raster, output::RasterMetadata& metadata) {
-    const std::optional<light::Beyond> beyond = look_(raster);
+    const std::optional<light::Beyond> beyond = figure_.beyond(ground_.posts, raster);
     if (!beyond) return;
-    metadata.emplace_back("BEYOND_DEM", beyond->text(would_));
+    metadata.emplace_back("BEYOND_DEM", beyond->text(figure_.would()));
     if (!std::exchange(warned_, true)) log::warning(beyond->advice());
-    log::debug(beyond->text(would_));
+    log::debug(beyond->text(figure_.would()));
 }
 
 void RasterRun::say_what_was_made() const {
@@ -446,7 +460,7 @@ RasterEstimate RasterRun::estimate() const {
             ++found.parts;
         }
     }
-    const int bytes_a_value = wanted_.type == output::RasterType::Float ? 4 : 1;
+    const int bytes_a_value = figure_.type() == output::RasterType::Float ? 4 : 1;
     MemoryBudget memory_of_posts = ground_.options.memory;
     double far_bytes = 0;
     if (far_) {
@@ -455,8 +469,8 @@ RasterEstimate RasterRun::estimate() const {
             far_bytes = std::max(far_bytes, far_->kept_bytes(tile.window));
     }
     const RasterMemory memory =
-        raster_memory(ground_.posts, most, largest, wanted_.bytes_a_post, bytes_a_value,
-                      wanted_.bands.size(), memory_of_posts, far_bytes);
+        raster_memory(ground_.posts, most, largest, figure_.bytes_a_post(), bytes_a_value,
+                      bands_.size(), memory_of_posts, far_bytes);
     found.posts = posts_;
     found.memory_mib = memory.all_mib;
     found.heights_mib = memory.heights_mib;
@@ -467,8 +481,8 @@ RasterEstimate RasterRun::estimate() const {
     found.sampled_share = share_;
     found.sampled_s = passed_s_;
     found.threads = thread_count();
-    found.bands = wanted_.bands.size();
-    found.result_bytes = posts_ * bytes_a_value * static_cast<double>(wanted_.bands.size());
+    found.bands = bands_.size();
+    found.result_bytes = posts_ * bytes_a_value * static_cast<double>(bands_.size());
     return found;
 }
 
@@ -476,9 +490,9 @@ void RasterRun::tell_plan(const RasterEstimate& estimate) const {
     RasterPlan plan{.estimate = estimate,
                     .tiles = folder_->plan().tiles.size(),
                     .there = folder_->there(),
-                    .bands = wanted_.bands.size(),
+                    .bands = bands_.size(),
                     .kind = arguments_.tiles.description(),
-                    .halo_m = wanted_.halo_m,
+                    .halo_m = halo_m_,
                     .is_far = far_.has_value(),
                     .folder = arguments_.output.path,
                     .words = arguments_.plan.words(*arguments_.verb),

@@ -12,6 +12,7 @@
 #include "cli/sun_options.h"
 #include "cli/tile_folder.h"
 #include "dem/clip.h"
+#include "figure/figure.h"
 #include "light/raster/beyond.h"
 #include "output/raster_writer.h"
 
@@ -33,36 +34,11 @@ struct RasterGround {
     std::vector<dem::Window> parts_of(const dem::Window& raster) const;
 };
 
-/// What a verb makes.
-struct RasterWanted {
-    output::RasterType type = output::RasterType::Float;
-    std::vector<output::RasterBand> bands;
-    output::RasterMetadata metadata;  ///< besides what every such file says of itself
-    std::size_t calls = 1;            ///< of core's functions that each part takes
-    int bytes_a_post = 0;  ///< of memory while computing, besides the DEM's heights (measured)
-    double halo_m = 0;     ///< how far off ground can change a figure
-};
-
-/// What came of a part of a raster.
-struct PartFigures {
-    std::int64_t holes = 0;
-    std::string definition;
-};
-
-/// Makes a part of a raster: a window of the posts that it is made from.
-using PartMaker = std::function<PartFigures(const dem::Window& part)>;
-/// What a verb has core find before any part is made.
-/// @param posts   whose parts are made: all of a DEM, or a tile with its halo. Outlive the result
-/// @param around  a wider and coarser DEM, as light::SunPlan takes it; may be null
-/// @param window  posts of which parts will be asked for
-using MakerOf = std::function<PartMaker(const dem::Posts& posts, const dem::Posts* around,
-                                        const dem::Window& window)>;
-
 /// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest, --tiles, --halo, --shard,
 /// --resume.
 struct RasterArguments {
     DemArguments dem;
-    double terrestrial_refraction = 0.13;
+    double terrestrial_refraction = figure::kTerrestrialRefraction;
     OutputArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;
@@ -78,10 +54,8 @@ struct RasterArguments {
     OutputFile* open(FilesInUse& files) const;
     /// @throws Error (Usage, BadInput) as dem::load, dem::parse_clip and dem::window_of
     RasterGround load() const;
-    /// What every such file says of itself; `more` besides.
-    output::RasterMetadata about(const RasterGround& ground, const dem::Window& raster,
-                                 const PartFigures& figures,
-                                 const output::RasterMetadata& more) const;
+    /// Gives a figure what it takes from these.
+    void apply_to(figure::Figure& figure) const;
 };
 
 /// Rasters being made, part by part, with a bar on a terminal: one, or the tiles of a folder. With
@@ -91,37 +65,31 @@ class RasterRun {
   public:
     /// @param file   as RasterArguments::open() gave it
     /// @param files  of this run
+    /// @param figure  outlives this
     /// @throws Error as TileFolder
     RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,
-              const RasterGround& ground, RasterWanted wanted);
+              const RasterGround& ground, const figure::Figure& figure);
 
-    /// Whether all is there already, which has been said then.
-    bool is_done() const { return window_.is_empty(); }
-
-    /// Warns of terrain beyond the DEM that could change figures, and writes it into the metadata.
-    /// @param look   for it, around a raster; a dry run does not
-    /// @param would  as light::Beyond::text()
-    void warn_of(std::function<std::optional<light::Beyond>(const dem::Window&)> look,
-                 std::string would);
-    /// Makes one part after the other. Files get their names once they are whole.
-    /// @return whether they have: not those of a dry run, which says what it has found out
-    bool make_all(const MakerOf& maker_of);
-    /// What the options of core's functions want to be told by.
-    std::function<void(double)> done();
-    template <typename T>
-    void put(std::size_t band, const dem::Window& part, const Array2d<T>& values) {
-        if (writer_)
-            writer_->put(band, part.column - raster_.column, part.row - raster_.row, values);
-    }
+    /// Makes one part after the other. Files get their names once they are whole. Warns of terrain
+    /// beyond the DEM that could change values, but a dry run does not.
+    /// @return whether files were made: not if all are there already, nor by a dry run, which says
+    ///     what it has found out
+    bool make_all();
 
   private:
+    bool is_done() const { return window_.is_empty(); }
+    /// @param posts, around, window  as figure::Work
+    figure::PartMaker maker_of(const dem::Posts& posts, const dem::Posts* around,
+                               const dem::Window& window);
+    void put(std::size_t band, const dem::Window& part, const Array2d<float>& values);
+    void count(double of_call);
     /// Creation options of the result: as many threads as memory allows, and what the user says.
     std::vector<std::string> options_of_file() const;
     void choose_tiles();
     void make(const output::PlannedTile& tile, const dem::Window& raster,
-              const PartMaker& make_part, const dem::Posts& posts);
+              const figure::PartMaker& make_part, const dem::Posts& posts);
     std::vector<dem::Window> parts_of(const dem::Window& raster) const;
-    void make_far(const output::PlannedTile& tile, const MakerOf& maker_of);
+    void make_far(const output::PlannedTile& tile);
     void look_beyond(const dem::Window& raster, output::RasterMetadata& metadata);
     bool is_dry() const { return arguments_.dry_run || arguments_.plan.on; }
     void say_what_was_made() const;
@@ -135,15 +103,16 @@ class RasterRun {
     const RasterGround& ground_;
     FilesInUse& files_;
     OutputFile* file_;
-    RasterWanted wanted_;
+    const figure::Figure& figure_;
+    std::vector<output::RasterBand> bands_;
+    output::RasterMetadata metadata_;
+    double halo_m_ = 0;
     std::optional<FarGround> far_;
     std::optional<TileFolder> folder_;
     std::vector<output::PlannedTile> todo_;
     dem::Window window_;
     double posts_ = 0;    ///< of all that is to be made
     dem::Window raster_;  ///< that is being made, of the posts that it is made from
-    std::function<std::optional<light::Beyond>(const dem::Window&)> look_;
-    std::string would_;
     bool warned_ = false;
     std::int64_t inner_voids_ = 0;
     std::optional<output::RasterWriter> writer_;

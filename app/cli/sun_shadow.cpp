@@ -12,8 +12,7 @@
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
 #include "dem/places.h"
-#include "light/raster/shadows.h"
-#include "session/sun_raster.h"
+#include "figure/shadow.h"
 
 namespace relevo::cli {
 namespace {
@@ -68,8 +67,8 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
 
 /// The sun at a time.
 Asked at_time(const ShadowArguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
-    const session::SunOverMiddle over =
-        session::sun_over_middle(posts, when.utc, arguments.refraction.name());
+    const figure::SunOverMiddle over =
+        figure::sun_over_middle(posts, when.utc, arguments.refraction.name());
     return {over.sun, over.apparent_rad, std::move(when), {}};
 }
 
@@ -115,28 +114,6 @@ std::vector<Asked> all_suns(const ShadowArguments& arguments,
                                     .posts = [&]() -> const dem::Posts& { return posts; }}))};
 }
 
-/// Where the sun stands, and when.
-output::RasterMetadata about_sun(const Asked& asked) {
-    session::SunOverMiddle over{asked.sun, asked.apparent_rad, {}};
-    if (asked.when) over.utc = asked.when->utc;
-    return session::metadata_of(over);
-}
-
-/// One sun's band needs no other name than what it is; of many it is their time.
-std::vector<output::RasterBand> bands_of(const std::vector<Asked>& suns, bool timed, bool soft) {
-    std::vector<output::RasterBand> bands;
-    for (const Asked& asked : suns) {
-        output::RasterBand band = session::shadow_band(soft);
-        if (timed) {
-            band.name = sun::to_iso(asked.when->utc, asked.when->zone);
-            if (!asked.name.empty()) band.name += " " + asked.name;
-            band.metadata = about_sun(asked);
-        }
-        bands.push_back(std::move(band));
-    }
-    return bands;
-}
-
 void print_one(const Asked& asked, const Counts& counts, bool soft) {
     if (asked.when)
         fmt::print("time                {}  ({})\n", sun::to_iso(asked.when->utc, asked.when->zone),
@@ -178,52 +155,15 @@ void check(const ShadowArguments& arguments) {
         bad_usage("--refraction: needs --time; --sun is an apparent direction");
 }
 
-std::vector<light::SunOverDem> directions_of(const std::vector<Asked>& suns) {
-    std::vector<light::SunOverDem> all;
-    for (const Asked& asked : suns)
-        all.push_back(asked.sun);
-    return all;
-}
-
-/// How far off ground can shade: that of the lowest sun.
-double halo_m(const dem::Posts& posts, const std::vector<Asked>& suns, double refraction) {
-    double farthest_m = 0;
-    for (const Asked& asked : suns)
-        farthest_m =
-            std::max(farthest_m, light::shade_reach_m(posts, refraction, asked.apparent_rad));
-    return std::min(farthest_m, light::horizon_reach_m(posts, refraction));
-}
-
-/// Puts the light of all suns where it belongs.
-/// @param definition  gets what it is
-/// @return RasterRun::make_all()
-bool light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
-               light::ShadowOptions options, RasterRun& raster, std::vector<Counts>& counts,
-               std::string& definition) {
-    options.done = raster.done();
-    const auto maker_of = [&](const dem::Posts& of, const dem::Posts* around,
-                              const dem::Window& window) -> PartMaker {
-        const auto plan = std::make_shared<light::SunPlan>(
-            of, light::LightPath{options.refraction, options.air}, window, options.soft, around);
-        plan->add_suns(posts.grid().center(), directions_of(suns));
-        return [&, plan](const dem::Window& part) -> PartFigures {
-            options.part = part;
-            std::int64_t holes = 0;
-            for (std::size_t k = 0; k < suns.size(); ++k) {
-                const light::Shadows shadows = light::shadows(*plan, plan->suns()[k], options);
-                counts[k].lit += shadows.lit_posts;
-                counts[k].shaded += shadows.shaded_posts;
-                holes = shadows.holes;
-                if (options.soft)
-                    raster.put(k, part, shadows.lit);
-                else
-                    raster.put(k, part, session::mask_of(shadows.lit));
-                definition = shadows.definition;
-            }
-            return {holes, definition};
-        };
-    };
-    return raster.make_all(maker_of);
+/// @param timed  by a table: each band is named by its time
+void give_suns(figure::Shadow& figure, const std::vector<Asked>& suns, bool timed) {
+    for (const Asked& asked : suns) {
+        figure.suns.push_back({asked.sun, asked.apparent_rad, {}});
+        if (asked.when) figure.suns.back().utc = asked.when->utc;
+        if (!timed) continue;
+        figure.names.push_back(sun::to_iso(asked.when->utc, asked.when->zone));
+        if (!asked.name.empty()) figure.names.back() += " " + asked.name;
+    }
 }
 
 void run_shadow(const ShadowArguments& arguments) {
@@ -235,42 +175,25 @@ void run_shadow(const ShadowArguments& arguments) {
     std::vector<dem::NamedTime> times;
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
     const RasterGround ground = arguments.raster.load();
-    const dem::Posts& posts = ground.posts;
-    const std::vector<Asked> suns = all_suns(arguments, times, posts);
-    light::ShadowOptions options;
-    options.refraction = arguments.raster.terrestrial_refraction;
-    options.soft = arguments.soft;
-    std::string air = "none, the sun was given as seen";
-    if (arguments.sun.empty()) {
-        options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-        air = session::air_of_posts(arguments.refraction.name(), posts);
-    }
-    output::RasterMetadata more{{"REFRACTION", air}};
-    if (!timed)
-        for (auto& item : about_sun(suns.front()))
-            more.push_back(std::move(item));
-    RasterRun raster(arguments.raster, file, files, ground,
-                     {.type = options.soft ? output::RasterType::Float : output::RasterType::Byte,
-                      .bands = bands_of(suns, timed, options.soft),
-                      .metadata = std::move(more),
-                      .calls = suns.size(),
-                      .bytes_a_post = 8,
-                      .halo_m = halo_m(posts, suns, options.refraction)});
-    if (raster.is_done()) return;
-    raster.warn_of(
-        [&](const dem::Window& window) {
-            return light::terrain_beyond(posts, window, directions_of(suns), options,
-                                         arguments.raster.highest_m);
-        },
-        light::kHides);
+    const std::vector<Asked> suns = all_suns(arguments, times, ground.posts);
+    figure::Shadow figure;
+    arguments.raster.apply_to(figure);
+    give_suns(figure, suns, timed);
+    figure.refraction = arguments.sun.empty() ? arguments.refraction.name() : "";
+    figure.soft = arguments.soft;
     std::vector<Counts> counts(suns.size());
     std::string definition;
-    if (!light_all(posts, suns, options, raster, counts, definition)) return;
+    figure.seen = [&](std::size_t k, const light::Shadows& part) {
+        counts[k].lit += part.lit_posts;
+        counts[k].shaded += part.shaded_posts;
+        definition = part.definition;
+    };
+    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
     if (timed)
-        print_many(suns, counts, options.soft);
+        print_many(suns, counts, arguments.soft);
     else
-        print_one(suns.front(), counts.front(), options.soft);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, air);
+        print_one(suns.front(), counts.front(), arguments.soft);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, figure.air(ground.posts));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "dem/remote.h"
 #include "image/image.h"
+#include "light/point/refraction_at.h"
 #include "render/renderer.h"
 #include "scene/job.h"
 #include "session/non_finite.h"
@@ -140,7 +141,7 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
     const geo::Geodetic air =
         eye.value_or(geo::Geodetic{middle.lat_rad, middle.lon_rad, ground.air_height_m()});
     return session::sun_text(sun::position(picture.utc, eye.value_or(middle)),
-                             session::refraction_at(scene.refraction, air));
+                             light::refraction_at(scene.refraction, air));
 }
 
 }  // namespace

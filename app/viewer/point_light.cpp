@@ -10,6 +10,7 @@
 #include "light/point/direct_light.h"
 #include "light/point/doubt.h"
 #include "light/point/horizon.h"
+#include "light/point/refraction_at.h"
 #include "session/words.h"
 
 namespace relevo::viewer {
@@ -34,7 +35,7 @@ bool same_point(const PointWanted& a, const PointWanted& b) {
 /// The same options as `relevo sun`.
 light::LightOptions light_options(const PointWanted& wanted, const geo::Geodetic& place) {
     light::LightOptions options;
-    options.refraction = session::refraction_at(wanted.refraction, place);
+    options.refraction = light::refraction_at(wanted.refraction, place);
     if (wanted.refraction != scene::Scene{}.refraction)
         options.flat.rule = sun::RiseRule::seen(sun::Limb::Upper, *options.refraction, 0);
     return options;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "light/point/refraction_at.h"
 #include "session/words.h"
 
 namespace relevo::viewer {
@@ -19,8 +20,8 @@ std::string effects_text(const Document& document) {
 
 void State::stand_on(const render::Ground& ground) {
     centre = ground.frame.origin();
-    air = session::refraction_at(document.scene.refraction,
-                                 {centre.lat_rad, centre.lon_rad, ground.air_height_m()});
+    air = light::refraction_at(document.scene.refraction,
+                               {centre.lat_rad, centre.lon_rad, ground.air_height_m()});
     day = {};
 }
 

@@ -309,7 +309,7 @@ void OverlaySave::run(const session::SunRaster* whole) {
         name_ = write_under_free_name("tif", [&](OutputFile& file) {
             double share = 0;
             session::write_sun_raster(file, posts, wanted_.raster, whole,
-                                      wanted_.options.memory.posts / session::kPostsAPart,
+                                      wanted_.options.memory.posts / figure::kPostsAPart,
                                       RELEVO_VERSION, [&](double more) { tell(share += more); });
         });
     } catch (const OverlayCancelled&) {

@@ -10,9 +10,10 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem.h"
+#include "figure/figure.h"
 #include "light/point/horizon.h"
+#include "light/point/refraction_at.h"
 #include "options.h"
-#include "session/sun_raster.h"
 #include "session/words.h"
 #include "sun/events.h"
 #include "sun/position.h"
@@ -44,7 +45,7 @@ const sun::Refraction& refraction_of(const char* model, const geo::Geodetic& pla
     const std::string name = model ? refraction_name(model, "") : "standard";
     if (!kept || kept->name != name || kept->lat_rad != place.lat_rad ||
         kept->height_m != place.height_m)
-        kept = Kept{name, place.lat_rad, place.height_m, session::refraction_at(name, place)};
+        kept = Kept{name, place.lat_rad, place.height_m, light::refraction_at(name, place)};
     return kept->refraction;
 }
 
@@ -60,7 +61,7 @@ light::HorizonOptions horizon_options(const char* text, size_t directions) {
     light::HorizonOptions result;
     result.eye_height_m = reader.number("eye_height", 0, 0, 10'000, false);
     result.refraction =
-        reader.number("terrestrial_refraction", session::kTerrestrialRefraction, -1, 0.9, false);
+        reader.number("terrestrial_refraction", figure::kTerrestrialRefraction, -1, 0.9, false);
     constexpr size_t kFew = 30;  // a direction by itself takes a thirtieth of all of them
     result.few_directions = directions < kFew;
     reader.finish();

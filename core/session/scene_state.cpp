@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "geo/format.h"
+#include "light/point/refraction_at.h"
 #include "scene/exaggeration.h"
 #include "scene/map_view.h"
 #include "scene/stereo.h"
@@ -57,12 +58,12 @@ void SceneState::set_time(sun::Instant utc) {
     const auto measured = weather ? weather->air : std::nullopt;
     const Air asked{
         scene.refraction, {place.lat_rad, place.lon_rad, ground_->air_height_m()}, measured};
-    if (air_of_ != asked) air_ = refraction_at(asked.model, asked.place, measured);
+    if (air_of_ != asked) air_ = light::refraction_at(asked.model, asked.place, measured);
     air_of_ = asked;
     inputs.sun = render::make_sun_light(position_, air_, *ground_, dem_->field.grid);
     if (air_.bends())
         inputs.sun.air = [model = scene.refraction, measured](const geo::Geodetic& at) {
-            return refraction_at(model, at, measured);
+            return light::refraction_at(model, at, measured);
         };
     inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
     const sun::MoonPosition moon = sun::moon_position(utc, place);
@@ -191,7 +192,7 @@ std::string SceneState::sun_text() const {
 }
 
 sun::Refraction SceneState::refraction(const geo::Geodetic& place) const {
-    return refraction_at(scene.refraction, place, weather ? weather->air : std::nullopt);
+    return light::refraction_at(scene.refraction, place, weather ? weather->air : std::nullopt);
 }
 
 }  // namespace relevo::session

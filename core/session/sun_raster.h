@@ -7,60 +7,12 @@
 
 #include "base/array2d.h"
 #include "base/output_file.h"
-#include "dem/posts.h"
-#include "light/raster/shadows.h"
-#include "output/raster_writer.h"
+#include "figure/figure.h"
 #include "session/overlay_time.h"
 #include "sun/zone.h"
 
-/// Rasters of sunlight over a DEM, identical from the command line and the viewer.
+/// Figures of the sun as the window shows and saves them.
 namespace relevo::session {
-
-/// Defaults of --terrestrial-refraction, --step and --directions.
-inline constexpr double kTerrestrialRefraction = 0.13;
-inline constexpr double kSunStep_s = 180;
-inline constexpr int kSkyDirections = 36;
-
-/// Band names and units in files.
-output::RasterBand shadow_band(bool soft);
-output::RasterBand sky_view_band();
-
-/// The sun as seen from the centre of a DEM.
-struct SunOverMiddle {
-    light::SunOverDem sun;
-    double apparent_rad = 0;  ///< apparent elevation from the ground there
-    std::optional<sun::Instant> utc;
-};
-
-/// @param refraction  as scene::Scene; computed at the height of the central post, or of the lowest
-///     post if that is void
-SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
-                              const std::string& refraction);
-
-/// Direction and time of the sun.
-output::RasterMetadata metadata_of(const SunOverMiddle& sun);
-
-/// Describes a refraction model, evaluated at each post.
-std::string air_of_posts(const std::string& refraction, const dem::Posts& posts);
-
-/// Metadata common to all rasters of light.
-/// @param version  of Relevo
-/// @param clip     window of the DEM's posts, if not all
-output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
-                                       const std::string& definition, double terrestrial_refraction,
-                                       std::int64_t holes,
-                                       const std::optional<dem::Window>& clip = {});
-
-/// 0 in the shade, 1 lit, 255 without data. @param lit  as light::Shadows
-Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
-
-/// Splits a window into squares of at most `most_posts` posts and of whole 512-post blocks. Small
-/// parts would sweep the same ground repeatedly.
-std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts);
-
-/// Divisor of the memory limit in posts for a part of the result: a result post takes several times
-/// the memory of a height.
-inline constexpr std::int64_t kPostsAPart = 8;
 
 enum class SunFigure {
     Hours,        ///< of direct sun in a period

@@ -15,8 +15,6 @@ namespace relevo::session {
 
 namespace {
 
-constexpr double kWeather_m = 11000;  // above the weather, the standard atmosphere
-
 /// A time's words, parsed as far as possible without a place.
 struct ReadTime {
     std::optional<sun::Date> date;
@@ -117,18 +115,6 @@ sun::ParsedTime parse_over(const scene::TimeSpec& spec, const dem::Source& sourc
                                               static_cast<std::int64_t>(loaded.height_m.size()));
                             return *posts;
                         }});
-}
-
-sun::Refraction refraction_at(const std::string& model, const geo::Geodetic& place,
-                              const std::optional<weather::StationAir>& air) {
-    if (model == "none") return sun::Refraction::none();
-    if (model == "saemundsson") return sun::Refraction::saemundsson();
-    if (air && place.height_m < kWeather_m)
-        return sun::Refraction::integrated(
-            {.air = {air->pressure_hpa(place.height_m), air->temperature_at_c(place.height_m)},
-             .height_m = place.height_m,
-             .latitude_rad = place.lat_rad});
-    return sun::Refraction::standard(place);
 }
 
 std::string sun_text(const sun::Position& position, const sun::Refraction& air) {

@@ -10,7 +10,6 @@
 #include "sun/position.h"
 #include "sun/refraction.h"
 #include "sun/zone_of_place.h"
-#include "weather/station_air.h"
 
 /// Parses the words of a scene.
 namespace relevo::session {
@@ -39,11 +38,6 @@ sun::ParsedTime parse_quietly(const scene::TimeSpec& spec, const light::TerrainA
 /// @param loaded  all posts of the source, or means of them
 sun::ParsedTime parse_over(const scene::TimeSpec& spec, const dem::Source& source,
                            const dem::Heightfield& loaded);
-
-/// @param model  "standard", "saemundsson" or "none"
-/// @param air    that "standard" takes instead of the standard atmosphere
-sun::Refraction refraction_at(const std::string& model, const geo::Geodetic& place,
-                              const std::optional<weather::StationAir>& air = {});
 
 /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", in degrees. Refraction is omitted
 /// more than 2 degrees below the horizon.

@@ -22,15 +22,15 @@ std::string out(const std::string& name) {
     return (folder() / name).string();
 }
 
-/// Of the window that is asked for, 128 posts each way from column and row 100 on, the first of its
-/// four parts has 1200 voids and the last one 5.
+/// Of the window that is asked for, 560 x 128 posts from column and row 100 on, the first of its
+/// two parts, which is 512 wide, has 1200 voids and the last one 5.
 std::string hills_with_voids() {
     return write_hills(folder() / "hills.tif", [](int column, int row) {
-        return column == 220 && row >= 190 && row < 195;
+        return column == 640 && row >= 190 && row < 195;
     });
 }
-const std::vector<std::string> kWindow{"--clip=503000,5295440,506840,5298000", "--memory", "1"};
-constexpr int kSide = 128, kVoids = 1205;
+const std::vector<std::string> kWindow{"--clip=503000,5295440,519800,5298000", "--memory", "1"};
+constexpr int kColumns = 560, kRows = 128, kVoids = 1205;
 
 Result run_in_parts(std::vector<std::string> arguments, const std::string& name) {
     arguments.insert(arguments.begin(), "sun");
@@ -51,12 +51,12 @@ double number_after(const std::string& text, const std::string& word) {
 std::vector<float> values_of(const std::string& name) {
     const Dataset dataset = opened(out(name));
     EXPECT_TRUE(dataset);
-    EXPECT_EQ(dataset->GetRasterXSize(), kSide);
-    EXPECT_EQ(dataset->GetRasterYSize(), kSide);
+    EXPECT_EQ(dataset->GetRasterXSize(), kColumns);
+    EXPECT_EQ(dataset->GetRasterYSize(), kRows);
     EXPECT_EQ(std::string(dataset->GetMetadataItem("HOLES")), std::to_string(kVoids));
-    std::vector<float> values(std::size_t{kSide} * kSide);
-    EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kSide, kSide, values.data(), kSide,
-                                                  kSide, GDT_Float32, 0, 0),
+    std::vector<float> values(std::size_t{kColumns} * kRows);
+    EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, kColumns, kRows, values.data(),
+                                                  kColumns, kRows, GDT_Float32, 0, 0),
               CE_None);
     return values;
 }
@@ -69,7 +69,7 @@ TEST(SunParts, CountsOfLitAndShadedPostsAreThoseOfAllParts) {
         shaded += value == 0;
     }
     EXPECT_GT(shaded, 1000);
-    EXPECT_EQ(lit + shaded, kSide * kSide - kVoids);
+    EXPECT_EQ(lit + shaded, kColumns * kRows - kVoids);
     EXPECT_EQ(number_after(run.out, "\nlit     "), lit) << run.out;
     EXPECT_EQ(number_after(run.out, "in the shade"), shaded) << run.out;
     EXPECT_NE(run.err.find(std::to_string(kVoids)), std::string::npos) << run.err;
@@ -85,7 +85,7 @@ std::array<double, 3> mean_least_most(const std::vector<float>& values) {
             least = std::min(least, double{value});
             most = std::max(most, double{value});
         }
-    EXPECT_EQ(count, kSide * kSide - kVoids);
+    EXPECT_EQ(count, kColumns * kRows - kVoids);
     return {sum / count, least, most};
 }
 

@@ -96,7 +96,7 @@ TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
 }
 
 TEST(SunRasterParts, AreWholeBlocksHoweverLittleMemoryThereIs) {
-    EXPECT_EQ(raster_parts({0, 0, 1300, 600}, 5000).size(), 6U);
+    EXPECT_EQ(figure::raster_parts({0, 0, 1300, 600}, 5000).size(), 6U);
 }
 
 TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
@@ -104,7 +104,7 @@ TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
          {dem::Window{0, 0, 2300, 200}, {7, 3, 100, 1500}, {5, 900, 513, 512}, {0, 0, 30, 20}})
         for (const std::int64_t most : {std::int64_t{300000}, std::int64_t{1100000}}) {
             Array2d<std::uint8_t> held(window.columns, window.rows);
-            for (const dem::Window& part : raster_parts(window, most)) {
+            for (const dem::Window& part : figure::raster_parts(window, most)) {
                 ASSERT_GE(part.column, window.column);
                 ASSERT_GE(part.row, window.row);
                 ASSERT_LE(part.column + part.columns, window.column + window.columns);

@@ -9,7 +9,7 @@
 #include "output/raster_writer.h"
 
 /// Bands of the rasters that `relevo sun hours` writes, by their words on the command line.
-namespace relevo::session {
+namespace relevo::figure {
 
 /// "hours", "first", "last", "spells", "global", "beam", "diffuse", "reflected".
 const std::vector<std::string>& hours_words();
@@ -28,4 +28,4 @@ Array2d<float> hours_values(std::string_view word, light::SunHours& hours);
 /// "irradiation of the ground as it is inclined, ...": a sentence for the file's metadata.
 std::string definition_of(const light::SunHoursOptions::Irradiation& irradiation);
 
-}  // namespace relevo::session
+}  // namespace relevo::figure

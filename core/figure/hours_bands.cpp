@@ -1,10 +1,10 @@
-#include "session/hours_bands.h"
+#include "figure/hours_bands.h"
 
 #include <utility>
 
 #include <fmt/format.h>
 
-namespace relevo::session {
+namespace relevo::figure {
 namespace {
 
 constexpr const char* kEnergy = "kWh/m2";
@@ -66,4 +66,4 @@ std::string definition_of(const light::SunHoursOptions::Irradiation& irradiation
         irradiation.linke, irradiation.albedo);
 }
 
-}  // namespace relevo::session
+}  // namespace relevo::figure

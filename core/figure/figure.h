@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/array2d.h"
+#include "dem/posts.h"
+#include "light/raster/beyond.h"
+#include "output/raster_writer.h"
+
+/// Figures of light for every post of a DEM, identical from the command line, the libraries and the
+/// window.
+namespace relevo::figure {
+
+/// Default of --terrestrial-refraction.
+inline constexpr double kTerrestrialRefraction = 0.13;
+
+/// What came of a part of a raster.
+struct PartMade {
+    std::int64_t holes = 0;
+    std::string definition;  ///< a sentence, for the file's metadata
+};
+
+/// What a figure is made from, and where its values go.
+struct Work {
+    /// All of a DEM, or a tile with its halo. Outlive the maker.
+    const dem::Posts& posts;
+    /// A wider and coarser DEM, as light::SunPlan takes it; may be null.
+    const dem::Posts* around = nullptr;
+    dem::Window window{};    ///< posts of which parts will be asked for
+    geo::Geodetic middle{};  ///< of the whole DEM
+    /// Takes the values of a part in a band, by its number.
+    std::function<void(std::size_t band, const dem::Window& part, Array2d<float> values)> put;
+    /// Told of each share of a call that is done; an exception from it ends the work.
+    std::function<void(double)> done{};
+    bool is_estimate = false;  ///< only to measure the time: values may be meaningless
+};
+
+using PartMaker = std::function<PartMade(const dem::Window& part)>;
+
+/// A figure with its options: a verb of `relevo sun` that writes a raster.
+class Figure {
+  public:
+    double terrestrial_refraction = kTerrestrialRefraction;
+    std::optional<double> highest_m;  ///< of terrain beyond the DEM, as light::terrain_beyond()
+
+    Figure() = default;
+    virtual ~Figure() = default;
+    Figure(const Figure&) = delete;
+    Figure& operator=(const Figure&) = delete;
+
+    /// Bytes are masks, as mask_of() makes them of the values.
+    virtual output::RasterType type() const { return output::RasterType::Float; }
+    /// Their order is that of the bands' numbers.
+    virtual std::vector<output::RasterBand> bands() const = 0;
+    /// What a file says of its options. @param posts  of the whole DEM, here and below
+    virtual output::RasterMetadata metadata(const dem::Posts& posts) const = 0;
+    /// Calls of core's functions that each part takes, as Work::done counts them.
+    virtual std::size_t calls() const { return 1; }
+    /// Of memory while computing, besides the DEM's heights (measured).
+    virtual int bytes_a_post() const = 0;
+    /// How far off ground can change a value [m].
+    virtual double halo_m(const dem::Posts& posts) const = 0;
+    /// Terrain outside the DEM that could change values of a window.
+    virtual std::optional<light::Beyond> beyond(const dem::Posts& posts,
+                                                const dem::Window& window) const = 0;
+    /// What such terrain would do, as light::Beyond::text() takes it.
+    virtual const char* would() const { return light::kHides; }
+    /// What is found once, before any part is made.
+    /// @throws Error (BadInput) as light::SunPlan and light::SunHoursPlan
+    virtual PartMaker maker(Work work) const = 0;
+};
+
+/// 0 in the shade, 1 lit, 255 without data. @param lit  as light::Shadows
+Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
+
+/// Splits a window into squares of at most `most_posts` posts and of whole 512-post blocks. Small
+/// parts would sweep the same ground repeatedly.
+std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts);
+
+/// Divisor of the memory limit in posts for a part of the result: a result post takes several times
+/// the memory of a height.
+inline constexpr std::int64_t kPostsAPart = 8;
+
+}  // namespace relevo::figure

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "figure/figure.h"
+#include "light/raster/sun_hours.h"
+#include "sun/zone.h"
+
+namespace relevo::figure {
+
+/// Default of --step.
+inline constexpr double kSunStep_s = 180;
+
+/// Hours of direct sun in a period, and what else its sun does: `relevo sun hours`.
+struct Hours : Figure {
+    sun::TimeSpan time;
+    sun::Zone zone;                                     ///< of the period, for the metadata
+    std::vector<std::string> words{"hours"};            ///< bands, of hours_words()
+    std::string refraction = "standard";                ///< as light::refraction_at()
+    double step_s = kSunStep_s;                         ///< as light::SunHoursOptions
+    light::SunHoursOptions::Irradiation irradiation{};  ///< of bands that need it
+    /// Shown each part.
+    std::function<void(const light::SunHours& part)> seen{};
+
+    std::vector<output::RasterBand> bands() const override;
+    output::RasterMetadata metadata(const dem::Posts& posts) const override;
+    int bytes_a_post() const override;
+    double halo_m(const dem::Posts& posts) const override;
+    std::optional<light::Beyond> beyond(const dem::Posts& posts,
+                                        const dem::Window& window) const override;
+    PartMaker maker(Work work) const override;
+
+    /// First and last instant as texts of the metadata.
+    std::string from() const, to() const;
+
+  private:
+    light::SunHoursOptions options() const;
+};
+
+}  // namespace relevo::figure

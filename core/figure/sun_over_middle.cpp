@@ -1,0 +1,56 @@
+#include "figure/sun_over_middle.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "light/point/refraction_at.h"
+#include "sun/position.h"
+
+namespace relevo::figure {
+namespace {
+
+/// The ground at the DEM's centre.
+geo::Geodetic middle_of(const dem::Posts& posts) {
+    geo::Geodetic ground = posts.grid().center();
+    const double height_m =
+        posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
+    ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
+    return ground;
+}
+
+}  // namespace
+
+SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
+                              const std::string& refraction) {
+    const sun::Position position = sun::position(utc, posts.grid().center());
+    const sun::Refraction air = light::refraction_at(refraction, middle_of(posts));
+    return {light::SunOverDem::of(position), air.apparent_rad(position.elevation_rad), utc};
+}
+
+output::RasterMetadata metadata_of(const SunOverMiddle& sun) {
+    output::RasterMetadata about{
+        {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(sun.sun.azimuth_rad))},
+        {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(sun.apparent_rad))},
+        {"SUN_PLACE", "the middle of the DEM; azimuth from true north"}};
+    if (sun.utc) {
+        about.emplace_back("TIME_UTC", sun::to_iso(*sun.utc, 3));
+        about.emplace_back("SUN_ELEVATION_DEG",
+                           fmt::format("{:.5f}", degrees(sun.sun.elevation_rad)));
+    }
+    return about;
+}
+
+std::function<sun::Refraction(const geo::Geodetic&)> air_of(const std::string& refraction) {
+    return [refraction](const geo::Geodetic& place) {
+        return light::refraction_at(refraction, place);
+    };
+}
+
+std::string air_of_posts(const std::string& refraction, const dem::Posts& posts) {
+    if (refraction == "standard") return "integrated ICAO standard atmosphere over each post";
+    return light::refraction_at(refraction, middle_of(posts)).description();
+}
+
+}  // namespace relevo::figure
