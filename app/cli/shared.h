@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/verb.h"
+#include "figure/options.h"
 #include "light/point/refraction_at.h"
 #include "scene/options.h"
 #include "scene/scene.h"
@@ -95,6 +96,9 @@ struct ViewArguments {
 
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
 Check in_range(double min, double max);
+inline Check in_range(const figure::Option& option) {
+    return in_range(option.min, option.max);
+}
 
 /// Any number that is one: no infinity, nothing but digits and an exponent.
 Check any_number();

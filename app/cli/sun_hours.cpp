@@ -59,7 +59,7 @@ void check(const HoursArguments& arguments) {
     for (const std::string& path : arguments.raster.dem.paths)
         if (is_band(path) && !std::filesystem::exists(path))
             bad_usage(fmt::format("--bands: {}: {}", path, kCommas));
-    if (arguments.step) step_s_of(*arguments.step, 1, 3600);
+    if (arguments.step) step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
     for (std::size_t i = 0; i < bands.size(); ++i)
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
@@ -125,7 +125,8 @@ void run_hours(const HoursArguments& arguments) {
     figure.zone = days.zone;
     figure.words = arguments.bands;
     figure.refraction = arguments.refraction.name();
-    if (arguments.step) figure.step_s = step_s_of(*arguments.step, 1, 3600);
+    if (arguments.step)
+        figure.step_s = step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
     if (arguments.linke) figure.irradiation.linke = *arguments.linke;
     if (arguments.albedo) figure.irradiation.albedo = *arguments.albedo;
     Summary sum;
@@ -160,10 +161,10 @@ void add_sun_hours(Verb sun_verb) {
         .check({check_band, ""});
     verb.add_option("--linke", arguments->linke,
                     "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)")
-        .check(in_range(1.0, 10.0));
+        .check(in_range(figure::kLinke));
     verb.add_option("--albedo", arguments->albedo,
                     "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)")
-        .check(in_range(0.0, 1.0));
+        .check(in_range(figure::kAlbedo));
     verb.callback([arguments] { run_hours(*arguments); });
 }
 

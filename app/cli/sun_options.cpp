@@ -154,7 +154,7 @@ void TerrainArguments::add_to(Verb verb) {
     verb.add_option(
             "-k,--terrestrial-refraction", refraction,
             "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(-1.0, 0.9))
+        .check(in_range(figure::kTerrestrialRefraction))
         .group("Horizon");
     verb.add_option("--highest", highest_m,
                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")

@@ -93,7 +93,7 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
     verb->add_option(
             "-k,--terrestrial-refraction", terrestrial_refraction,
             "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(-1.0, 0.9));
+        .check(in_range(figure::kTerrestrialRefraction));
     output.endings = {"tif", "tiff"};
     verb->add_option("-o,--output", output.path,
                      "Cloud-optimised GeoTIFF to write, on the DEM's grid; with --tiles a folder")
@@ -109,7 +109,7 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
     verb->add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
     verb->add_option("--highest", highest_m,
                      "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        .check(in_range(-500.0, light::kHighestTerrain_m));
+        .check(in_range(figure::kHighest_m));
     tiles.add_to(*verb);
     if (PlanArguments::is_for(*verb))
         plan.add_to(*verb);

@@ -38,7 +38,7 @@ struct RasterGround {
 /// --resume.
 struct RasterArguments {
     DemArguments dem;
-    double terrestrial_refraction = figure::kTerrestrialRefraction;
+    double terrestrial_refraction = figure::kTerrestrialRefraction.value;
     OutputArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;

@@ -13,7 +13,7 @@ namespace {
 
 struct SkyViewArguments {
     RasterArguments raster;
-    int directions = figure::kDirections;
+    int directions = 0;
     bool level = false;
 };
 
@@ -50,12 +50,13 @@ void run_horizons(const SkyViewArguments& arguments) {
                light::horizons_definition(figure.terrestrial_refraction));
 }
 
-std::shared_ptr<SkyViewArguments> add_directions(Verb verb, int least, int most) {
+std::shared_ptr<SkyViewArguments> add_directions(Verb verb, const figure::Option& option) {
     const auto arguments = std::make_shared<SkyViewArguments>();
+    arguments->directions = static_cast<int>(option.value);
     arguments->raster.add_to(verb);
     verb.add_option("--directions", arguments->directions,
-                    "Number of azimuths around each post (36)")
-        .check(in_range(least, most));
+                    fmt::format("Number of azimuths around each post ({})", option.value))
+        .check(in_range(option));
     return arguments;
 }
 
@@ -63,8 +64,7 @@ std::shared_ptr<SkyViewArguments> add_directions(Verb verb, int least, int most)
 
 void add_sun_sky_view(Verb sun_verb) {
     const Verb verb = sun_verb.add_verb("sky-view", "Sky-view factor of each post, as a raster");
-    const auto arguments =
-        add_directions(verb, figure::kLeastSkyDirections, figure::kMostSkyDirections);
+    const auto arguments = add_directions(verb, figure::kSkyDirections);
     verb.add_flag("--level", arguments->level,
                   "For a level plane at each post instead of the inclined ground");
     verb.callback([arguments] { run_sky_view(*arguments); });
@@ -73,7 +73,7 @@ void add_sun_sky_view(Verb sun_verb) {
 void add_sun_horizons(Verb sun_verb) {
     const Verb verb =
         sun_verb.add_verb("horizons", "Horizon of each post, one band for each azimuth");
-    const auto arguments = add_directions(verb, 1, figure::kMostHorizons);
+    const auto arguments = add_directions(verb, figure::kHorizonDirections);
     verb.callback([arguments] { run_horizons(*arguments); });
 }
 

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 
 #include "base/units.h"
-#include "figure/figure.h"
+#include "figure/options.h"
 #include "light/point/apparent_elevation.h"
 
 namespace relevo::viewer {
@@ -92,7 +92,7 @@ std::optional<LineOfSight> line_of_sight(const Profile& profile, double eye_m, d
     if (std::isnan(first.place.height_m + last.place.height_m)) return std::nullopt;
     const light::ApparentElevation elevation{
         light::radius_of_curvature_m(first.place.lat_rad, profile.azimuth_rad),
-        first.place.height_m + eye_m, figure::kTerrestrialRefraction};
+        first.place.height_m + eye_m, figure::kTerrestrialRefraction.value};
     const auto tangent = [&](const ProfilePoint& point) {
         return elevation.tangent(point.place.height_m, point.distance_m);
     };

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "figure/options.h"
 #include "json/object_reader.h"
 #include "scene/scene.h"
 
@@ -25,6 +26,12 @@ class Options {
     json::Value value_;
     json::ObjectReader reader_;
 };
+
+/// A number that figures are asked for with.
+inline double number(json::ObjectReader& reader, const char* key, const figure::Option& option,
+                     bool whole = false) {
+    return reader.number(key, option.value, option.min, option.max, whole);
+}
 
 /// Changes a scene by a JSON text, as a shot of a job does. "format" may be there.
 /// Relative names become absolute ones.

@@ -17,7 +17,6 @@
 #include "figure/hours_bands.h"
 #include "figure/shadow.h"
 #include "figure/sky_view.h"
-#include "light/point/horizon.h"
 #include "options.h"
 #include "session/words.h"
 
@@ -26,9 +25,8 @@ namespace {
 
 void take_terrestrial(json::ObjectReader& reader, figure::Figure& figure) {
     figure.terrestrial_refraction =
-        reader.number("terrestrial_refraction", figure.terrestrial_refraction, -1, 0.9, false);
-    if (reader.has("highest"))
-        figure.highest_m = reader.number("highest", 0, -500, light::kHighestTerrain_m, false);
+        number(reader, "terrestrial_refraction", figure::kTerrestrialRefraction);
+    if (reader.has("highest")) figure.highest_m = number(reader, "highest", figure::kHighest_m);
 }
 
 std::string refraction_of(json::ObjectReader& reader) {
@@ -169,14 +167,14 @@ void take_hours(const char* text, HoursWanted& wanted) {
     figure::Hours& figure = wanted.figure;
     take_days(reader, wanted);
     take_bands(reader, wanted);
-    figure.step_s = reader.number("step", figure.step_s, 1, 3600, false);
+    figure.step_s = number(reader, "step", figure::kStep_s);
     const bool has_irradiation = std::ranges::any_of(figure.words, figure::needs_irradiation);
     for (const char* key : {"linke", "albedo"})
         if (reader.has(key) && !has_irradiation)
             reader.fail(reader.line_of(key), key,
                         "needs one of the bands global, beam, diffuse, reflected");
-    figure.irradiation.linke = reader.number("linke", figure.irradiation.linke, 1, 10, false);
-    figure.irradiation.albedo = reader.number("albedo", figure.irradiation.albedo, 0, 1, false);
+    figure.irradiation.linke = number(reader, "linke", figure::kLinke);
+    figure.irradiation.albedo = number(reader, "albedo", figure::kAlbedo);
     take_terrestrial(reader, figure);
     figure.refraction = refraction_of(reader);
     reader.finish();
@@ -197,8 +195,7 @@ void sky_view(RasterCall& call, const char* text) {
     json::ObjectReader& reader = options.reader();
     figure::SkyView figure;
     figure.directions =
-        static_cast<int>(reader.number("directions", figure.directions, figure::kLeastSkyDirections,
-                                       figure::kMostSkyDirections, true));
+        static_cast<int>(number(reader, "directions", figure::kSkyDirections, true));
     figure.level = reader.boolean("level", false);
     take_terrestrial(reader, figure);
     reader.finish();

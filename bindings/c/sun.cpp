@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem.h"
-#include "figure/figure.h"
+#include "figure/options.h"
 #include "light/point/horizon.h"
 #include "light/point/refraction_at.h"
 #include "options.h"
@@ -60,8 +60,7 @@ light::HorizonOptions horizon_options(const char* text, size_t directions) {
     json::ObjectReader& reader = options.reader();
     light::HorizonOptions result;
     result.eye_height_m = reader.number("eye_height", 0, 0, 10'000, false);
-    result.refraction =
-        reader.number("terrestrial_refraction", figure::kTerrestrialRefraction, -1, 0.9, false);
+    result.refraction = number(reader, "terrestrial_refraction", figure::kTerrestrialRefraction);
     constexpr size_t kFew = 30;  // a direction by itself takes a thirtieth of all of them
     result.few_directions = directions < kFew;
     reader.finish();

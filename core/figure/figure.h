@@ -8,15 +8,13 @@
 
 #include "base/array2d.h"
 #include "dem/posts.h"
+#include "figure/options.h"
 #include "light/raster/beyond.h"
 #include "output/raster_writer.h"
 
 /// Figures of light for every post of a DEM, identical from the command line, the libraries and the
 /// window.
 namespace relevo::figure {
-
-/// Default of --terrestrial-refraction.
-inline constexpr double kTerrestrialRefraction = 0.13;
 
 /// What came of a part of a raster.
 struct PartMade {
@@ -44,7 +42,7 @@ using PartMaker = std::function<PartMade(const dem::Window& part)>;
 /// A figure with its options: a verb of `relevo sun` that writes a raster.
 class Figure {
   public:
-    double terrestrial_refraction = kTerrestrialRefraction;
+    double terrestrial_refraction = kTerrestrialRefraction.value;
     std::optional<double> highest_m;  ///< of terrain beyond the DEM, as light::terrain_beyond()
 
     Figure() = default;

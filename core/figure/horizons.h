@@ -5,12 +5,9 @@
 
 namespace relevo::figure {
 
-/// Most directions of horizons, each a band.
-inline constexpr int kMostHorizons = 720;
-
 /// The apparent horizon of each post, a band for each azimuth: `relevo sun horizons`.
 struct Horizons : Figure {
-    int directions = kDirections;
+    int directions = static_cast<int>(kHorizonDirections.value);
 
     std::vector<output::RasterBand> bands() const override;
     output::RasterMetadata metadata(const dem::Posts&) const override { return {}; }

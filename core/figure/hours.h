@@ -6,17 +6,15 @@
 
 namespace relevo::figure {
 
-/// Default of --step.
-inline constexpr double kSunStep_s = 180;
-
 /// Hours of direct sun in a period, and what else its sun does: `relevo sun hours`.
 struct Hours : Figure {
     sun::TimeSpan time;
-    sun::Zone zone;                                     ///< of the period, for the metadata
-    std::vector<std::string> words{"hours"};            ///< bands, of hours_words()
-    std::string refraction = "standard";                ///< as light::refraction_at()
-    double step_s = kSunStep_s;                         ///< as light::SunHoursOptions
-    light::SunHoursOptions::Irradiation irradiation{};  ///< of bands that need it
+    sun::Zone zone;                           ///< of the period, for the metadata
+    std::vector<std::string> words{"hours"};  ///< bands, of hours_words()
+    std::string refraction = "standard";      ///< as light::refraction_at()
+    double step_s = kStep_s.value;            ///< as light::SunHoursOptions
+    light::SunHoursOptions::Irradiation irradiation{kLinke.value,
+                                                    kAlbedo.value};  ///< of bands that need it
     /// Shown each part.
     std::function<void(const light::SunHours& part)> seen{};
 

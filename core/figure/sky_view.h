@@ -5,11 +5,6 @@
 
 namespace relevo::figure {
 
-/// Default of --directions, for the sky view and for horizons.
-inline constexpr int kDirections = 36;
-/// Fewest and most of them.
-inline constexpr int kLeastSkyDirections = 4, kMostSkyDirections = 3600;
-
 /// Azimuths of evenly spread directions, from true north [rad].
 std::vector<double> azimuths_of(int directions);
 
@@ -18,7 +13,7 @@ output::RasterBand sky_view_band();
 
 /// The sky-view factor of each post: `relevo sun sky-view`.
 struct SkyView : Figure {
-    int directions = kDirections;
+    int directions = static_cast<int>(kSkyDirections.value);
     bool level = false;  ///< of a level plane at each post instead of the ground
     /// Shown each part.
     std::function<void(const light::SkyView& part)> seen{};
