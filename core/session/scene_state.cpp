@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/log.h"
 #include "geo/format.h"
 #include "light/point/refraction_at.h"
 #include "scene/exaggeration.h"
@@ -29,12 +30,18 @@ void SceneState::take_dem(std::shared_ptr<const LoadedDem> dem) {
 
 void SceneState::choose_exaggeration(const LoadedDem& dem) {
     if (!std::exchange(scene.chooses_exaggeration, false)) return;
-    // Steeper ground needs finer tiles.
-    if (scene.dem.memory.mib() < MemoryBudget::kDefault_mib) return;
     constexpr int kLeast_px = 320;  // that words have room in
     const render::Ground ground = ground_of(dem);
-    scene.exaggeration =
+    const double chosen =
         scene::chosen_exaggeration(dem.field.height_m, ground.north_east_m - ground.south_west_m);
+    // Steeper ground needs finer tiles.
+    if (chosen != 1 && scene.dem.memory.mib() < MemoryBudget::kDefault_mib) {
+        log::info(fmt::format("heights are drawn as they are, not {:.3g} times, with a --memory "
+                              "below {} MiB; --exaggerate {:.3g} draws them so",
+                              chosen, MemoryBudget::kDefault_mib, chosen));
+        return;
+    }
+    scene.exaggeration = chosen;
     scene.stamps.exaggeration = scene.exaggeration != 1 && scene.width_px >= kLeast_px;
 }
 

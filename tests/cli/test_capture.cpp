@@ -118,6 +118,9 @@ TEST_F(Capture, SaysWhatItChoseInOneLine) {
     EXPECT_THAT(view[0],
                 MatchesRegex("relevo: chosen: seen from the [NESW]+; --view sets another"));
     EXPECT_TRUE(lines_of(bundled_dem(), picture, {at[0], at[1], "--view", "top"}).empty());
+    const auto small = lines_of(bundled_dem(), picture, {"--memory", "64"});
+    ASSERT_EQ(small.size(), 2u);
+    EXPECT_THAT(small[0], HasSubstr("not 2.2 times, with a --memory below 3072 MiB"));
 }
 
 // "A normal run says at most one line of assumptions": and one more of what it chose.
