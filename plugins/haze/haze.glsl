@@ -7,6 +7,7 @@
 
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
+//@ include lib/beyond.glsl
 //@ include lib/sun_share.glsl
 
 uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
@@ -57,8 +58,11 @@ void haze_on_vertex(in VertexFrame v) {
 
 /// Sunlight that air and haze scatter once on the way to a point, without what the shadow of the terrain keeps off. Along
 /// the way, heights above the shadow are taken as linear.
-/// @param unshaded  all of it  @param strength  optical depth of the haze  @param scale  on the air up to the point
-vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength, in float scale) {
+/// @param unshaded    all of it
+/// @param strength    optical depth of the haze
+/// @param scale       on the air up to the point
+/// @param distance_m  to the point, for the air
+vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength, in float scale, in float distance_m) {
 #if HAS_shadow
     float eye_m = sun_shadow_clearance(frame.eye_post.xy + frame.eye_post.zw) + frame.eye_above_ground;
     float point_m = sun_shadow_clearance(s.post);
@@ -66,9 +70,9 @@ vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strengt
     vec3 lit = vec3(0.0);
     if (eye_m > 0.0 || point_m > 0.0) {
         float edge = eye_m / (eye_m - point_m);  // share of the way up to the edge of the shadow
-        AirBetween air = air_between_eye_and(view, edge * s.distance_m);
+        AirBetween air = air_between_eye_and(view, edge * distance_m);
         // At the point itself the two scales agree, or the edge of its shadow would be one of the air's.
-        float nearer = scale * air_scale_at(edge * s.distance_m) / max(air_scale_at(s.distance_m), 1e-6);
+        float nearer = scale * air_scale_at(edge * distance_m) / max(air_scale_at(distance_m), 1e-6);
         vec3 before = air.once * (1.0 - exp(-nearer * (air.depth + edge * strength)));
         lit = eye_m > 0.0 ? before : max(unshaded - before, 0.0);
     }
@@ -79,15 +83,25 @@ vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strengt
 #endif
 }
 
+/// How far away ground is for the air. At the rim of a DEM that is seen from the air as far as the country around it in the
+/// same direction: ground that lies higher or lower than that would stand out of its haze along the DEM's edge.
+float haze_distance_m(in float distance_m, in vec3 view, in float rim) {
+    if (frame.beyond == 0.0) return distance_m;
+    const float most = 1.5;  // of its own distance, for mountains before the horizon
+    float country_m = beyond_distance_m(view);
+    return mix(distance_m, country_m < 0.0 ? most * distance_m : min(country_m, most * distance_m), rim);
+}
+
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     // What is seen from outside, as a model on a table, has no air before it.
 #if !HAS_outside
     if (haze_air) {
-        AirBetween air = air_between_eye_and(view, s.distance_m);
-        float scale = air_scale_before(s.post, s.distance_m);
+        float rim = air_rim_at(s.post), distance_m = haze_distance_m(s.distance_m, view, rim);
+        AirBetween air = air_between_eye_and(view, distance_m);
+        float scale = air_scale_before(rim, distance_m);
         vec3 passed = exp(-scale * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
-        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength, scale);
+        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength, scale, distance_m);
         radiance = radiance * passed + air_scattered;
     } else {
         radiance = mix(radiance, background_radiance(view, false), haze_strength);

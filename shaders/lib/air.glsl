@@ -1,5 +1,5 @@
 //! provides  air_radiance, air_ground, air_between_eye_and: the clear atmosphere as the eye of the frame sees it;
-//!           air_scale_at, air_scale_before, air_scale_beyond: how much of it there is in aerial views
+//!           air_scale_at, air_scale_before, air_scale_beyond, air_rim_at: how much of it there is in aerial views
 //! reads     air_sky, air_between: render/air_textures.h makes them, where a program reads them
 //!           with NO_MOON nothing of the moon, which then lights nothing
 //! source    core/sky/eye_tables.h: what each number means; core/sky/atmosphere.h: the model
@@ -21,10 +21,14 @@ float air_scale_beyond(in float distance_m) {
     return max(mix(air_scale_at(distance_m), whole, smoothstep(0.5, 1.3, widths)), smoothstep(2.0, 8.0, widths));
 }
 
-/// The same before ground of the DEM, whose far rim goes over into what is beyond. @param post  of Surface
-float air_scale_before(in vec2 post, in float distance_m) {
+/// How far ground of the DEM goes over into what is beyond: 1 on the DEM's rim. @param post  of Surface
+float air_rim_at(in vec2 post) {
     vec2 inside = min(post, frame.posts.xy - 1.0 - post) * frame.posts.zw;
-    float rim = 1.0 - smoothstep(0.0, air_rim, min(inside.x, inside.y));
+    return 1.0 - smoothstep(0.0, air_rim, min(inside.x, inside.y));
+}
+
+/// The same before ground of the DEM. @param rim  air_rim_at()
+float air_scale_before(in float rim, in float distance_m) {
     return mix(air_scale_at(distance_m), air_scale_beyond(distance_m), rim);
 }
 
