@@ -36,9 +36,10 @@ void SceneState::choose_exaggeration(const LoadedDem& dem) {
         scene::chosen_exaggeration(dem.field.height_m, ground.north_east_m - ground.south_west_m);
     // Steeper ground needs finer tiles.
     if (chosen != 1 && scene.dem.memory.mib() < MemoryBudget::kDefault_mib) {
-        log::info(fmt::format("heights are drawn as they are, not {:.3g} times, with a --memory "
-                              "below {} MiB; --exaggerate {:.3g} draws them so",
-                              chosen, MemoryBudget::kDefault_mib, chosen));
+        log::info(
+            fmt::format("heights are drawn as they are, not {:.3g} times, with a --memory "
+                        "below {} MiB; --exaggerate {:.3g} draws them so",
+                        chosen, MemoryBudget::kDefault_mib, chosen));
         return;
     }
     scene.exaggeration = chosen;
