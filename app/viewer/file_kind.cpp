@@ -11,12 +11,12 @@
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "dem/band_over.h"
-#include "dem/camera_photo.h"
-#include "dem/photo.h"
 #include "dem/placement.h"
 #include "dem/tile_index.h"
 #include "image/image.h"
+#include "overlay/band_over.h"
+#include "overlay/camera_photo.h"
+#include "overlay/photo.h"
 #include "session/overlay_time.h"
 #include "session/record.h"
 
@@ -81,17 +81,18 @@ bool has_record(const std::string& path) {
 FileKind kind_of_raster(const std::string& path) {
     if (has_record(path)) return FileKind::Picture;
     if (dem::web_tile(path)) return FileKind::Dem;
-    const std::optional<dem::CameraPhoto> photo = dem::camera_photo(path);
+    const std::optional<overlay::CameraPhoto> photo = overlay::camera_photo(path);
     if (photo && photo->place) return FileKind::Photograph;
-    if (dem::photo_kind(path) != dem::PhotoKind::None) return FileKind::Overlay;
-    return session::overlay_time(dem::band_metadata(path, 1)) ? FileKind::Overlay : FileKind::Dem;
+    if (overlay::photo_kind(path) != overlay::PhotoKind::None) return FileKind::Overlay;
+    return session::overlay_time(overlay::band_metadata(path, 1)) ? FileKind::Overlay
+                                                                  : FileKind::Dem;
 }
 
 }  // namespace
 
 bool is_raster_file(const std::string& path) {
     try {
-        dem::photo_kind(path);
+        overlay::photo_kind(path);
         return true;
     } catch (const Error&) {
         return false;

@@ -48,7 +48,7 @@ std::string file_of(const effect::Manifest& manifest) {
     return {};
 }
 
-std::string short_name(const std::string& path) {
+std::string end_of_path(const std::string& path) {
     return printable(std::filesystem::path(path).filename().string());
 }
 
@@ -62,7 +62,7 @@ Layer layer_of(const EffectsModel& effects, const effect::Effect& effect) {
     });
     layer.light = address_of(effect, is_light);
     layer.file = file_of(effect.manifest);
-    if (!layer.file.empty()) layer.source = short_name(effects.values.text(layer.file));
+    if (!layer.file.empty()) layer.source = end_of_path(effects.values.text(layer.file));
     if (!has_hook(effect, "display") && !has_hook(effect, "material"))
         layer.group = Layer::Group::Marks;
     else if (!has_hook(effect, "display") || (!layer.light.empty() && is_lit(effects, layer.light)))
@@ -76,7 +76,7 @@ Layer overlay_layer(const Document& document) {
     layer.id = effect::kOverlay;
     layer.name = tr("Overlay");
     if (choice.kind == OverlayKind::File && document.scene.overlay)
-        layer.source = short_name(document.scene.overlay->file);
+        layer.source = end_of_path(document.scene.overlay->file);
     layer.is_on = choice.visible;
     return layer;
 }

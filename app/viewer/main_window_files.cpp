@@ -10,7 +10,7 @@
 #include "base/allowed_name.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "dem/camera_photo.h"
+#include "overlay/camera_photo.h"
 #include "scene/exaggeration.h"
 #include "scene/job.h"
 #include "session/record.h"
@@ -171,7 +171,7 @@ void MainWindow::lay_over(const std::string& path) {
 }
 
 void MainWindow::stand_where_taken(const std::string& path) {
-    const dem::CameraPhoto photo = dem::camera_photo(path).value();
+    const overlay::CameraPhoto photo = overlay::camera_photo(path).value();
     const geo::Geodetic place{photo.place->lat_rad, photo.place->lon_rad, 0};
     const double ground_m = state_.land.aim_m(place);
     if (std::isnan(ground_m))

@@ -50,7 +50,7 @@ FieldPlace Fields::place(const std::string& name) const {
     const auto found = fields_.find(name);
     if (found == fields_.end() || !found->second) return {};
     const Field& field = *found->second;
-    const dem::ValuesAround& around = field.around;
+    const overlay::ValuesAround& around = field.around;
     return {glm::vec4(around.first_m - around.step_m, 1.0 / around.step_m),
             {around.values.width() + 2, around.values.height() + 2, field.mean, field.most}};
 }

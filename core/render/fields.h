@@ -7,14 +7,14 @@
 
 #include <glm/vec4.hpp>
 
-#include "dem/band_around.h"
 #include "gl/texture.h"
+#include "overlay/band_around.h"
 
 namespace relevo::render {
 
 /// Values around a DEM for effects, and what they are on the whole.
 struct Field {
-    dem::ValuesAround around;
+    overlay::ValuesAround around;
     float mean = 0;         ///< over the DEM
     float most = 0;         ///< the largest value
     float part_of_dem = 1;  ///< that has values

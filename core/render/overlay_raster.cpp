@@ -114,7 +114,7 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
     return texels;
 }
 
-std::vector<std::uint32_t> photo_page(const dem::Photo& photo, const OverlayTexels& texels,
+std::vector<std::uint32_t> photo_page(const overlay::Photo& photo, const OverlayTexels& texels,
                                       int level, glm::ivec2 page) {
     const glm::dvec2 step = double(1 << level) / texels.per_post;
     const Array2d<std::uint32_t> rgba =

@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 
 #include "base/array2d.h"
-#include "dem/photo.h"
 #include "dem/pyramid.h"
+#include "overlay/photo.h"
 
 namespace relevo::render {
 
@@ -18,9 +18,9 @@ struct OverlayRaster {
     /// 0xAABBGGRR: sRGB, premultiplied by alpha. Rows from the north. The outer rows and columns
     /// coincide with the DEM's; their number may differ.
     Array2d<std::uint32_t> rgba{};
-    Array2d<float> values{};                    ///< as rgba; NaN: none
-    std::shared_ptr<const dem::Photo> photo{};  ///< drawn in its own resolution
-    double opacity = 1;                         ///< of the photo, 0 to 1
+    Array2d<float> values{};                        ///< as rgba; NaN: none
+    std::shared_ptr<const overlay::Photo> photo{};  ///< drawn in its own resolution
+    double opacity = 1;                             ///< of the photo, 0 to 1
     bool lit = false;  ///< the colours are the ground's reflectance; else they are displayed as is
 };
 
@@ -38,7 +38,7 @@ OverlayTexels overlay_texels(const OverlayRaster& raster, const dem::Pyramid& py
 std::uint32_t overlay_texel(double red, double green, double blue, double alpha);
 
 /// Colours of a photo at the nodes of a page of `texels` with its border, kNormalPage_px a side.
-std::vector<std::uint32_t> photo_page(const dem::Photo& photo, const OverlayTexels& texels,
+std::vector<std::uint32_t> photo_page(const overlay::Photo& photo, const OverlayTexels& texels,
                                       int level, glm::ivec2 page);
 
 /// Colours at the nodes of a raster's page with its border, kNormalPage_px a side. Each is the mean

@@ -11,13 +11,13 @@
 #include <glm/vec3.hpp>
 
 #include "dem/heightfield.h"
-#include "dem/photo.h"
 #include "dem/pyramid.h"
 #include "dem/water.h"
 #include "geo/local_frame.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "overlay/photo.h"
 #include "render/fields.h"
 #include "render/frame_block.h"
 #include "render/ground_light.h"
@@ -50,7 +50,7 @@ struct TerrainOptions {
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
     /// Shares of the ground for lib/land.glsl: red trees, green low plants, blue ice, alpha
     /// where they are known. Null: none.
-    std::shared_ptr<const dem::Photo> land_cover{};
+    std::shared_ptr<const overlay::Photo> land_cover{};
     bool climate_alone = false;  ///< lib/land.glsl knows nothing but that map
     SkyViewFuture sky{};         ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows

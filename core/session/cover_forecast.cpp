@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "dem/band_over.h"
+#include "overlay/band_over.h"
 
 namespace relevo::session {
 namespace {
@@ -37,9 +37,9 @@ std::string dem_text(float part) {
     return part < 0.995F ? fmt::format("{:.0f} % of the DEM", 100 * part) : "the DEM";
 }
 
-dem::ValuesAround mixed(const dem::ValuesAround& before, const dem::ValuesAround& after,
-                        double share_of_after) {
-    dem::ValuesAround around = before;
+overlay::ValuesAround mixed(const overlay::ValuesAround& before, const overlay::ValuesAround& after,
+                            double share_of_after) {
+    overlay::ValuesAround around = before;
     if (share_of_after > 0)
         for (std::size_t i = 0; i < around.values.size(); ++i)
             around.values.data()[i] = std::lerp(before.values.data()[i], after.values.data()[i],
@@ -49,7 +49,7 @@ dem::ValuesAround mixed(const dem::ValuesAround& before, const dem::ValuesAround
 
 }  // namespace
 
-std::shared_ptr<const render::Field> field_of(dem::ValuesAround around,
+std::shared_ptr<const render::Field> field_of(overlay::ValuesAround around,
                                               const std::vector<glm::dvec2>& over_dem) {
     auto field = std::make_shared<render::Field>();
     double sum = 0;
@@ -68,10 +68,10 @@ std::shared_ptr<const render::Field> field_of(dem::ValuesAround around,
 }
 
 CoverForecast::CoverForecast(std::string file, const dem::Grid& dem)
-    : file_(std::move(file)), dem_(dem), over_dem_(dem::places_over_dem(dem)) {
+    : file_(std::move(file)), dem_(dem), over_dem_(overlay::places_over_dem(dem)) {
     bool has_timeless = false;
     try {
-        for (dem::BandInFile& band : dem::bands_of(file_))
+        for (overlay::BandInFile& band : overlay::bands_of(file_))
             if (const auto about = weather::cover_band(band.about, band.unit)) {
                 has_timeless = has_timeless || !about->unix_s;
                 if (about->unix_s)
@@ -126,15 +126,15 @@ weather::BetweenTimes CoverForecast::place_of(const Series& series, std::int64_t
                      weather::utc_text(unix_s)));
 }
 
-std::shared_ptr<const dem::ValuesAround> CoverForecast::values(const Series& series,
-                                                               std::size_t which,
-                                                               CloudLevel level) {
+std::shared_ptr<const overlay::ValuesAround> CoverForecast::values(const Series& series,
+                                                                   std::size_t which,
+                                                                   CloudLevel level) {
     const Series::Band& band = series.bands[which];
     auto& known = read_[{band.path, band.band}];
     if (known) return known;
-    auto around = std::make_shared<dem::ValuesAround>();
+    auto around = std::make_shared<overlay::ValuesAround>();
     try {
-        *around = dem::read_band_around(dem_, band.path, band.band);
+        *around = overlay::read_band_around(dem_, band.path, band.band);
     } catch (const Error& error) {
         throw Error(error.code(), fmt::format("weather: {}", error.what()));
     }

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "dem/band_around.h"
 #include "dem/grid.h"
+#include "overlay/band_around.h"
 #include "render/fields.h"
 #include "weather/cover_band.h"
 
@@ -21,7 +21,8 @@ using WeatherFields = std::map<std::string, std::shared_ptr<const render::Field>
 class CoverForecast {
   public:
     /// Reads what the file's bands are, not their values.
-    /// @throws Error (BadInput) `weather: FILE: ...` as dem::bands_of() and weather::cover_band(),
+    /// @throws Error (BadInput) `weather: FILE: ...` as overlay::bands_of() and
+    /// weather::cover_band(),
     ///     and for a file without cloud cover or without its times
     CoverForecast(std::string file, const dem::Grid& dem);
 
@@ -32,7 +33,7 @@ class CoverForecast {
     /// Cover of each level at a time, 0 to 1, as decks from below: linear between the two times
     /// around it. Places without a value have none. Bands of the last two times stay in memory.
     /// @throws Error (BadInput) for a time that the file does not have, cover below 0 or above 1,
-    ///     and as dem::read_band_around()
+    ///     and as overlay::read_band_around()
     WeatherFields at(std::int64_t unix_s);
 
     /// What the last call of at() has read: "forecast.grib2: low and high cloud cover, 30 and 15 %
@@ -52,8 +53,8 @@ class CoverForecast {
     };
     Series series_of(weather::CloudLevel level) const;
     weather::BetweenTimes place_of(const Series& series, std::int64_t unix_s) const;
-    std::shared_ptr<const dem::ValuesAround> values(const Series& series, std::size_t which,
-                                                    weather::CloudLevel level);
+    std::shared_ptr<const overlay::ValuesAround> values(const Series& series, std::size_t which,
+                                                        weather::CloudLevel level);
     [[noreturn]] void fail(const std::string& what) const;
 
     struct Found {
@@ -66,11 +67,11 @@ class CoverForecast {
     std::vector<Found> found_;
     std::vector<weather::CloudLevel> levels_;
     std::vector<Series> series_;  // of levels_
-    std::map<std::pair<std::string, int>, std::shared_ptr<const dem::ValuesAround>> read_;
+    std::map<std::pair<std::string, int>, std::shared_ptr<const overlay::ValuesAround>> read_;
 };
 
 /// A field with its mean over a DEM and its largest value.
-std::shared_ptr<const render::Field> field_of(dem::ValuesAround around,
+std::shared_ptr<const render::Field> field_of(overlay::ValuesAround around,
                                               const std::vector<glm::dvec2>& over_dem);
 
 }  // namespace relevo::session

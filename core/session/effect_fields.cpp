@@ -6,16 +6,16 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "dem/band_over.h"
+#include "overlay/band_over.h"
 
 namespace relevo::session {
 namespace {
 
 /// Values in per cent become shares.
-dem::ValuesAround read_values(const effect::FieldSpec& spec, const std::string& file,
-                              const dem::Grid& dem) {
-    dem::ValuesAround around = dem::read_band_around(dem, file, 1);
-    const bool per_cent = dem::bands_of(file).front().unit == "%";
+overlay::ValuesAround read_values(const effect::FieldSpec& spec, const std::string& file,
+                                  const dem::Grid& dem) {
+    overlay::ValuesAround around = overlay::read_band_around(dem, file, 1);
+    const bool per_cent = overlay::bands_of(file).front().unit == "%";
     for (float& value : around.values) {
         if (per_cent) value *= 0.01F;
         // 100 stored as 99.9 or 100.1 is meant, 43 is not.
@@ -46,7 +46,8 @@ EffectFields::EffectFields(const ActiveEffects& effects, const dem::Grid& dem,
             Entry entry{.file = file, .weather = spec.weather};
             try {
                 if (!file.empty()) {
-                    entry.field = field_of(read_values(spec, file, dem), dem::places_over_dem(dem));
+                    entry.field =
+                        field_of(read_values(spec, file, dem), overlay::places_over_dem(dem));
                     entry.stamps.add(file);
                     if (const float part = entry.field->part_of_dem; part < 0.995F)
                         log::info(fmt::format("{}: {} has values for {:.0f} % of the DEM",

@@ -18,7 +18,8 @@ class EffectFields {
     EffectFields() = default;
     /// @param dem      its centre is the origin of the local frame
     /// @param earlier  read before around the same DEM; what has not changed is not read again
-    /// @throws Error (BadInput) `clouds.cover_1_file: FILE: ...` as dem::read_band_around(), and
+    /// @throws Error (BadInput) `clouds.cover_1_file: FILE: ...` as overlay::read_band_around(),
+    /// and
     ///     for values below 0 or above FieldSpec::most
     EffectFields(const ActiveEffects& effects, const dem::Grid& dem,
                  const EffectFields& earlier = {});

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "dem/band_over.h"
+#include "overlay/band_over.h"
 
 namespace relevo::session {
 
@@ -37,7 +37,7 @@ EffectRasters::Entry EffectRasters::read(const Source& source, const dem::Grid& 
     Entry entry{.source = source, .stamps = {}};
     if (source.file.empty()) return entry;
     if (source.is_values) {
-        dem::BandOver band = dem::read_band_over(grid, source.file, 1);
+        overlay::BandOver band = overlay::read_band_over(grid, source.file, 1);
         auto raster = std::make_shared<render::OverlayRaster>();
         raster->values = std::move(band.values);
         entry.overlay.raster = std::move(raster);

@@ -20,7 +20,7 @@ class EffectRasters {
     /// Reports effects that draw nothing because no file is named.
     /// @param grid     of the DEM's posts
     /// @param earlier  read before over the same grid; what has not changed is not read again
-    /// @throws Error (BadInput) as read_overlay() and dem::read_band_over(), `drape.file: ...`
+    /// @throws Error (BadInput) as read_overlay() and overlay::read_band_over(), `drape.file: ...`
     EffectRasters(const ActiveEffects& effects, const dem::Grid& grid,
                   const EffectRasters& earlier = {});
 

@@ -39,7 +39,7 @@ LandCoverTable guessed_table(const std::string& file, const Classes& in_map) {
 }
 
 LandCoverTable table_of(const scene::LandCover& asked) {
-    const Classes in_map = dem::classes_of(asked.file);
+    const Classes in_map = overlay::classes_of(asked.file);
     if (asked.classes.empty()) return guessed_table(asked.file, in_map);
     LandCoverTable table = scene::names_file(asked.classes) ? LandCoverTable::read(asked.classes)
                                                             : LandCoverTable::named(asked.classes);
@@ -52,14 +52,14 @@ LandCoverTable table_of(const scene::LandCover& asked) {
 
 }  // namespace
 
-std::shared_ptr<const dem::Photo> open_land_cover(const scene::LandCover& asked,
-                                                  const dem::Grid& grid) {
+std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& asked,
+                                                      const dem::Grid& grid) {
     if (asked.file.empty()) {
         if (!asked.classes.empty())
             bad_input("--land-cover-classes: there is no map; --land-cover FILE sets one");
         return nullptr;
     }
-    return dem::Photo::open_classes(asked.file, grid, table_of(asked).texels());
+    return overlay::Photo::open_classes(asked.file, grid, table_of(asked).texels());
 }
 
 void add_files(const scene::LandCover& asked, FilesInUse& files) {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "base/files_in_use.h"
-#include "dem/photo.h"
+#include "overlay/photo.h"
 #include "scene/scene.h"
 
 namespace relevo::session {
@@ -14,10 +14,11 @@ namespace relevo::session {
 /// Without a word on its classes they are taken to be those of the one table that has them all,
 /// which is said; classes that a named table does not have tell nothing, with a warning.
 /// @param grid  of the DEM's posts
-/// @throws Error (BadInput) as dem::Photo::open_classes() and climate::LandCoverTable, if none or
+/// @throws Error (BadInput) as overlay::Photo::open_classes() and climate::LandCoverTable, if none
+/// or
 ///     several of the program's tables have all of its classes, and for classes without a map
-std::shared_ptr<const dem::Photo> open_land_cover(const scene::LandCover& asked,
-                                                  const dem::Grid& grid);
+std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& asked,
+                                                      const dem::Grid& grid);
 
 /// Adds its files to the inputs of a run.
 void add_files(const scene::LandCover& asked, FilesInUse& files);

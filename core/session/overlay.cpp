@@ -13,9 +13,9 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
-#include "dem/band_over.h"
 #include "dem/files_of.h"
-#include "dem/photo.h"
+#include "overlay/band_over.h"
+#include "overlay/photo.h"
 
 namespace relevo::session {
 namespace {
@@ -44,13 +44,13 @@ chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
 }
 
 /// True if all values are 0, 1 or NaN.
-bool is_mask(const dem::BandOver& band) {
+bool is_mask(const overlay::BandOver& band) {
     return band.whole && std::ranges::all_of(band.values, [](float value) {
                return value == 0 || value == 1 || std::isnan(value);
            });
 }
 
-chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool mask) {
+chart::Ramp ramp_of(const scene::Overlay& asked, const overlay::BandOver& band, bool mask) {
     if (mask && asked.colours.empty() && !asked.range) return chart::named_ramp("shade", 0, 1);
     if (asked.colours.empty() && !asked.range)
         return band.colors.empty() ? usual_ramp(band.values, band.name, band.unit)
@@ -72,11 +72,11 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool
 /// Whether the scene's overlay is drawn in its own colours.
 bool is_photo(const scene::Overlay& asked) {
     if (!asked.colours.empty() || asked.range || asked.band != 1) return false;
-    const dem::PhotoKind kind = dem::photo_kind(asked.file);
-    if (kind == dem::PhotoKind::None) return false;
+    const overlay::PhotoKind kind = overlay::photo_kind(asked.file);
+    if (kind == overlay::PhotoKind::None) return false;
     // Bands of sunlight are bytes, and GDAL calls three of them red, green and blue.
     if (time_of(asked)) return false;
-    if (kind == dem::PhotoKind::Deep)
+    if (kind == overlay::PhotoKind::Deep)
         bad_input(
             fmt::format("{}: red, green and blue of more than 8 bits, expected 8; convert the "
                         "overlay with gdal_translate -ot Byte -scale, or name colours for one "
@@ -87,7 +87,7 @@ bool is_photo(const scene::Overlay& asked) {
 
 Overlay photo_of(const scene::Overlay& asked, const dem::Grid& grid) {
     auto raster = std::make_shared<render::OverlayRaster>();
-    raster->photo = dem::Photo::open(asked.file, grid);
+    raster->photo = overlay::Photo::open(asked.file, grid);
     raster->opacity = asked.opacity;
     raster->lit = asked.lit;
     return {.raster = std::move(raster), .has_given_title = !asked.title.empty()};
@@ -132,7 +132,7 @@ void show_as_clock(const OverlayTime& time, chart::Legend& legend) {
 }
 
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
-    return overlay_time(dem::band_metadata(overlay.file, overlay.band));
+    return overlay_time(overlay::band_metadata(overlay.file, overlay.band));
 }
 
 std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene) {
@@ -142,7 +142,7 @@ std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene) {
 
 Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     if (is_photo(asked)) return photo_of(asked, grid);
-    const dem::BandOver band = dem::read_band_over(grid, asked.file, asked.band);
+    const overlay::BandOver band = overlay::read_band_over(grid, asked.file, asked.band);
     const std::optional<OverlayTime> time = overlay_time(band.about);
     const bool mask = time && time->sun && is_mask(band);
     chart::Legend legend{

@@ -28,7 +28,7 @@ struct Overlay {
 std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::string& zone,
                                           const geo::Geodetic& middle);
 
-/// @param values   on the DEM's grid, as dem::BandOver
+/// @param values   on the DEM's grid, as overlay::BandOver
 /// @param opacity  0 to 1, multiplies that of the colours
 /// @param lit      as render::OverlayRaster::lit
 Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity,
@@ -44,7 +44,7 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
 void show_as_clock(const OverlayTime& time, chart::Legend& legend);
 
 /// Time of a scene's overlay, read from metadata only; nullopt if it is not a sun raster.
-/// @throws Error (BadInput) as dem::band_metadata()
+/// @throws Error (BadInput) as overlay::band_metadata()
 std::optional<OverlayTime> time_of(const scene::Overlay& overlay);
 /// OverlayTime::utc of the scene's overlay: the default time of its picture.
 std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene);
@@ -53,7 +53,8 @@ std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene);
 /// colours or a range for it, or a band other than the first. Else a band, resampled to the DEM's
 /// posts.
 /// @param grid  of the DEM's posts
-/// @throws Error (BadInput) as dem::Photo::open(), dem::read_band_over(), chart::named_ramp() and
+/// @throws Error (BadInput) as overlay::Photo::open(), overlay::read_band_over(),
+/// chart::named_ramp() and
 ///     read_ramp(), and for colours of more than 8 bits
 Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
 

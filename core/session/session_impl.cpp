@@ -226,7 +226,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
     state.inputs.deterministic = true;
     // First what may fail, so that the scene is still the one before.
     const bool other_cover = next.land_cover != state.scene.land_cover;
-    const std::shared_ptr<const dem::Photo> cover =
+    const std::shared_ptr<const overlay::Photo> cover =
         other_cover ? open_land_cover(next.land_cover, state.dem()->source->grid()) : land_cover;
     if (next.weather != state.scene.weather || next.forecast != state.scene.forecast ||
         next.station_height_m != state.scene.station_height_m) {

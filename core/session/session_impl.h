@@ -65,8 +65,8 @@ struct Session::Impl {
     std::optional<render::Terrain> terrain;
 
     std::shared_ptr<const render::OverlayRaster> overlay_raster;
-    std::optional<Overlay> overlay;                // of the scene
-    std::shared_ptr<const dem::Photo> land_cover;  // of the scene; null: none
+    std::optional<Overlay> overlay;                    // of the scene
+    std::shared_ptr<const overlay::Photo> land_cover;  // of the scene; null: none
     std::optional<OverlayTime> overlay_time;
     bool hides_shadows = false;  // of the overlay: EffectsRequest
     EffectRasters rasters;       // of the drawn effects

@@ -1,4 +1,4 @@
-#include "dem/camera_photo.h"
+#include "overlay/camera_photo.h"
 
 #include <string>
 
@@ -7,7 +7,7 @@
 namespace relevo::fuzz {
 
 const Target kCameraPhoto("camera_photo", [](std::string_view bytes) {
-    dem::camera_photo(file(bytes, "photo.jpg"));
+    overlay::camera_photo(file(bytes, "photo.jpg"));
 });
 
 }  // namespace relevo::fuzz

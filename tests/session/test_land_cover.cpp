@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "dem/fixture.h"
-#include "dem/photo.h"
 #include "dem/source.h"
+#include "overlay/photo.h"
 #include "session/land_cover.h"
 #include "session/session.h"
 #include "support/device.h"

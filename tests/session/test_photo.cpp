@@ -12,9 +12,9 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem/fixture.h"
-#include "dem/photo.h"
 #include "dem/pyramid.h"
 #include "dem/source.h"
+#include "overlay/photo.h"
 #include "render/overlay_raster.h"
 #include "render/pages.h"
 #include "session/overlay.h"
@@ -286,7 +286,7 @@ TEST(WidePhoto, OfMorePixelsThanTheLimitCoversAllOfItsGround) {
          .bands = 3,
          .geotransform = {{500000, 1230.0 / kColumns, 0, 5200000, 0, -232.5}},
          .value = [](int column, int, int) { return column < kColumns / 2 ? 50.0 : 200.0; }});
-    const render::OverlayRaster raster{.photo = dem::Photo::open(path, grid)};
+    const render::OverlayRaster raster{.photo = overlay::Photo::open(path, grid)};
     const Array2d<float> heights(41, 31, 100.0F);
     const dem::Pyramid pyramid{heights};
     const render::OverlayTexels texels = render::overlay_texels(raster, pyramid);

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "base/output_file.h"
-#include "dem/band_over.h"
 #include "dem/fixture.h"
 #include "light/fields.h"
+#include "overlay/band_over.h"
 #include "session/sun_raster.h"
 #include "sun/time.h"
 #include "support/support.h"
@@ -92,7 +92,7 @@ TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
     OutputFile file(written, /*overwrite=*/true, "test");
     write_sun_raster(file, posts, day(SunFigure::Shadow), nullptr, 20000, "test");
     file.finish();
-    EXPECT_EQ(dem::band_metadata(written.string(), 1).at("HOLES"), "75");
+    EXPECT_EQ(overlay::band_metadata(written.string(), 1).at("HOLES"), "75");
 }
 
 TEST(SunRasterParts, AreWholeBlocksHoweverLittleMemoryThereIs) {

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
-#include "dem/band_over.h"
 #include "dem/load.h"
+#include "overlay/band_over.h"
 #include "viewer/sun_overlay.h"
 #include "window/viewer_fixture.h"
 
@@ -82,7 +82,8 @@ TEST(SunOverlay, HasTheFiguresOfTheCommandLine) {
         EXPECT_EQ(shown->overlay.legend->title, title);
         EXPECT_EQ(shown->overlay.legend->unit, unit);
         run(fmt::format("sun {} {} -o {} --overwrite", verb, bundled_path(), file.string()));
-        const dem::BandOver band = dem::read_band_over(wanted.dem->field.grid, file.string(), 1);
+        const overlay::BandOver band =
+            overlay::read_band_over(wanted.dem->field.grid, file.string(), 1);
         // Where places are looked up figures are mixed with a millionth of their neighbours'.
         const session::Overlay read =
             session::read_overlay({.file = file.string()}, wanted.dem->field.grid);

@@ -12,7 +12,7 @@
 #include "dem/grid.h"
 #include "dem/places_over.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 
 /// What a raster holds as an image of the ground.
 enum class PhotoKind {
@@ -40,12 +40,12 @@ class Photo {
     /// @param dem   what it is laid over; kept as a copy
     /// @throws Error (BadInput) if the file is not an image of 8 bits, has no georeference, or does
     ///     not reach the DEM
-    static std::shared_ptr<const Photo> open(const std::string& path, const Grid& dem);
+    static std::shared_ptr<const Photo> open(const std::string& path, const dem::Grid& dem);
     /// A raster of classes as an image: its first band, by a table.
     /// @param palette  0xAABBGGRR, premultiplied, by class from 0; classes beyond it are
     ///     transparent
     /// @throws Error (BadInput) if the band has no bytes, else as open()
-    static std::shared_ptr<const Photo> open_classes(const std::string& path, const Grid& dem,
+    static std::shared_ptr<const Photo> open_classes(const std::string& path, const dem::Grid& dem,
                                                      std::vector<std::uint32_t> palette);
     ~Photo();
     Photo(const Photo&) = delete;
@@ -62,7 +62,7 @@ class Photo {
     ///
     /// Accuracy: the place is that of PlacesOver. Safe on several threads at once.
     /// @throws Error (BadInput) for a damaged file
-    Array2d<std::uint32_t> read(const PointsOver& points) const;
+    Array2d<std::uint32_t> read(const dem::PointsOver& points) const;
 
   private:
     struct Impl;
@@ -70,4 +70,4 @@ class Photo {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

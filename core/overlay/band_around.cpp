@@ -1,4 +1,4 @@
-#include "dem/band_around.h"
+#include "overlay/band_around.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "dem/band_over.h"
 #include "dem/interpret.h"
 #include "dem/places_over.h"
 #include "geo/local_frame.h"
+#include "overlay/band_over.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 namespace {
 
 constexpr int kSide = 33;          // places along a side, of the DEM and of what is around it
@@ -38,8 +38,8 @@ geo::Crs local_crs(const geo::Geodetic& origin) {
 }
 
 /// Posts at a square net of places. @param step_m  from place to place
-Grid net(const geo::Crs& crs, const glm::dvec2& first_m, const glm::dvec2& step_m,
-         const glm::ivec2& count) {
+dem::Grid net(const geo::Crs& crs, const glm::dvec2& first_m, const glm::dvec2& step_m,
+              const glm::ivec2& count) {
     return {count.x, count.y, {first_m.x, step_m.x, 0, first_m.y, 0, step_m.y}, crs};
 }
 
@@ -50,12 +50,12 @@ struct Wanted {
 };
 
 /// The DEM, and what of its surroundings a raster covers.
-Wanted wanted(const Grid& raster, const geo::Crs& crs, const Box& dem) {
+Wanted wanted(const dem::Grid& raster, const geo::Crs& crs, const Box& dem) {
     const glm::dvec2 centre = 0.5 * (dem.least + dem.most);
     const glm::dvec2 around_m = glm::max(dem.most - centre, glm::dvec2(kAround_m));
     const glm::dvec2 step = 2.0 * around_m / double{kSide - 1};
-    const Grid places = net(crs, centre - around_m, step, {kSide, kSide});
-    const PlacesOver cells(places, raster, {.count = {kSide, kSide}});
+    const dem::Grid places = net(crs, centre - around_m, step, {kSide, kSide});
+    const dem::PlacesOver cells(places, raster, {.count = {kSide, kSide}});
     Wanted wanted{.box = dem};
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column) {
@@ -68,8 +68,8 @@ Wanted wanted(const Grid& raster, const geo::Crs& crs, const Box& dem) {
         }
     // A hundredth of the net's step, so that the cells on the way are alike.
     const glm::dvec2 near_m = glm::max(0.01 * step, glm::dvec2(1));
-    const Grid near = net(crs, centre, near_m, {2, 2});
-    const PlacesOver at(near, raster, {.count = {2, 2}});
+    const dem::Grid near = net(crs, centre, near_m, {2, 2});
+    const dem::PlacesOver at(near, raster, {.count = {2, 2}});
     const double cells_east = glm::length(at(1, 0) - at(0, 0)),
                  cells_north = glm::length(at(0, 1) - at(0, 0));
     const double step_m = std::min(near_m.x / cells_east, near_m.y / cells_north);
@@ -96,7 +96,7 @@ float ValuesAround::at(const glm::dvec2& place_m) const {
                        : std::numeric_limits<float>::quiet_NaN();
 }
 
-std::vector<glm::dvec2> places_over_dem(const Grid& dem) {
+std::vector<glm::dvec2> places_over_dem(const dem::Grid& dem) {
     const geo::LocalFrame frame(dem.center());
     std::vector<glm::dvec2> places;
     for (int row = 0; row < kSide; ++row)
@@ -109,8 +109,8 @@ std::vector<glm::dvec2> places_over_dem(const Grid& dem) {
     return places;
 }
 
-ValuesAround read_band_around(const Grid& dem, const std::string& path, int band) {
-    const Grid raster = grid_of_raster(path);
+ValuesAround read_band_around(const dem::Grid& dem, const std::string& path, int band) {
+    const dem::Grid raster = grid_of_raster(path);
     const geo::Crs crs = local_crs(dem.center());
     const std::vector<glm::dvec2> over_dem = places_over_dem(dem);
     Box box;
@@ -127,10 +127,10 @@ ValuesAround read_band_around(const Grid& dem, const std::string& path, int band
         read_band_over(net(crs, around.first_m, around.step_m, count), path, band).values;
     if (std::ranges::all_of(over_dem,
                             [&](const glm::dvec2& at) { return std::isnan(around.at(at)); }))
-        refuse(path,
-               fmt::format("the raster has no value over this DEM; it is at {}, the DEM at {}",
-                           extent_text(raster), extent_text(dem)));
+        dem::refuse(path,
+                    fmt::format("the raster has no value over this DEM; it is at {}, the DEM at {}",
+                                extent_text(raster), extent_text(dem)));
     return around;
 }
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

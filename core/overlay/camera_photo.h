@@ -5,7 +5,7 @@
 
 #include "geo/geodetic.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 
 /// Where, whither and when a camera took a photograph, by its Exif data. A part that the file does
 /// not have is empty.
@@ -26,4 +26,4 @@ struct CameraPhoto {
 /// Source: CIPA DC-008, Exif 2.32.
 std::optional<CameraPhoto> camera_photo(const std::string& path);
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

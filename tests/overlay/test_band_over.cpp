@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 
 #include "base/units.h"
-#include "dem/band_over.h"
 #include "dem/fixture.h"
+#include "overlay/band_over.h"
 #include "support/support.h"
 
-namespace relevo::dem::test_band_over {
+namespace relevo::overlay::test_band_over {
 namespace {
 
 using test::error_of;
@@ -17,7 +17,7 @@ using test::Raster;
 using test::write_raster;
 
 /// A DEM of 41 x 31 posts in UTM.
-Grid grid() {
+dem::Grid grid() {
     return {41, 31, {500015, 30, 0, 5199985, 0, -30}, geo::Crs::parse("EPSG:32632", "test")};
 }
 
@@ -49,7 +49,7 @@ TEST(BandOver, OfAnotherCrsLiesAtItsPlaces) {
                       .geotransform = {{west, step, 0, north, 0, -step}},
                       .crs = "EPSG:4326",
                       .value = [=](int column, int, int) { return west + (column + 0.5) * step; }});
-    const Grid dem = grid();
+    const dem::Grid dem = grid();
     const BandOver over = read_band_over(dem, path, 1);
     double worst = 0;
     int count = 0;
@@ -106,7 +106,7 @@ std::string write_earth(const char* name, double west_deg) {
 }
 
 /// How far values are from that formula, all over a DEM.
-double worst_off(const Grid& dem, const std::string& path) {
+double worst_off(const dem::Grid& dem, const std::string& path) {
     const BandOver over = read_band_over(dem, path, 1);
     double worst = 0;
     for (int row = 0; row < dem.rows(); ++row)
@@ -127,13 +127,13 @@ TEST(BandOver, AcrossTheDateLineEveryPostHasTheValueOfItsPlace) {
     const std::string greenwich = write_earth("greenwich.tif", -180),
                       pacific = write_earth("pacific.tif", 0);
     // Degrees that go on past 180, and UTM and Mercator on both sides of it.
-    const std::vector<Grid> dems{
+    const std::vector<dem::Grid> dems{
         {200, 100, {170.05, 0.1, 0, 5.05, 0, -0.1}, geo::Crs::parse("EPSG:4326", "test")},
         {200, 100, {-189.95, 0.1, 0, 5.05, 0, -0.1}, geo::Crs::parse("EPSG:4326", "test")},
         {120, 90, {600000, 5000, 0, 6200000, 0, -5000}, geo::Crs::parse("EPSG:32660", "test")},
         {200, 90, {19500000, 5000, 0, 800000, 0, -5000}, geo::Crs::parse("EPSG:3857", "test")},
     };
-    for (const Grid& dem : dems)
+    for (const dem::Grid& dem : dems)
         for (const std::string& raster : {greenwich, pacific})
             EXPECT_LT(worst_off(dem, raster), kMostOff) << dem.crs().name() << " on " << raster;
 }
@@ -146,8 +146,8 @@ TEST(BandOver, ARasterOfTheDemsOwnGridLiesOnItAcrossTheDateLine) {
     own.crs = "EPSG:3857";
     own.value = [](int column, int row, int) { return 1000.0 * row + column; };
     const std::string path = write_raster(folder() / "own.tif", own);
-    const Grid dem(200, 90, {19500000, 5000, 0, 800000, 0, -5000},
-                   geo::Crs::parse("EPSG:3857", "test"));
+    const dem::Grid dem(200, 90, {19500000, 5000, 0, 800000, 0, -5000},
+                        geo::Crs::parse("EPSG:3857", "test"));
     const BandOver over = read_band_over(dem, path, 1);
     int wrong = 0;
     for (int row = 0; row < 90; ++row)
@@ -158,8 +158,8 @@ TEST(BandOver, ARasterOfTheDemsOwnGridLiesOnItAcrossTheDateLine) {
 
 TEST(BandOver, AroundAPoleEveryPostHasTheValueOfItsPlace) {
     const std::string earth = write_earth("earth.tif", -180);
-    const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
-                      geo::Crs::parse("EPSG:3413", "test"));
+    const dem::Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
+                           geo::Crs::parse("EPSG:3413", "test"));
     const BandOver over = read_band_over(arctic, earth, 1);
     int wrong = 0;
     for (int row = 0; row < 161; ++row)
@@ -183,8 +183,8 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
         "exit 3: " + far +
             ": the raster does not cover this DEM; it is at latitude 46.945 to 46.946, longitude "
             "10.314 to 10.316, the DEM at latitude 46.945 to 46.954, longitude 9.000 to 9.016");
-    const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
-                      geo::Crs::parse("EPSG:3413", "test"));
+    const dem::Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
+                           geo::Crs::parse("EPSG:3413", "test"));
     EXPECT_THAT(error_of([&] { read_band_over(arctic, far, 1); }),
                 testing::EndsWith("the DEM at latitude 84.749 to 90.000, all longitudes"));
     const std::string empty = write_raster(
@@ -197,4 +197,4 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem::test_band_over
+}  // namespace relevo::overlay::test_band_over

@@ -1,4 +1,4 @@
-#include "dem/photo.h"
+#include "overlay/photo.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "base/units.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
-#include "dem/photo_pixels.h"
+#include "overlay/photo_pixels.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 namespace {
 
 /// Samples along a side of the image and of the DEM.
@@ -42,25 +42,26 @@ PhotoKind kind_of(GDALDatasetH dataset) {
     return named ? PhotoKind::Deep : PhotoKind::None;
 }
 
-Georeference placed(const std::string& path, const std::string& opened, GDALDatasetH dataset) {
+dem::Georeference placed(const std::string& path, const std::string& opened, GDALDatasetH dataset) {
     std::array<double, 6> transform{};
     if (GDALGetGeoTransform(dataset, transform.data()) != CE_None && GDALGetGCPCount(dataset) == 0)
-        refuse(path,
-               "the raster has no georeference, its place on the ground is unknown; add one with "
-               "gdal_translate -a_srs EPSG:n -a_ullr W N E S");
-    Description unused;
-    if (GDALGetSpatialRef(dataset)) return georeference(opened, dataset, {}, unused);
+        dem::refuse(
+            path,
+            "the raster has no georeference, its place on the ground is unknown; add one with "
+            "gdal_translate -a_srs EPSG:n -a_ullr W N E S");
+    dem::Description unused;
+    if (GDALGetSpatialRef(dataset)) return dem::georeference(opened, dataset, {}, unused);
     try {
-        return georeference(opened, dataset, {}, unused);
+        return dem::georeference(opened, dataset, {}, unused);
     } catch (const Error&) {
         if (GDALGetGCPCount(dataset) > 0) throw;
-        refuse(path,
-               "the raster names no coordinate system and is not in degrees; add one with "
-               "gdal_translate -a_srs EPSG:n");
+        dem::refuse(path,
+                    "the raster names no coordinate system and is not in degrees; add one with "
+                    "gdal_translate -a_srs EPSG:n");
     }
 }
 
-bool is_in(const Grid& grid, const glm::dvec2& at) {
+bool is_in(const dem::Grid& grid, const glm::dvec2& at) {
     return at.x >= -0.5 && at.y >= -0.5 && at.x <= grid.columns() - 0.5 &&
            at.y <= grid.rows() - 0.5;
 }
@@ -97,15 +98,16 @@ std::uint32_t between(const Array2d<std::uint32_t>& rgba, const glm::dvec2& at) 
 GDALRasterBandH band_of_classes(const std::string& path, GDALDatasetH dataset) {
     const GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
     if (!band || GDALGetRasterDataType(band) != GDT_Byte)
-        refuse(path, "the raster's classes are no bytes; convert it with gdal_translate -ot Byte");
+        dem::refuse(path,
+                    "the raster's classes are no bytes; convert it with gdal_translate -ot Byte");
     return band;
 }
 
 }  // namespace
 
 struct Photo::Impl {
-    Impl(const std::string& path, Dataset opened, const Grid& of_raster, const Grid& of_dem,
-         std::vector<std::uint32_t> palette)
+    Impl(const std::string& path, dem::Dataset opened, const dem::Grid& of_raster,
+         const dem::Grid& of_dem, std::vector<std::uint32_t> palette)
         : dem(of_dem),
           raster(of_raster),
           dataset(std::move(opened)),
@@ -113,11 +115,11 @@ struct Photo::Impl {
 
     /// @param palette  of the first band; empty: as the file says
     static std::unique_ptr<Impl> open(const std::string& path, const std::string& opened,
-                                      Dataset dataset, const Grid& dem,
+                                      dem::Dataset dataset, const dem::Grid& dem,
                                       std::vector<std::uint32_t> palette);
 
-    Grid dem, raster;
-    Dataset dataset;
+    dem::Grid dem, raster;
+    dem::Dataset dataset;
     PhotoPixels pixels;
     std::mutex one_reader;
     glm::dvec2 first_post{0}, last_post{0}, pixels_per_post{1};
@@ -127,7 +129,7 @@ struct Photo::Impl {
     glm::dvec2 pixel(const glm::dvec2& post) const {
         return raster.post(dem.place(post.x, post.y));
     }
-    void read(const PlacesOver& places, const Window& part, Array2d<std::uint32_t>& rgba);
+    void read(const dem::PlacesOver& places, const Window& part, Array2d<std::uint32_t>& rgba);
 };
 
 /// Sets the posts between which the image lies.
@@ -159,8 +161,9 @@ void Photo::Impl::find_extent(const std::string& path) {
         each_sample(low, high,
                     [&](const glm::dvec2& post) { covers = covers || is_in(raster, pixel(post)); });
     if (!covers)
-        refuse(path, fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
-                                 extent_text(raster), extent_text(dem)));
+        dem::refuse(path,
+                    fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
+                                extent_text(raster), extent_text(dem)));
     first_post = glm::max(low, glm::dvec2(0));
     last_post = glm::min(high, glm::dvec2(dem.columns() - 1, dem.rows() - 1));
 }
@@ -184,7 +187,8 @@ void Photo::Impl::find_density() {
 }
 
 /// Fills in a part of the points, which is divided where its places are far apart in the image.
-void Photo::Impl::read(const PlacesOver& places, const Window& part, Array2d<std::uint32_t>& rgba) {
+void Photo::Impl::read(const dem::PlacesOver& places, const Window& part,
+                       Array2d<std::uint32_t>& rgba) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     glm::dvec2 low(kInfinity), high(-kInfinity);
     Array2d<glm::dvec2> at(part.columns, part.rows);
@@ -230,21 +234,22 @@ void Photo::Impl::read(const PlacesOver& places, const Window& part, Array2d<std
 std::bitset<256> classes_of(const std::string& path) {
     constexpr int kMostSide = 512;
     AllowedName opened(path);
-    const Dataset dataset = open_dataset(opened);
+    const dem::Dataset dataset = dem::open_dataset(opened);
     const GDALRasterBandH band = band_of_classes(path, dataset.get());
     const int columns = GDALGetRasterBandXSize(band), rows = GDALGetRasterBandYSize(band);
     const int wide = std::min(columns, kMostSide), high = std::min(rows, kMostSide);
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(wide) * static_cast<unsigned>(high));
-    const GdalMessages messages;
+    const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, bytes.data(), wide, high, GDT_Byte, 0,
                      0) != CE_None) {
         const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(path, reason)));
+        dem::refuse(path,
+                    fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path, reason)));
     }
     std::vector<std::uint8_t> mask(bytes.size(), 255);
     if (GDALRasterIO(GDALGetMaskBand(band), GF_Read, 0, 0, columns, rows, mask.data(), wide, high,
                      GDT_Byte, 0, 0) != CE_None)
-        refuse(path, fmt::format("its mask cannot be read, {}", messages.failure(path)));
+        dem::refuse(path, fmt::format("its mask cannot be read, {}", messages.failure(path)));
     std::bitset<256> found;
     for (std::size_t at = 0; at < bytes.size(); ++at)
         if (mask[at] != 0) found.set(bytes[at]);
@@ -252,11 +257,11 @@ std::bitset<256> classes_of(const std::string& path) {
 }
 
 std::unique_ptr<Photo::Impl> Photo::Impl::open(const std::string& path, const std::string& opened,
-                                               Dataset dataset, const Grid& dem,
+                                               dem::Dataset dataset, const dem::Grid& dem,
                                                std::vector<std::uint32_t> palette) {
-    const Georeference where = placed(path, opened, dataset.get());
-    const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
-                      where.affine, where.crs);
+    const dem::Georeference where = placed(path, opened, dataset.get());
+    const dem::Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
+                           where.affine, where.crs);
     auto impl = std::make_unique<Impl>(path, std::move(dataset), raster, dem, std::move(palette));
     impl->find_extent(path);
     impl->find_density();
@@ -265,23 +270,23 @@ std::unique_ptr<Photo::Impl> Photo::Impl::open(const std::string& path, const st
 
 PhotoKind photo_kind(const std::string& path) {
     AllowedName opened(path);
-    return kind_of(open_dataset(opened).get());
+    return kind_of(dem::open_dataset(opened).get());
 }
 
-std::shared_ptr<const Photo> Photo::open(const std::string& path, const Grid& dem) {
+std::shared_ptr<const Photo> Photo::open(const std::string& path, const dem::Grid& dem) {
     AllowedName opened(path);
-    Dataset dataset = open_dataset(opened);
+    dem::Dataset dataset = dem::open_dataset(opened);
     const PhotoKind kind = kind_of(dataset.get());
     if (kind != PhotoKind::Colours && kind != PhotoKind::Palette)
-        refuse(path, "the raster is no image of 8 bits");
+        dem::refuse(path, "the raster is no image of 8 bits");
     return std::shared_ptr<const Photo>(
         new Photo(Impl::open(path, opened.text(), std::move(dataset), dem, {})));
 }
 
-std::shared_ptr<const Photo> Photo::open_classes(const std::string& path, const Grid& dem,
+std::shared_ptr<const Photo> Photo::open_classes(const std::string& path, const dem::Grid& dem,
                                                  std::vector<std::uint32_t> palette) {
     AllowedName opened(path);
-    Dataset dataset = open_dataset(opened);
+    dem::Dataset dataset = dem::open_dataset(opened);
     band_of_classes(path, dataset.get());
     return std::shared_ptr<const Photo>(
         new Photo(Impl::open(path, opened.text(), std::move(dataset), dem, std::move(palette))));
@@ -303,11 +308,11 @@ glm::dvec2 Photo::pixels_per_post() const {
     return impl_->pixels_per_post;
 }
 
-Array2d<std::uint32_t> Photo::read(const PointsOver& points) const {
+Array2d<std::uint32_t> Photo::read(const dem::PointsOver& points) const {
     Array2d<std::uint32_t> rgba(points.count.x, points.count.y);
-    const PlacesOver places(impl_->dem, impl_->raster, points);
+    const dem::PlacesOver places(impl_->dem, impl_->raster, points);
     impl_->read(places, {0, 0, points.count.x, points.count.y}, rgba);
     return rgba;
 }
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

@@ -14,7 +14,7 @@
 
 // Pixels of an image file. Inside of the layer only.
 
-namespace relevo::dem {
+namespace relevo::overlay {
 
 /// An image of red, green and blue or of a palette, as premultiplied 0xAABBGGRR. Serves one thread
 /// at a time.
@@ -67,4 +67,4 @@ class PhotoPixels {
     std::optional<Part> reduced_;         // of a large file without overviews
 };
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

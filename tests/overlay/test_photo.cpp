@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 
 #include "dem/fixture.h"
-#include "dem/photo.h"
+#include "overlay/photo.h"
 #include "support/support.h"
 
-namespace relevo::dem::test_photo {
+namespace relevo::overlay::test_photo {
 namespace {
 
 using test::error_of;
@@ -17,7 +17,7 @@ using test::Raster;
 using test::write_raster;
 
 /// A DEM of 41 x 31 posts in UTM, 30 m apart.
-Grid grid() {
+dem::Grid grid() {
     return {41, 31, {500015, 30, 0, 5199985, 0, -30}, geo::Crs::parse("EPSG:32632", "test")};
 }
 
@@ -206,4 +206,4 @@ TEST(Photo, WhatCannotBeLaidOnTheGroundIsRefused) {
 }
 
 }  // namespace
-}  // namespace relevo::dem::test_photo
+}  // namespace relevo::overlay::test_photo

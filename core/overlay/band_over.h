@@ -9,7 +9,7 @@
 #include "base/array2d.h"
 #include "dem/grid.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 
 /// A band of a raster as it lies over a DEM.
 struct BandOver {
@@ -40,7 +40,7 @@ struct BandInFile {
 std::vector<BandInFile> bands_of(const std::string& path);
 
 /// The cells of any raster that GDAL opens. @throws Error (BadInput) as Source::open()
-Grid grid_of_raster(const std::string& path);
+dem::Grid grid_of_raster(const std::string& path);
 
 /// Values of more posts than these are means or picks of fewer [posts].
 inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;
@@ -54,6 +54,6 @@ inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;
 /// @param band  from 1
 /// @throws Error (BadInput) as Source::open(), for a band that is not there, and where the raster
 ///     has no cell over the DEM
-BandOver read_band_over(const Grid& grid, const std::string& path, int band);
+BandOver read_band_over(const dem::Grid& grid, const std::string& path, int band);
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

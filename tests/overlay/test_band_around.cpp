@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 
 #include "base/units.h"
-#include "dem/band_around.h"
 #include "dem/fixture.h"
 #include "geo/local_frame.h"
+#include "overlay/band_around.h"
 #include "support/support.h"
 
-namespace relevo::dem::test_band_around {
+namespace relevo::overlay::test_band_around {
 namespace {
 
 using test::error_of;
@@ -17,7 +17,7 @@ using test::folder;
 using test::write_raster;
 
 /// A DEM of 41 x 31 posts in UTM, 47 degrees north and 9 degrees east.
-Grid grid() {
+dem::Grid grid() {
     return {41, 31, {500015, 30, 0, 5199985, 0, -30}, geo::Crs::parse("EPSG:32632", "test")};
 }
 
@@ -105,4 +105,4 @@ TEST(BandAround, PlacesOverTheDemReachItsCorners) {
 }
 
 }  // namespace
-}  // namespace relevo::dem::test_band_around
+}  // namespace relevo::overlay::test_band_around

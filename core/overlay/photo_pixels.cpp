@@ -1,4 +1,4 @@
-#include "dem/photo_pixels.h"
+#include "overlay/photo_pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 namespace {
 
 /// Of an image without overviews the reduced copy has no more pixels than these.
@@ -150,12 +150,12 @@ const PhotoPixels::Level& PhotoPixels::level_for(double most) const {
 }
 
 void PhotoPixels::read_bytes(void* band, const Window& rows, std::uint8_t* bytes) {
-    const GdalMessages messages;
+    const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, rows.column, rows.row, rows.columns, rows.rows, bytes,
                      rows.columns, rows.rows, GDT_Byte, 0, 0) == CE_None)
         return;
     const std::string reason = messages.failure(path_);
-    refuse(path_, fmt::format("cannot be read, {}{}", reason, remedy_for(path_, reason)));
+    dem::refuse(path_, fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path_, reason)));
 }
 
 std::uint32_t PhotoPixels::texel(const std::uint8_t* bytes, std::size_t at, std::size_t count,
@@ -235,4 +235,4 @@ PhotoPixels::Part PhotoPixels::read(const glm::dvec2& first, const glm::dvec2& e
         level, window_of(first / shrunk, end / shrunk, level.columns, level.rows, times), times);
 }
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

@@ -1,4 +1,4 @@
-#include "dem/camera_photo.h"
+#include "overlay/camera_photo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 namespace {
 
 /// The Exif fields of a file, as GDAL has them: numbers in parentheses, "(46) (33) (12.5)".
@@ -99,9 +99,9 @@ std::string time_of(const Exif& exif) {
 }  // namespace
 
 std::optional<CameraPhoto> camera_photo(const std::string& path) {
-    prepare_gdal();
-    const GdalMessages messages;
-    const Dataset dataset = gdal_open(AllowedName(path));
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    const dem::Dataset dataset = dem::gdal_open(AllowedName(path));
     if (!dataset) return std::nullopt;
     const Exif exif(dataset.get());
     CameraPhoto photo;
@@ -121,4 +121,4 @@ std::optional<CameraPhoto> camera_photo(const std::string& path) {
     return photo;
 }
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

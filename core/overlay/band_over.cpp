@@ -1,4 +1,4 @@
-#include "dem/band_over.h"
+#include "overlay/band_over.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +15,7 @@
 #include "dem/interpret.h"
 #include "dem/places_over.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -35,11 +35,12 @@ Cells read_cells(GDALRasterBandH band, const std::string& path) {
                                   std::max(1, static_cast<int>(rows * share)));
     cells.shrunk = {double{1} * columns / cells.values.width(),
                     double{1} * rows / cells.values.height()};
-    const GdalMessages messages;
+    const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, cells.values.data(), cells.values.width(),
                      cells.values.height(), GDT_Float32, 0, 0) != CE_None) {
         const std::string reason = messages.failure(path);
-        refuse(path, fmt::format("cannot be read, {}{}", reason, remedy_for(path, reason)));
+        dem::refuse(path,
+                    fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path, reason)));
     }
     int has_nodata = 0;
     const auto nodata = static_cast<float>(GDALGetRasterNoDataValue(band, &has_nodata));
@@ -56,8 +57,8 @@ Cells read_cells(GDALRasterBandH band, const std::string& path) {
 }
 
 /// Whether the last cells of a row lie beside its first ones, around the Earth.
-bool goes_round(const Grid& raster) {
-    const Affine& affine = raster.affine();
+bool goes_round(const dem::Grid& raster) {
+    const dem::Affine& affine = raster.affine();
     const double turn = 2 * kPi / raster.crs().unit_si();
     return raster.crs().is_geographic() && affine.x_row == 0 && affine.y_column == 0 &&
            std::abs(std::abs(affine.x_column) * raster.columns() - turn) <
@@ -108,14 +109,14 @@ std::vector<std::array<std::uint8_t, 4>> colors_of(GDALRasterBandH band) {
     return colors;
 }
 
-GDALRasterBandH band_of(const Dataset& dataset, const std::string& path, int number) {
+GDALRasterBandH band_of(const dem::Dataset& dataset, const std::string& path, int number) {
     const int bands = GDALGetRasterCount(dataset.get());
     if (number < 1 || number > bands)
-        refuse(path, fmt::format("band {}: expected 1 to {}", number, bands));
+        dem::refuse(path, fmt::format("band {}: expected 1 to {}", number, bands));
     return GDALGetRasterBand(dataset.get(), number);
 }
 
-std::map<std::string, std::string> metadata_of(const Dataset& dataset, GDALRasterBandH band) {
+std::map<std::string, std::string> metadata_of(const dem::Dataset& dataset, GDALRasterBandH band) {
     std::map<std::string, std::string> result;
     for (const GDALMajorObjectH object :
          {GDALMajorObjectH{dataset.get()}, GDALMajorObjectH{band}}) {
@@ -134,13 +135,13 @@ std::map<std::string, std::string> metadata_of(const Dataset& dataset, GDALRaste
 
 std::map<std::string, std::string> band_metadata(const std::string& path, int number) {
     AllowedName opened(path);
-    const Dataset dataset = open_dataset(opened);
+    const dem::Dataset dataset = dem::open_dataset(opened);
     return metadata_of(dataset, band_of(dataset, path, number));
 }
 
 namespace {
 
-void add_bands(const Dataset& dataset, const std::string& path, std::vector<BandInFile>& to) {
+void add_bands(const dem::Dataset& dataset, const std::string& path, std::vector<BandInFile>& to) {
     for (int number = 1; number <= GDALGetRasterCount(dataset.get()); ++number) {
         const GDALRasterBandH band = GDALGetRasterBand(dataset.get(), number);
         to.push_back({path, number, GDALGetRasterUnitType(band), metadata_of(dataset, band)});
@@ -151,7 +152,7 @@ void add_bands(const Dataset& dataset, const std::string& path, std::vector<Band
 
 std::vector<BandInFile> bands_of(const std::string& path) {
     AllowedName opened(path);
-    const Dataset dataset = open_dataset(opened);
+    const dem::Dataset dataset = dem::open_dataset(opened);
     std::vector<BandInFile> bands;
     add_bands(dataset, path, bands);
     if (!bands.empty()) return bands;
@@ -161,28 +162,28 @@ std::vector<BandInFile> bands_of(const std::string& path) {
         const char* const name = CSLFetchNameValue(parts, key.c_str());
         if (!name) return bands;
         AllowedName of_part = opened.derived(name);
-        add_bands(open_dataset(of_part), name, bands);
+        add_bands(dem::open_dataset(of_part), name, bands);
     }
 }
 
-Grid grid_of_raster(const std::string& path) {
+dem::Grid grid_of_raster(const std::string& path) {
     AllowedName opened(path);
-    const Dataset dataset = open_dataset(opened);
-    Description unused;
-    const Georeference where = georeference(opened.text(), dataset.get(), {}, unused);
+    const dem::Dataset dataset = dem::open_dataset(opened);
+    dem::Description unused;
+    const dem::Georeference where = dem::georeference(opened.text(), dataset.get(), {}, unused);
     return {GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()), where.affine,
             where.crs};
 }
 
-BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
+BandOver read_band_over(const dem::Grid& grid, const std::string& path, int number) {
     AllowedName opened(path);
-    const Dataset dataset = open_dataset(opened);
+    const dem::Dataset dataset = dem::open_dataset(opened);
     const GDALRasterBandH band = band_of(dataset, path, number);
-    Description unused;
-    const Georeference where = georeference(opened.text(), dataset.get(), {}, unused);
+    dem::Description unused;
+    const dem::Georeference where = dem::georeference(opened.text(), dataset.get(), {}, unused);
     const Cells cells = read_cells(band, path);
-    const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
-                      where.affine, where.crs);
+    const dem::Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
+                           where.affine, where.crs);
     BandOver over;
     over.name = GDALGetDescription(band);
     over.unit = GDALGetRasterUnitType(band);
@@ -194,10 +195,10 @@ BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
     over.values = Array2d<float>(std::max(1, static_cast<int>(grid.columns() * share)),
                                  std::max(1, static_cast<int>(grid.rows() * share)));
     const glm::ivec2 count(over.values.width(), over.values.height());
-    const PlacesOver places(grid, raster,
-                            {.step = glm::dvec2(grid.columns() - 1, grid.rows() - 1) /
-                                     glm::dvec2(glm::max(count - 1, glm::ivec2(1))),
-                             .count = count});
+    const dem::PlacesOver places(grid, raster,
+                                 {.step = glm::dvec2(grid.columns() - 1, grid.rows() - 1) /
+                                          glm::dvec2(glm::max(count - 1, glm::ivec2(1))),
+                                  .count = count});
     const bool round = goes_round(raster);
     std::atomic<bool> covers = false;
     parallel_for(0, over.values.height(), 16, [&](int first, int end) {
@@ -213,11 +214,12 @@ BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
             }
     });
     if (!covers)
-        refuse(path, fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
-                                 extent_text(raster), extent_text(grid)));
+        dem::refuse(path,
+                    fmt::format("the raster does not cover this DEM; it is at {}, the DEM at {}",
+                                extent_text(raster), extent_text(grid)));
     if (std::ranges::all_of(over.values, [](float v) { return std::isnan(v); }))
-        refuse(path, "the raster has no value anywhere on this DEM");
+        dem::refuse(path, "the raster has no value anywhere on this DEM");
     return over;
 }
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay

@@ -11,11 +11,11 @@
 
 #include "base/text.h"
 #include "base/units.h"
-#include "dem/camera_photo.h"
 #include "dem/gdal_support.h"
+#include "overlay/camera_photo.h"
 #include "support/support.h"
 
-namespace relevo::dem::test_camera_photo {
+namespace relevo::overlay::test_camera_photo {
 namespace {
 
 /// A field of Exif: text (type 2), a short (3), rationals (5) in millionths.
@@ -92,7 +92,7 @@ std::string jpeg_with(std::vector<Field> first, const std::vector<Field>& camera
     tiff.resize(gps_at);
     tiff += directory(gps, gps_at);
 
-    prepare_gdal();
+    dem::prepare_gdal();
     const auto path = (test::scratch_dir() / "camera.jpg").string();
     GDALDatasetH memory = GDALCreate(GDALGetDriverByName("MEM"), "", 60, 40, 3, GDT_Byte, nullptr);
     GDALClose(GDALCreateCopy(GDALGetDriverByName("JPEG"), path.c_str(), memory, 0, nullptr, nullptr,
@@ -151,4 +151,4 @@ TEST(CameraPhoto, WhatCannotBeIsMissing) {
 }
 
 }  // namespace
-}  // namespace relevo::dem::test_camera_photo
+}  // namespace relevo::overlay::test_camera_photo

@@ -8,7 +8,7 @@
 #include "base/array2d.h"
 #include "dem/grid.h"
 
-namespace relevo::dem {
+namespace relevo::overlay {
 
 /// Values by place around a DEM: east and north in its local frame, at height 0 of the ellipsoid.
 struct ValuesAround {
@@ -31,9 +31,9 @@ inline constexpr double kAround_m = 400'000;
 /// @param dem   its centre is the origin of the local frame
 /// @param band  from 1
 /// @throws Error (BadInput) as read_band_over(), and where the raster has no value over the DEM
-ValuesAround read_band_around(const Grid& dem, const std::string& path, int band);
+ValuesAround read_band_around(const dem::Grid& dem, const std::string& path, int band);
 
 /// Places all over a DEM in its local frame, 33 along rows and columns.
-std::vector<glm::dvec2> places_over_dem(const Grid& dem);
+std::vector<glm::dvec2> places_over_dem(const dem::Grid& dem);
 
-}  // namespace relevo::dem
+}  // namespace relevo::overlay
