@@ -1,9 +1,10 @@
-//! provides  tone mapping by AgX: the brighter a colour is, the paler, as on film
+//! provides  tone mapping by AgX under a low sun: the brighter a colour is, the paler, as on film; neutral by day
 //! hook      tonemap
 //! writes    colour, linear, 0 to 1
 //! source    T. Sobotka, AgX (2022): matrix, range of stops and the curve's slope and powers
 
 uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
+uniform float agx_day = 0.5; //@ range(-10, 10) unit(EV) label("Exposure by day") description("In stops, while the sun is high and tones are neutral")
 uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
 uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
 
@@ -16,6 +17,7 @@ const float agx_stops_below = 10.0;   // it, and
 const float agx_stops_above = 6.5;    // above it
 const float agx_slope = 2.0;
 const float agx_toe = 3.0, agx_shoulder = 3.25;  // powers: higher ones bend more sharply
+const float agx_low_sun = 0.17, agx_high_sun = 0.31;  // apparent elevations; in between tones go over [rad]
 const float agx_display = 2.2;        // the curve's values are for a display of this exponent
 
 /// How far a side of the curve would reach if it went on without an end: it begins with the slope and ends at the edge.
@@ -53,6 +55,8 @@ void agx_on_tonemap(inout vec3 colour) {
 #if HAS_outside || HAS_tint || HAS_drape
     core_on_tonemap(colour);
 #else
-    colour = agx_tones(colour);
+    vec3 neutral = exp2(agx_day) * colour;
+    core_on_tonemap(neutral);
+    colour = mix(agx_tones(colour), neutral, smoothstep(agx_low_sun, agx_high_sun, frame.eye_sun.w));
 #endif
 }

@@ -73,5 +73,20 @@ TEST(Agx, MakesAColourOfDarknessAndOfLightWithoutEnd) {
     EXPECT_NEAR(found[0].x, 0, 1e-6);
 }
 
+TEST(Agx, IsNeutralByDay) {
+    test::GpuSnippet gpu("agx");
+    const auto toned_at = [&](float sun_rad) {
+        gpu.frame().eye_sun.w = sun_rad;
+        return gpu.run("vec3 c = vec3(0.2, 0.1, 0.05);\nagx_on_tonemap(c);\nresult = vec4(c, 1.0);",
+                       1, 1)[0];
+    };
+    const glm::vec4 low = toned_at(0.1f), high = toned_at(0.4f), between = toned_at(0.24f);
+    // Neutral tones leave middle colours as they are but for the exposure.
+    EXPECT_NEAR(high.x, 0.2 * std::exp2(0.5), 1e-4);
+    EXPECT_NEAR(high.z, 0.05 * std::exp2(0.5), 1e-4);
+    EXPECT_LT(low.z, high.z - 0.01) << "film has darker shade";
+    EXPECT_NEAR(between.z, (low.z + high.z) / 2, 1e-3);
+}
+
 }  // namespace
 }  // namespace relevo::test_agx
