@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/allocation.h"
+#include "base/log.h"
 #include "base/progress.h"
 #include "cli/shared.h"
 #include "light/sweep/sweep.h"
@@ -75,6 +77,23 @@ void RasterEstimate::print() const {
         "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
         "folder of the result\n",
         bands, bands == 1 ? "" : "s", result_bytes / static_cast<double>(bands) / kMiB);
+}
+
+MemoryBudget memory_of_allocation(const MemoryBudget& memory) {
+    constexpr std::int64_t kLeast_mib = 16, kProgram_mib = 256;
+    const Allocation& given = allocation();
+    if (!given.memory_bytes) return memory;
+    const std::int64_t mib = *given.memory_bytes / MemoryBudget::kMiB - kProgram_mib;
+    return MemoryBudget::of_mib(std::clamp(mib, kLeast_mib, memory.mib()));
+}
+
+void say_allocation(const MemoryBudget& memory) {
+    const Allocation& given = allocation();
+    const auto by = [](const std::string& name) {
+        return name.empty() ? std::string() : " (" + name + ")";
+    };
+    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads, by(given.threads_by),
+                          memory.mib(), by(given.memory_by)));
 }
 
 }  // namespace relevo::cli

@@ -58,4 +58,9 @@ RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem
                            int bytes_a_post, int bytes_a_value, std::size_t bands,
                            const MemoryBudget& memory, double far_bytes);
 
+/// Memory of a task, which may have less than the machine; the program itself takes some of it.
+MemoryBudget memory_of_allocation(const MemoryBudget& memory);
+/// Says how many threads and how much memory a task has, and what limits them.
+void say_allocation(const MemoryBudget& memory);
+
 }  // namespace relevo::cli

@@ -5,13 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "base/allocation.h"
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/held_notices.h"
@@ -55,25 +53,6 @@ dem::Window around(const dem::Window& a, const dem::Window& b) {
     const int column = std::min(a.column, b.column), row = std::min(a.row, b.row);
     return {column, row, std::max(a.end_column(), b.end_column()) - column,
             std::max(a.end_row(), b.end_row()) - row};
-}
-
-/// Of tasks, which may have less memory than the machine; the program itself takes some of it.
-MemoryBudget memory_of_allocation(const MemoryBudget& memory) {
-    constexpr std::int64_t kLeast_mib = 16, kProgram_mib = 256;
-    const Allocation& given = allocation();
-    if (!given.memory_bytes) return memory;
-    const std::int64_t mib = *given.memory_bytes / MemoryBudget::kMiB - kProgram_mib;
-    return MemoryBudget::of_mib(std::clamp(mib, kLeast_mib, memory.mib()));
-}
-
-/// Threads and memory of a task, where something limits them.
-void say_allocation(const MemoryBudget& memory) {
-    const Allocation& given = allocation();
-    const auto by = [](const std::string& name) {
-        return name.empty() ? std::string() : " (" + name + ")";
-    };
-    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads, by(given.threads_by),
-                          memory.mib(), by(given.memory_by)));
 }
 
 }  // namespace
@@ -395,10 +374,8 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
     }
     try {
-        std::optional<dem::Window> clip;
-        if (tile.window != ground_.whole()) clip = tile.window;
         output::RasterMetadata about =
-            figure::metadata_of(figure_, ground_.posts, RELEVO_VERSION, sum, clip);
+            figure::metadata_of(figure_, ground_.posts, RELEVO_VERSION, sum, tile.window);
         about.insert(about.end(), metadata.begin(), metadata.end());
         writer_->finish(about);
     } catch (const Error&) {

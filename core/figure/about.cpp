@@ -6,7 +6,7 @@ namespace relevo::figure {
 
 output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
                                    const std::string& version, const PartMade& made,
-                                   const std::optional<dem::Window>& clip) {
+                                   const dem::Window& window) {
     output::RasterMetadata about{
         {"TIFFTAG_SOFTWARE", "Relevo " + version},
         {"DEFINITION", made.definition},
@@ -20,11 +20,11 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
     if (tiles.broken.count > 0)
         about.emplace_back("TILES_BROKEN",
                            fmt::format("{} of {}", tiles.broken.text(), tiles.tiles));
-    if (clip)
+    if (window != dem::Window{0, 0, posts.grid().columns(), posts.grid().rows()})
         about.emplace_back(
             "CLIP",
-            fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", clip->column,
-                        clip->column + clip->columns - 1, clip->row, clip->row + clip->rows - 1));
+            fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", window.column,
+                        window.end_column() - 1, window.row, window.end_row() - 1));
     return about;
 }
 

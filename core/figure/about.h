@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "figure/figure.h"
@@ -11,9 +10,9 @@ namespace relevo::figure {
 /// Metadata common to all figures.
 /// @param version  of Relevo
 /// @param made     sums over all parts
-/// @param clip     window of the DEM's posts, if not all
+/// @param window   of the DEM's posts
 output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
                                    const std::string& version, const PartMade& made,
-                                   const std::optional<dem::Window>& clip = {});
+                                   const dem::Window& window);
 
 }  // namespace relevo::figure

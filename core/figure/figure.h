@@ -52,7 +52,7 @@ class Figure {
 
     /// Bytes are masks, as mask_of() makes them of the values.
     virtual output::RasterType type() const { return output::RasterType::Float; }
-    /// Their order is that of the bands' numbers.
+    /// Names and units. Band k of Work::put is the k-th.
     virtual std::vector<output::RasterBand> bands() const = 0;
     /// What a file says of its options. @param posts  of the whole DEM, here and below
     virtual output::RasterMetadata metadata(const dem::Posts& posts) const = 0;
@@ -67,7 +67,7 @@ class Figure {
                                                 const dem::Window& window) const = 0;
     /// What such terrain would do, as light::Beyond::text() takes it.
     virtual const char* would() const { return light::kHides; }
-    /// What is found once, before any part is made.
+    /// Plans the work once for all parts.
     /// @throws Error (BadInput) as light::SunPlan and light::SunHoursPlan
     virtual PartMaker maker(Work work) const = 0;
 };

@@ -12,7 +12,7 @@ namespace relevo::figure {
 
 std::vector<output::RasterBand> Horizons::bands() const {
     std::vector<output::RasterBand> bands;
-    for (const double azimuth : azimuths_of(directions)) {
+    for (const double azimuth : azimuths()) {
         const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth));
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
@@ -20,20 +20,9 @@ std::vector<output::RasterBand> Horizons::bands() const {
     return bands;
 }
 
-double Horizons::halo_m(const dem::Posts& posts) const {
-    return light::horizon_reach_m(posts, terrestrial_refraction);
-}
-
-std::optional<light::Beyond> Horizons::beyond(const dem::Posts& posts,
-                                              const dem::Window& window) const {
-    return light::terrain_beyond(posts, window, azimuths_of(directions), terrestrial_refraction,
-                                 highest_m);
-}
-
 PartMaker Horizons::maker(Work work) const {
-    const auto plan = std::make_shared<light::SunPlan>(
-        work.posts, light::LightPath{terrestrial_refraction, {}}, work.window, false, work.around);
-    light::add_horizon_directions(*plan, azimuths_of(directions));
+    const auto plan = this->plan(work);
+    light::add_horizon_directions(*plan, azimuths());
     const std::string definition = light::horizons_definition(terrestrial_refraction);
     return [plan, definition, put = std::move(work.put),
             done = std::move(work.done)](const dem::Window& part) {

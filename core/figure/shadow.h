@@ -26,7 +26,7 @@ struct Shadow : Figure {
     output::RasterMetadata metadata(const dem::Posts& posts) const override;
     std::size_t calls() const override { return suns.size(); }
     int bytes_a_post() const override { return 8; }
-    /// That of the lowest sun.
+    /// The lowest sun casts the longest shadows.
     double halo_m(const dem::Posts& posts) const override;
     std::optional<light::Beyond> beyond(const dem::Posts& posts,
                                         const dem::Window& window) const override;

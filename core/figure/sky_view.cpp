@@ -9,13 +9,6 @@
 
 namespace relevo::figure {
 
-std::vector<double> azimuths_of(int directions) {
-    std::vector<double> azimuth_rad;
-    for (int i = 0; i < directions; ++i)
-        azimuth_rad.push_back(2 * kPi * i / directions);
-    return azimuth_rad;
-}
-
 output::RasterBand sky_view_band() {
     return {"sky-view factor", "1"};
 }
@@ -28,19 +21,8 @@ output::RasterMetadata SkyView::metadata(const dem::Posts&) const {
     return {{"DIRECTIONS", fmt::format("{}", directions)}};
 }
 
-double SkyView::halo_m(const dem::Posts& posts) const {
-    return light::horizon_reach_m(posts, terrestrial_refraction);
-}
-
-std::optional<light::Beyond> SkyView::beyond(const dem::Posts& posts,
-                                             const dem::Window& window) const {
-    return light::terrain_beyond(posts, window, azimuths_of(directions), terrestrial_refraction,
-                                 highest_m);
-}
-
 PartMaker SkyView::maker(Work work) const {
-    const auto plan = std::make_shared<light::SunPlan>(
-        work.posts, light::LightPath{terrestrial_refraction, {}}, work.window, false, work.around);
+    const auto plan = this->plan(work);
     light::add_sky_view_directions(*plan, directions);
     light::SkyViewOptions options{.directions = directions,
                                   .refraction = terrestrial_refraction,

@@ -127,7 +127,7 @@ void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRaster
             sum = {sum.holes + made.holes, std::move(made.definition)};
         }
     }
-    output::RasterMetadata about = figure::metadata_of(*figure, posts, version, sum);
+    output::RasterMetadata about = figure::metadata_of(*figure, posts, version, sum, all);
     for (auto& item : figure->metadata(posts))
         about.push_back(std::move(item));
     if (const auto beyond = figure->beyond(posts, all))

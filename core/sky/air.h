@@ -15,7 +15,7 @@ inline constexpr double kEarthRadius_m = 6371000;
 /// Height above which the air scatters nothing worth following [m]: 4e-7 of its column is above.
 inline constexpr double kTopOfAir_m = 100000;
 
-/// Parameters of the atmosphere; by default that of an average clear day: docs/accuracy-sky.md.
+/// Parameters of the atmosphere. Their defaults are an average clear day (docs/accuracy-sky.md).
 struct Air {
     /// Aerosol optical depth at 1 um from sea level to space. 0.04 is clean air, 0.2 turbid.
     double angstrom_beta = 0.08;
