@@ -87,9 +87,10 @@ float bump_gully_wave(in vec2 anchored_m, in vec2 across, in float size_m) {
 /// @param pixel_m  the longer side of a pixel on the ground [m]
 vec2 bump_gully_slope(in vec2 anchored_m, in vec2 fall, in float pixel_m) {
     vec2 sum = vec2(0.0);
-    float size_m = bump_gully_posts / frame.normal_texels_per_m;
-    // What posts far apart say is less steep than the ground, by a power of their distance.
-    float steep = min(length(fall) * max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0), 1.0);
+    float size_m = bump_gully_posts / frame.normal_texels_per_m, tangent = length(fall);
+    // What posts far apart say is less steep than the ground, by a power of their distance. Walls would be organ pipes.
+    float steep = min(tangent * max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0), 1.0);
+    steep *= 1.0 - smoothstep(1.0, 2.5, tangent);
     for (int i = 0; i < bump_gully_octaves; ++i) {
         float seen = 1.0 - smoothstep(0.15, 0.5, bump_gully_turns * pixel_m / size_m);
         if (seen == 0.0 || size_m < bump_gully_finest_m) break;

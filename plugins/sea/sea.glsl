@@ -252,7 +252,9 @@ sea_Water sea_water(in Surface s, in float height_m) {
 #if HAS_outside || defined(ORTHOGRAPHIC)
     vec4 water = water_of(s);
 #else
-    vec4 water = water_ashore_of(s, sea_shore_moved(s.post, s.pixel_posts));
+    // Down a cliff bays and headlands would be icicles.
+    float level = smoothstep(0.75, 0.93, dot(s.geometric_normal, s.up));
+    vec4 water = water_ashore_of(s, level * sea_shore_moved(s.post, s.pixel_posts));
 #endif
     float known = water.y * water.z;
     return sea_Water(water.x, depth_m * known,

@@ -226,6 +226,7 @@ TEST(Bump, LevelGroundAndWidePixelsHaveNoGullies) {
     const double steep = variance(gullies(200, 7.3, 1, "vec2(0.6, 0.0)"));
     EXPECT_GT(steep, 0.01);
     EXPECT_EQ(variance(gullies(200, 7.3, 1, "vec2(0.0)")), 0);
+    EXPECT_EQ(variance(gullies(200, 7.3, 1, "vec2(2.6, 0.0)")), 0) << "a wall";
     EXPECT_LT(variance(gullies(200, 7.3, 15, "vec2(0.6, 0.0)")), 0.7 * steep);
     EXPECT_EQ(variance(gullies(200, 7.3, 35, "vec2(0.6, 0.0)")), 0);
 }
