@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+// The preview shows shots of the job that the film is made from. Rejected: camera and sun from
+// formulas of the window, which would differ from the file; and a thread that draws frames ahead,
+// which would queue them.
 namespace relevo::viewer {
 namespace {
 

@@ -15,6 +15,8 @@
 #include "base/error.h"
 #include "base/text.h"
 
+// Rejected: two types of names within scenes, which every copy of a scene would have to keep
+// apart; and a check of each field, which new fields would lack.
 namespace relevo {
 namespace {
 

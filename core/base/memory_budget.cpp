@@ -7,6 +7,9 @@
 
 #include "base/error.h"
 
+// An allocator that counts was rejected, because drivers and GDAL do not use it. Below 512 MiB
+// return_what_is_freed() has glibc return freed memory at once, because arenas of several threads
+// kept 9 to 44 MiB.
 namespace relevo {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "base/units.h"
 
+// Steps of one day meet as many of the known places and tree lines as the five days of kSteps: 162
+// of 176, and 248 m in the mean (data/README.md).
 namespace relevo::climate {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+// libavfilter has such a palette, too, but brings 35 packages.
 namespace relevo::film {
 namespace {
 

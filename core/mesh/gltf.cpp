@@ -14,6 +14,9 @@
 #include "mesh/gltf_buffers.h"
 #include "mesh/mesh.h"
 
+// Libraries for glTF were rejected. tinygltf (Debian 2.7) does not check the bounds of accessors
+// and opens any file that a URI names; assimp brings forty formats. Each defect that this reader
+// refuses has a test.
 namespace relevo::mesh {
 namespace {
 

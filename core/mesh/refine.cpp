@@ -8,6 +8,9 @@
 
 #include "mesh/spans.h"
 
+// A right-triangulated irregular network (P. Lindstrom et al., SIGGRAPH 1996) was rejected. It
+// needs a grid of a power of two plus one, and is refined to single cells along every outline of a
+// void and every edge that does not fit it.
 namespace relevo::mesh {
 namespace {
 

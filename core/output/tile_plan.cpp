@@ -27,6 +27,9 @@
 #include "dem/tile_index.h"
 #include "output/raster_writer.h"
 
+// Rejected: reading a tile with a halo around it and no more, whose edge would count as the edge
+// of the ground; messages between processes; and lists of finished tiles, which are wrong after a
+// crash.
 namespace relevo::output {
 namespace {
 

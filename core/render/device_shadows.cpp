@@ -15,6 +15,11 @@
 #include "render/draw_watch.h"
 #include "shader/core_texts.h"
 
+// The dispatches are not passes of the frame graph. Their number depends on the tiles of the sun,
+// which are known after the sun has moved, and effects have no GLSL in them.
+//
+// light_sweep.comp.glsl repeats light::ShadowStrip and its kernels: change both. Tests:
+// DeviceShadows.*.
 namespace relevo::render {
 namespace {
 

@@ -6,6 +6,9 @@
 
 #include <glm/vec2.hpp>
 
+// A field is a regular grid in metres around the DEM's centre, not on the DEM's posts, because
+// most samples of clouds lie outside the DEM. Virtual textures as for rasters on the ground were
+// rejected: they need a level of detail for each visible pixel, which passes do not have.
 namespace relevo::render {
 namespace {
 

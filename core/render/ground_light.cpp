@@ -29,6 +29,7 @@
 #include "render/device_shadows.h"
 #include "render/shadow_texels.h"
 
+// Paging of these textures was rejected, because a sweep needs the whole DEM anyway.
 namespace relevo::render {
 namespace {
 

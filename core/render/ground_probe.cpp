@@ -8,6 +8,8 @@
 
 #include "render/draw_scope.h"
 
+// Rejected: heights of the posts, because triangles between posts are not bilinear; and the vertex
+// program repeated on the processor, which cannot run a plugin's `displace`.
 namespace relevo::render {
 namespace {
 

@@ -10,6 +10,13 @@
 
 #include "base/units.h"
 
+// A texel holds the first crown on a ray from the sun. A ray through two crowns is thus darkened
+// once, as in the model of gaps (shaders/lib/crown.glsl). The stored depth is that of the middle
+// of the ray's path through the crown: a crown then does not shade its own sunny side, and the
+// ground needs no depth bias. One texture has 16 bits of depth and 8 of transmittance.
+//
+// The ground is not drawn into these maps, and the shadows of the ground do not depend on
+// instances. Audits exclude pixels that show instances or their shadows.
 namespace relevo::render {
 namespace {
 

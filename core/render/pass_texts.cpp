@@ -4,6 +4,11 @@
 
 #include <fmt/format.h>
 
+// The inputs of a plugin's pass follow from its samplers, and each pass writes one resource.
+// Plugins declare neither inputs nor an order, so neither can be wrong. Buffers are read through
+// samplerBuffer instead of storage blocks: every stage has samplers, and readers cannot write. 3-D
+// textures are computed, because core GLSL 4.50 cannot draw into a layer that the vertex stage
+// chooses.
 namespace relevo::render {
 namespace {
 

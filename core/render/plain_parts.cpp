@@ -12,6 +12,7 @@
 
 #include "render/pass_context.h"
 
+// A stencil was rejected: it would take a target of its own, and draws of the ground by kind.
 namespace relevo::render {
 namespace {
 

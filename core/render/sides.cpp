@@ -10,6 +10,10 @@
 #include "dem/runs.h"
 #include "render/pages.h"
 
+// The vertex program places the walls at the edges of the drawn ground, so that no level of detail
+// has a gap. Rejected: a mesh made on the processor, a level of detail for walls alone, and walls
+// made of the ground's skirts. They have gaps or miss voids. Walls are culled from behind, so that
+// the backdrop is visible through a void.
 namespace relevo::render {
 namespace {
 

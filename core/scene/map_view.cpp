@@ -11,6 +11,11 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
+// Rejected: an orthographic camera in the local frame, because the ground of a CRS is neither flat
+// nor evenly scaled there (the corners of a degree at 47 N are off by hundreds of metres); and
+// resampling a perspective picture. Maps of rotated DEMs are north-up, because many programs
+// ignore rotated georeferences. Skirts draw the outermost half cells, so that a map has the edges
+// of its source.
 namespace relevo::scene {
 namespace {
 

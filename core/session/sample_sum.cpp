@@ -6,6 +6,8 @@
 
 #include "session/srgb16.h"
 
+// Rejected: a frame of several times the size, scaled down, because lines, levels of detail and
+// full-screen effects are measured in pixels; and multisampling, because shading is deferred.
 namespace relevo::session {
 namespace {
 
