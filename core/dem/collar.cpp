@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
+
+#include <glm/vec2.hpp>
 
 namespace relevo::dem {
 
@@ -64,6 +67,30 @@ std::optional<Collar> find_collar(const Array2d<float>& height_m) {
     CollarSteps steps(edge.height_m());
     steps.add(height_m, {0, 0, columns, rows});
     return steps.collar();
+}
+
+Array2d<float> without_collar(Array2d<float> height_m, const Collar& collar) {
+    const int columns = height_m.width(), rows = height_m.height();
+    std::vector<glm::ivec2> to_visit;
+    const auto take = [&](int column, int row) {
+        if (column < 0 || row < 0 || column >= columns || row >= rows ||
+            height_m.at(column, row) != collar.height_m)
+            return;
+        height_m.at(column, row) = std::numeric_limits<float>::quiet_NaN();
+        to_visit.push_back({column, row});
+    };
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; column += row % (rows - 1) == 0 ? 1 : columns - 1)
+            take(column, row);
+    while (!to_visit.empty()) {
+        const glm::ivec2 at = to_visit.back();
+        to_visit.pop_back();
+        take(at.x - 1, at.y);
+        take(at.x + 1, at.y);
+        take(at.x, at.y - 1);
+        take(at.x, at.y + 1);
+    }
+    return height_m;
 }
 
 }  // namespace relevo::dem

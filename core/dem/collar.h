@@ -21,6 +21,10 @@ struct Collar {
 /// to the next post are higher than 20 m. An island in its sea has a beach.
 std::optional<Collar> find_collar(const Array2d<float>& height_m);
 
+/// The same heights with NaN at the collar: at posts of its height that hang together, by their
+/// sides, with the edge.
+Array2d<float> without_collar(Array2d<float> height_m, const Collar& collar);
+
 /// The same in parts, for a DEM that memory does not hold. First its edge: the first and the last
 /// row, the first and the last column.
 class CollarEdge {

@@ -58,7 +58,7 @@ constexpr Insets kLandMargins{0.1, 0.1, 0.1, 0.25};
 /// The margins at the sides are narrower if else too few posts are in the picture.
 constexpr double kMarginStep = 0.05;
 /// The lower margin grows until the near edge is below the picture, to this at most.
-constexpr double kLowestMargin = -0.45, kBareBelow = 0.002;
+constexpr double kLowestMargin = -0.55, kBareBelow = 0.001;
 
 /// How far a camera looks below the horizon that is 13 % below the upper edge of its picture.
 double below_horizon_deg(double fov_y_rad) {
@@ -87,7 +87,7 @@ struct Fit {
     /// Fraction of a part of the picture that lies below all points in the same of some columns.
     double bare_below(const Camera& camera, std::span<const glm::dvec3> points,
                       const Room& room) const {
-        constexpr int kColumns = 10;
+        constexpr int kColumns = 24;
         std::array<double, kColumns> lowest;
         lowest.fill(room.top);
         const glm::dvec3 right = cross(camera.forward, camera.up);

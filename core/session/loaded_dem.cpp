@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "dem/collar.h"
 #include "dem/level_cache.h"
 #include "dem/load.h"
 #include "render/ground.h"
@@ -14,20 +17,39 @@ namespace {
 
 using Voids = dem::Pyramid::Voids;
 
+/// The ground within a collar; nullopt where there is none, or where it is to stay.
+std::optional<dem::Heightfield> within_collar(const dem::Heightfield& field,
+                                              const dem::LoadOptions& options) {
+    if (field.reduction > 1 || options.no_nodata) return std::nullopt;
+    const std::optional<dem::Collar> collar = dem::find_collar(field.height_m);
+    if (!collar) return std::nullopt;
+    dem::Heightfield ground{dem::without_collar(field.height_m, *collar), field.grid, field.about};
+    ground.about.statistics = dem::statistics(ground.height_m);
+    if (ground.about.statistics.valid == 0) return std::nullopt;
+    log::info(fmt::format("{}: pictures leave this edge out; --nodata none draws it",
+                          printable(field.about.path)));
+    return ground;
+}
+
 /// @param known  water that was found before; null: it is found
-LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes, dem::Water* known) {
+LoadedDem::Drawn drawn_of(const dem::Heightfield& field, const scene::Scene& scene,
+                          dem::Water* known) {
     LoadedDem::Drawn drawn;
-    if (field.about.statistics.holes > 0) {
+    std::optional<dem::Heightfield> within = within_collar(field, scene.dem);
+    drawn.has_no_collar = within.has_value();
+    const dem::Heightfield& given = within ? *within : field;
+    if (given.about.statistics.holes > 0) {
         dem::FilledHoles filled =
-            dem::fill_small_holes(field.height_m, holes, dem::ThinGround::Dropped);
-        drawn.holes_text = filled.text(holes);
+            dem::fill_small_holes(given.height_m, scene.holes, dem::ThinGround::Dropped);
+        drawn.holes_text = filled.text(scene.holes);
         drawn.has_covers = filled.covered_posts > 0;
         if (!filled.height_m.empty()) {
-            drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
-                                                  field.about, field.reduction});
+            drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), given.grid,
+                                                  given.about, given.reduction});
             drawn.is_filled = std::move(filled.filled);
         }
     }
+    if (within && !drawn.filled) drawn.filled = std::move(within);
     drawn.water =
         known ? std::move(*known)
               : dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
@@ -55,7 +77,7 @@ std::shared_ptr<LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
                                       dem::Levels* known = nullptr) {
     auto dem = std::make_shared<LoadedDem>(
         LoadedDem{.source = std::move(source), .field = std::move(field)});
-    dem->drawn = drawn_of(dem->field, scene.holes, known ? &known->water : nullptr);
+    dem->drawn = drawn_of(dem->field, scene, known ? &known->water : nullptr);
     dem->pyramid.emplace(
         dem::Pyramid::of(dem->to_draw(), dem->source.get(), scene.dem.memory,
                          scene.holes == dem::Holes::Cut ? Voids::Kept : Voids::Filled,
@@ -109,7 +131,7 @@ std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source>
 }
 
 render::Ground ground_of(const LoadedDem& dem) {
-    render::Ground ground = render::make_ground(dem.field, dem.source->grid());
+    render::Ground ground = render::make_ground(dem.to_frame(), dem.source->grid());
     ground.sea_floor_share = dem.drawn.water.sea_floor_share();
     ground.sea_rim_share = dem.drawn.water.sea_rim_share();
     return ground;

@@ -32,8 +32,8 @@ void SceneState::choose_exaggeration(const LoadedDem& dem) {
     if (!std::exchange(scene.chooses_exaggeration, false)) return;
     constexpr int kLeast_px = 320;  // that words have room in
     const render::Ground ground = ground_of(dem);
-    const double chosen =
-        scene::chosen_exaggeration(dem.field.height_m, ground.north_east_m - ground.south_west_m);
+    const double chosen = scene::chosen_exaggeration(dem.to_frame().height_m,
+                                                     ground.north_east_m - ground.south_west_m);
     // Steeper ground needs finer tiles.
     if (chosen != 1 && scene.dem.memory.mib() < MemoryBudget::kDefault_mib) {
         log::info(
@@ -52,7 +52,7 @@ void SceneState::take_shape(bool other) {
     inputs.ev100 = scene.ev100;
     inputs.seconds = scene.seconds;
     if (other) {
-        to_show_ = render::ground_to_show(dem_->field, *ground_, scene.exaggeration);
+        to_show_ = render::ground_to_show(dem_->to_frame(), *ground_, scene.exaggeration);
         moved_.reset();
     }
     day_.emplace(ground_->frame.origin(), ground_->block_m <= 0);

@@ -39,21 +39,26 @@ struct LoadedDem {
         std::optional<dem::Heightfield> filled;  ///< nullopt: same as `field`
         /// As dem::FilledHoles::filled; empty without filled voids.
         Array2d<std::uint8_t> is_filled;
-        bool has_covers = false;  ///< voids too wide to fill are covered
-        dem::Water water;         ///< found in the drawn heights
-        std::string holes_text;   ///< summary of voids; empty without voids
+        bool has_covers = false;     ///< voids too wide to fill are covered
+        dem::Water water;            ///< found in the drawn heights
+        std::string holes_text;      ///< summary of voids; empty without voids
+        bool has_no_collar = false;  ///< a frame of fill around `field` is left out of `filled`
     };
     Drawn drawn{};
     std::optional<dem::Pyramid> pyramid{};  ///< of to_draw(); nullopt: the session builds it
 
     const dem::Heightfield& to_draw() const { return drawn.filled ? *drawn.filled : field; }
+    /// What views are chosen by.
+    const dem::Heightfield& to_frame() const { return drawn.has_no_collar ? to_draw() : field; }
     /// Words of effect::ground_words() that apply to the DEM.
     std::vector<std::string> ground_words(dem::Holes holes) const;
     /// Height [m] from all posts, even if only means of them are in memory; NaN without ground.
     double height_m(const geo::Geodetic& at) const;
 };
 
-/// Reads a scene's DEM, fills small voids and finds water. @throws Error as dem::load()
+/// Reads a scene's DEM, fills small voids, takes a collar away (dem/collar.h) and finds water. A
+/// collar stays with LoadOptions::no_nodata, and in a DEM of which only means are read. @throws
+/// Error as dem::load()
 std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
                                           const scene::Scene& scene);
 

@@ -297,6 +297,7 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
                                           : air_radiance_of_sky(direction);
         vec4 beyond = with_disc && sky_earth ? beyond_seen(direction) : vec4(0.0);
         radiance = mix(radiance, beyond.rgb, beyond.a);
+        if (with_disc) radiance = sky_behind_clouds(radiance);
     } else {
         radiance = sky_of_paper(direction, with_disc);
 #if HAS_night

@@ -1,5 +1,5 @@
 //! provides  beyond_seen: the level ground that is made up around a DEM seen from the air; beyond_distance_m,
-//!           beyond_horizon_m: where it is
+//!           beyond_distance_above, beyond_horizon_m: where it is, and levels above it
 //! reads     with BEYOND, in programs of the sky, beyond_ground of beyond.frag.glsl
 //! frame     a sphere at the height frame.beyond_m, around the Earth's centre below the eye
 
@@ -15,13 +15,18 @@ float beyond_horizon_m() {
     return sqrt(above_m * (2.0 * beyond_radius_m + above_m));
 }
 
-/// To that ground [m]; below 0 where a ray passes over it, or where nothing is made up.
-float beyond_distance_m(in vec3 direction) {
-    float above_m = frame.eye_m.w - frame.beyond_m * frame.height_range.z;
+/// To a level above that ground [m]; below 0 where a ray passes over it, or where nothing is made up.
+float beyond_distance_above(in vec3 direction, in float level_m) {
+    float above_m = frame.eye_m.w - frame.beyond_m * frame.height_range.z - level_m;
     float down = (beyond_radius_m + above_m) * dot(direction, frame.eye_up.xyz);
     float over = above_m * (2.0 * beyond_radius_m + above_m), inside = down * down - over;
     bool meets = frame.beyond > 0.0 && above_m > 0.0 && down < 0.0 && inside > 0.0;
     return meets ? over / (sqrt(max(inside, 0.0)) - down) : -1.0;
+}
+
+/// To that ground [m].
+float beyond_distance_m(in vec3 direction) {
+    return beyond_distance_above(direction, 0.0);
 }
 
 #ifdef BEYOND

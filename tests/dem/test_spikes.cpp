@@ -55,6 +55,15 @@ TEST(FindFrame, IsOneHeightAroundGroundThatIsNotItsOwn) {
     ASSERT_TRUE(find_collar(height_m));
     EXPECT_EQ(find_collar(height_m)->height_m, 0);
     EXPECT_NEAR(find_collar(height_m)->step_m, 55, 2);
+    // What is of its height inside is ground.
+    height_m.at(15, 15) = height_m.at(3, 3) = 0;
+    const Array2d<float> ground = without_collar(height_m, *find_collar(height_m));
+    for (int r = 0; r < 30; ++r)
+        for (int c = 0; c < 30; ++c) {
+            const bool outside = std::min({c, r, 29 - c, 29 - r}) < 3 || (c == 3 && r == 3);
+            ASSERT_EQ(std::isnan(ground.at(c, r)), outside) << c << ' ' << r;
+        }
+    height_m.at(15, 15) = height_m.at(3, 3) = 43;
     // An island rises from its sea by less than 20 m a post.
     for (int r = 3; r < 27; ++r)
         for (int c = 3; c < 27; ++c)

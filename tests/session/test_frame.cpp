@@ -371,6 +371,31 @@ TEST(Frame, IsolatedPostsAreFiguresButNotDrawn) {
               0);
 }
 
+TEST(Frame, FillAroundTheGroundIsNotDrawnUnlessItIsAskedFor) {
+    test::Raster raster;
+    raster.columns = raster.rows = 60;
+    raster.nodata = -9999;  // so that 0 is not taken for it
+    raster.value = [](int column, int row, int) {
+        const bool is_fill = std::min({column, row, 59 - column, 59 - row}) < 5;
+        return is_fill ? 0.0 : 400 + 100 * std::sin(0.2 * column);
+    };
+    scene::Scene scene;
+    scene.dems = {test::write_raster(test::scratch_dir("frame_fill") / "turned.tif", raster)};
+    const auto load = [&] {
+        return load_dem(
+            std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem)), scene);
+    };
+    const auto without = load();
+    EXPECT_EQ(without->field.height_m.at(0, 0), 0);  // figures have what the file has
+    EXPECT_TRUE(std::isnan(without->to_draw().height_m.at(4, 30)));
+    EXPECT_NEAR(without->to_draw().height_m.at(5, 30), 400 + 100 * std::sin(1), 1e-3);
+    EXPECT_GT(ground_of(*without).lowest_m, 299);
+    scene.dem.no_nodata = true;
+    const auto with = load();
+    EXPECT_EQ(with->to_draw().height_m.at(4, 30), 0);
+    EXPECT_EQ(ground_of(*with).lowest_m, 0);
+}
+
 TEST(Frame, TheSunOfTheDefaultHourRakesTheGround) {
     SKIP_WITHOUT_TEST_DATA(data);
     for (const char* name : {"hawaii_rotated20.tif", "SainteHelens.dem", "dem_RGI50-05.08389.tif",
