@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
 #include <optional>
 
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
+#include "dem/csv.h"
 #include "dem/geojson.h"
 #include "dem/gpx.h"
 #include "dem/vector_point.h"
@@ -93,68 +93,6 @@ char beginning_of(const FileErrors& errors) {
     return text.front();
 }
 
-/// The fields of a line; those in quotes without them.
-std::vector<std::string> fields_of(std::string_view line, char separator) {
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        const char c = line[i];
-        if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
-            fields.back() += line[++i];
-        else if (c == '"')
-            quoted = !quoted;
-        else if (c == separator && !quoted)
-            fields.emplace_back();
-        else
-            fields.back() += c;
-    }
-    for (std::string& field : fields)
-        field = std::string(trimmed(field));
-    return fields;
-}
-
-/// The names of a CSV's columns, in its first line.
-class Header {
-  public:
-    Header(std::string_view line, const FileErrors& errors) : errors_(errors) {
-        for (const char candidate : {',', ';', '\t'})
-            if (std::ranges::count(line, candidate) > std::ranges::count(line, separator_))
-                separator_ = candidate;
-        names_ = fields_of(line, separator_);
-    }
-
-    std::optional<std::size_t> find(std::initializer_list<std::string_view> words) const {
-        for (const std::string_view word : words)
-            for (std::size_t i = 0; i < names_.size(); ++i)
-                if (equal_ignoring_case(names_[i], word)) return i;
-        return std::nullopt;
-    }
-    /// @throws Error (BadInput) for more fields than columns: a decimal comma parts a number
-    std::vector<std::string> fields(std::string_view line, std::size_t number) const {
-        std::vector<std::string> fields = fields_of(line, separator_);
-        while (fields.size() > names_.size() && fields.back().empty())
-            fields.pop_back();
-        if (fields.size() > names_.size())
-            errors_.refuse(
-                number,
-                fmt::format("{} fields, but the first line names {} columns; write decimal points, "
-                            "and names with a '{}' in quotes",
-                            fields.size(), names_.size(), separator_));
-        return fields;
-    }
-
-  private:
-    FileErrors errors_;
-    char separator_ = ',';
-    std::vector<std::string> names_;
-};
-
-/// One of a line's fields; empty where the line or the file has none.
-std::string field_of(const std::vector<std::string>& fields,
-                     const std::optional<std::size_t>& column) {
-    return column && *column < fields.size() ? fields[*column] : std::string();
-}
-
 /// The columns of a CSV of places, by their names.
 class Columns {
   public:
@@ -166,6 +104,8 @@ class Columns {
         height_ = header_.find({"height", "height_m"});
         time_ = header_.find({"time"});
         rank_ = header_.find({"rank"});
+        tilt_ = header_.find({"tilt", "tilt_deg"});
+        azimuth_ = header_.find({"azimuth", "azimuth_deg"});
         if (lat_ && lon_) return;
         lon_ = header_.find({"x", "easting"});
         lat_ = header_.find({"y", "northing"});
@@ -181,11 +121,12 @@ class Columns {
     NamedPlace read(std::string_view line, std::size_t number) const {
         const std::vector<std::string> fields = header_.fields(line, number);
         const auto field = [&](const std::optional<std::size_t>& column) {
-            return field_of(fields, column);
+            return csv_field(fields, column);
         };
         const std::string who = fmt::format("{}: {}: line {}", errors_.who, errors_.path, number);
         const std::string height = field(height_);
-        NamedPlace place{field(name_), {}, field(time_), number, field(rank_)};
+        NamedPlace place{field(name_), {},           field(time_),   number,
+                         field(rank_), field(tilt_), field(azimuth_)};
         for (const auto& column : {lat_, lon_})
             if (field(column).find(',') != std::string::npos)
                 errors_.refuse(number,
@@ -219,8 +160,8 @@ class Columns {
     }
 
     FileErrors errors_;
-    Header header_;
-    std::optional<std::size_t> lat_, lon_, name_, height_, time_, rank_;
+    CsvHeader header_;
+    std::optional<std::size_t> lat_, lon_, name_, height_, time_, rank_, tilt_, azimuth_;
     std::optional<geo::Crs> crs_;
 };
 
@@ -305,18 +246,10 @@ void refuse_crs(const FileErrors& errors, const std::string& crs) {
 
 }  // namespace
 
-void FileErrors::refuse(std::string_view what) const {
-    bad_input(fmt::format("{}: {}: {}", who, path, what));
-}
-
-void FileErrors::refuse(std::size_t line, std::string_view what) const {
-    bad_input(fmt::format("{}: {}: line {}: {}", who, path, line, what));
-}
-
 std::vector<NamedTime> read_times(const std::string& path, std::string_view who, std::size_t most) {
     const FileErrors errors{path, who};
     Lines lines(errors);
-    std::optional<Header> header;
+    std::optional<CsvHeader> header;
     std::optional<std::size_t> time, name;
     std::vector<NamedTime> times;
     while (const std::optional<std::string_view> line = lines.next()) {
@@ -330,7 +263,7 @@ std::vector<NamedTime> read_times(const std::string& path, std::string_view who,
             continue;
         }
         const std::vector<std::string> fields = header->fields(*line, lines.number());
-        times.push_back({field_of(fields, name), field_of(fields, time), lines.number()});
+        times.push_back({csv_field(fields, name), csv_field(fields, time), lines.number()});
         if (times.back().time.empty()) errors.refuse(lines.number(), "no time in it");
         if (times.size() > most)
             errors.refuse(fmt::format("more than {} times; split the file", most));

@@ -12,10 +12,10 @@
 /// CSV: the first line names the columns, whatever their order and their capitals: `lat` and `lon`
 /// (also `latitude`, `longitude`, `lng`, `long`, `lat_deg`, `lon_deg`), or `x` and `y` (also
 /// `easting`, `northing`) in a CRS that is given; `name` (also `id`, `title`), `height` as the H of
-/// LAT,LON,H, `time`, `rank`. Columns are parted by commas, semicolons or tabs; lines that begin
-/// with # are skipped. Heights of GPX and GeoJSON are not read, as those of the ground are the
-/// DEM's. A number is one with a decimal point: what cannot be read as written is an error, never
-/// skipped.
+/// LAT,LON,H, `time`, `rank`, `tilt`, `azimuth`. Columns are parted by commas, semicolons or tabs;
+/// lines that begin with # are skipped. Heights of GPX and GeoJSON are not read, as those of the
+/// ground are the DEM's. A number is one with a decimal point: what cannot be read as written is an
+/// error, never skipped.
 namespace relevo::dem {
 
 /// More places than these are refused: a GPS of one fix a second has them in eleven days.
@@ -27,6 +27,7 @@ struct NamedPlace {
     std::string time;      ///< as sun::parse_time() reads it; empty where the file has none
     std::size_t line = 0;  ///< of the file, from 1
     std::string rank{};    ///< as written, from a CSV's column
+    std::string tilt{}, azimuth{};  ///< likewise, of a plane there
 };
 
 struct NamedLine {

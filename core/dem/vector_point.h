@@ -2,8 +2,9 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "dem/csv.h"
 
 // What the readers of GPX and GeoJSON share. Inside of the layer only.
 
@@ -21,17 +22,6 @@ struct VectorPoint {
 struct VectorLine {
     std::string name;
     std::vector<VectorPoint> points;
-};
-
-/// What errors of a file begin with.
-struct FileErrors {
-    const std::string& path;
-    std::string_view who;
-
-    /// @throws Error (BadInput) `who: path: what`
-    [[noreturn]] void refuse(std::string_view what) const;
-    /// @throws Error (BadInput) `who: path: line n: what`
-    [[noreturn]] void refuse(std::size_t line, std::string_view what) const;
 };
 
 }  // namespace relevo::dem
