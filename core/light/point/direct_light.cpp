@@ -60,6 +60,11 @@ class LightSearch {
         return found;
     }
 
+    bool lit_at(sun::Instant utc) {
+        begin_ = utc;
+        return clearance(moment(0)) > 0;
+    }
+
     std::vector<LitInterval> lit(const sun::TimeSpan& span) {
         begin_ = span.begin;
         const double length_s = span.length_s();
@@ -97,10 +102,15 @@ class LightSearch {
                std::max(light_.hole_rad_[before], light_.hole_rad_[(before + 1) % n]);
     }
 
+    double horizon_rad(double azimuth_rad) const {
+        return light_.horizon_ ? light_.horizon_->elevation_rad(azimuth_rad)
+                               : light_.skyline_.elevation_rad(azimuth_rad);
+    }
+
     /// How far what must stand over the terrain does so [rad].
     double clearance(const Moment& m) const {
         if (limb_ == 0 || m.true_rad > kZenith_rad)
-            return m.apparent_rad - light_.horizon_.elevation_rad(m.azimuth_rad);
+            return m.apparent_rad - horizon_rad(m.azimuth_rad);
         // Along the limb: its upper half must be over the terrain anywhere, its lower half
         // everywhere.
         const double step_rad = light_.skyline_.step_rad() / 2;
@@ -232,7 +242,7 @@ DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& opti
 
 DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& options,
                          const std::vector<HorizonPoint>& profile)
-    : horizon_(horizon),
+    : horizon_(&horizon),
       options_(options),
       skyline_(elevations_of(profile)),
       observer_(horizon.place()),
@@ -243,13 +253,26 @@ DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& opti
             holes_.push_back(point.hole);
             hole_rad_.push_back(point.hole ? point.hole_rad : -kPi / 2);
         }
-    const char* body = name_of(options.body);
+    define("the terrain horizon");
+}
+
+DirectLight::DirectLight(const geo::Geodetic& place, Skyline skyline, std::string_view over,
+                         const LightOptions& options)
+    : options_(options),
+      skyline_(std::move(skyline)),
+      observer_(place),
+      refraction_(options.refraction ? *options.refraction : sun::Refraction::standard(place)) {
+    define(over);
+}
+
+void DirectLight::define(std::string_view over) {
+    const char* body = name_of(options_.body);
     const std::string part =
-        options.limb == sun::Limb::Upper   ? fmt::format("any part of the {}'s disc", body)
-        : options.limb == sun::Limb::Lower ? fmt::format("all of the {}'s disc", body)
-                                           : fmt::format("centre of the {}", body);
-    definition_ = fmt::format("direct light: {} over the terrain horizon, {}", part,
-                              refraction_.description());
+        options_.limb == sun::Limb::Upper   ? fmt::format("any part of the {}'s disc", body)
+        : options_.limb == sun::Limb::Lower ? fmt::format("all of the {}'s disc", body)
+                                            : fmt::format("centre of the {}", body);
+    definition_ =
+        fmt::format("direct light: {} over {}, {}", part, over, refraction_.description());
 }
 
 LightDay DirectLight::day(sun::Date date, const sun::Zone& zone,
@@ -270,12 +293,16 @@ std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
     return lit;
 }
 
+bool DirectLight::lit_at(sun::Instant utc, const sun::PositionTable& table) const {
+    return LightSearch(*this, table).lit_at(utc);
+}
+
 std::vector<LightDay> DirectLight::days(sun::Date first, sun::Date last, const sun::Zone& zone,
                                         const sun::EarthRotation& rotation) const {
     std::vector<sun::Day> flat =
         options_.body == sun::Body::Sun
-            ? sun::day_events(first, last, zone, horizon_.place(), options_.flat, rotation)
-            : flat_moon_days(first, last, zone, horizon_.place(), options_.flat.rule, rotation);
+            ? sun::day_events(first, last, zone, observer_.place(), options_.flat, rotation)
+            : flat_moon_days(first, last, zone, observer_.place(), options_.flat.rule, rotation);
     std::vector<LightDay> days;
     if (flat.empty()) return days;
     const sun::PositionTable table(flat.front().span.begin, flat.back().span.end, rotation,

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "light/point/horizon.h"
@@ -70,6 +71,12 @@ class DirectLight {
   public:
     /// @param horizon  outlives this
     explicit DirectLight(const TerrainHorizon& horizon, const LightOptions& options = {});
+    /// Over a horizon that is not a DEM's: a file's, or a level one. It is linear between the
+    /// directions of the skyline.
+    /// @param place  of the observer
+    /// @param over   what definition() calls the horizon: "a level horizon"
+    DirectLight(const geo::Geodetic& place, Skyline skyline, std::string_view over,
+                const LightOptions& options = {});
 
     /// @throws Error (BadInput) as sun::day_events
     LightDay day(sun::Date date, const sun::Zone& zone,
@@ -82,8 +89,14 @@ class DirectLight {
 
     /// The light within any span of time, such as from midnight to midnight by the sun.
     std::vector<LitInterval> lit_within(const sun::TimeSpan& span) const;
+    /// @param table  of the body, for the whole span
+    std::vector<LitInterval> lit_within(const sun::TimeSpan& span,
+                                        const sun::PositionTable& table) const;
+    /// Whether it shines at one time. @param table  of the body, for that time
+    bool lit_at(sun::Instant utc, const sun::PositionTable& table) const;
 
-    const TerrainHorizon& horizon() const { return horizon_; }
+    /// Only of a DEM's.
+    const TerrainHorizon& horizon() const { return *horizon_; }
     const Skyline& skyline() const { return skyline_; }
     /// Directions of the skyline, where a void of the DEM may hide higher ground; empty: none.
     const std::vector<bool>& holes() const { return holes_; }
@@ -97,12 +110,12 @@ class DirectLight {
 
   private:
     friend class LightSearch;
-    std::vector<LitInterval> lit_within(const sun::TimeSpan& span,
-                                        const sun::PositionTable& table) const;
     DirectLight(const TerrainHorizon& horizon, const LightOptions& options,
                 const std::vector<HorizonPoint>& profile);
 
-    const TerrainHorizon& horizon_;
+    void define(std::string_view over);
+
+    const TerrainHorizon* horizon_ = nullptr;  // none: the skyline is the horizon
     LightOptions options_;
     Skyline skyline_;
     std::vector<double> hole_rad_;  // HorizonPoint's; empty: no hole matters
