@@ -1,9 +1,11 @@
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "base/text.h"
 #include "base/units.h"
 #include "light/fields.h"
+#include "light/plane/horizon_file.h"
 #include "output/horizon_files.h"
 
 namespace relevo::output {
@@ -99,6 +101,22 @@ TEST(HorizonFiles, AWallInTheEastComesOutInTheEast) {
             const Heights pvsyst = lat_deg > 0 ? read_pvsyst(pvsyst_text(profile, place), 180, 1)
                                                : read_pvsyst(pvsyst_text(profile, place), 0, -1);
             expect_profile(pvsyst, profile, false, 0.006);
+        }
+    }
+}
+
+TEST(HorizonFiles, AreReadBack) {
+    for (const double lat_deg : {47.0, -33.0}) {
+        const std::vector<light::HorizonPoint> profile = walled_in_the_east(lat_deg, 360);
+        const geo::Geodetic place = geo::geodetic_deg(lat_deg, 10);
+        for (const std::string& text :
+             {pvlib_text(profile), pvgis_text(profile), pvsyst_text(profile, place)}) {
+            const std::string path = (test::scratch_dir() / "horizon.txt").string();
+            std::ofstream(path) << text;
+            Heights heights;
+            for (const auto& direction : light::read_horizon(path, "--horizon", place).directions)
+                heights[direction.azimuth_deg] = direction.elevation_deg;
+            expect_profile(heights, profile, text.starts_with("horizon_azimuth"), 0.006);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <glm/mat2x2.hpp>
 
@@ -65,6 +66,16 @@ glm::dmat2 from_posts(const dem::Grid& grid, double column, double row) {
 }
 
 }  // namespace
+
+glm::dvec2 rise_at(const dem::Posts& posts, int column, int row) {
+    const dem::Grid& grid = posts.grid();
+    const int left = std::max(0, column - 1), top = std::max(0, row - 1);
+    const dem::Window around{left, top, std::min(grid.columns(), column + 2) - left,
+                             std::min(grid.rows(), row + 2) - top};
+    std::vector<float> buffer;
+    return from_posts(grid, column, row) *
+           Around(grid, posts.view(around, buffer), column, row).rise();
+}
 
 GroundSlope::GroundSlope(const SunTerrain& terrain, const WindowHeights& heights,
                          const Window& window)

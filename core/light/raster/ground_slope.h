@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "base/array2d.h"
@@ -23,6 +24,10 @@ struct GroundSlope {
         return {x.at(column, row), y.at(column, row), z.at(column, row)};
     }
 };
+
+/// How the ground rises [m/m] to the east and to the north at a post, whose north it is; by the
+/// same posts around it as GroundSlope.
+glm::dvec2 rise_at(const dem::Posts& posts, int column, int row);
 
 /// The cosine of an inclined ground's angle.
 inline float cosine_of(const glm::vec3& gradient) {
