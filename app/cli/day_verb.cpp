@@ -29,8 +29,9 @@ void run_days(const DayArguments& arguments, const DayFigure& figure) {
         arguments.days.parse({}, false);  // what is wrong with them is said before any work
         const auto points = arguments.points.read(files, arguments.output);
         const dem::Posts* const ground = load();
-        const auto forms = [&](const geo::PlaceText& at) {
-            return figure.forms(arguments.days.parse(at.place, false), at, ground).point;
+        const auto forms = [&](const dem::NamedPlace& point) {
+            return figure.forms(arguments.days.parse(point.at.place, false), point.at, ground)
+                .point;
         };
         return deliver_points(arguments.points, points,
                               {figure.columns(ground != nullptr), figure.remarks, forms},

@@ -15,6 +15,7 @@ void add_sun(Verb app) {
     add_sun_when(verb);
     add_sun_shadow(verb);
     add_sun_hours(verb);
+    add_sun_plane(verb);
     add_sun_sky_view(verb);
     add_sun_horizons(verb);
     add_sun_along(verb);

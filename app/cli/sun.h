@@ -19,6 +19,7 @@ void add_sun_when(Verb sun_verb);
 void add_sun_shadow(Verb sun_verb);
 void add_sun_along(Verb sun_verb);
 void add_sun_hours(Verb sun_verb);
+void add_sun_plane(Verb sun_verb);
 void add_sun_sky_view(Verb sun_verb);
 void add_sun_horizons(Verb sun_verb);
 

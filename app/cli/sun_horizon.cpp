@@ -206,7 +206,8 @@ void run_points(const HorizonArguments& arguments, FilesInUse& files, OutputFile
         std::vector<light::HorizonPoint> profile;
         light::Doubt doubt;
     };
-    const auto forms = [&](const geo::PlaceText& at) {
+    const auto forms = [&](const dem::NamedPlace& point) {
+        const geo::PlaceText& at = point.at;
         const auto result = std::make_shared<HorizonResult>();
         result->horizon = std::make_unique<light::TerrainHorizon>(
             posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "dem/files_of.h"
+#include "geo/crs.h"
 #include "geo/geodetic.h"
 #include "image/image.h"
 #include "sun/event_time.h"
@@ -43,8 +44,27 @@ void PlaceArguments::add_to(Verb verb) {
         .check(in_range(0.0, 10000.0));
 }
 
+void PlaceArguments::add_crs_to(Verb verb) {
+    verb.add_option("--at-crs", crs, "CRS of --at, which is then X,Y[,H]: EPSG:n");
+}
+
 geo::PlaceText PlaceArguments::parse() const {
-    return geo::parse_place(at, "--at");
+    if (crs.empty()) return geo::parse_place(at, "--at");
+    const std::vector<std::string> parts = split(at, ',');
+    const auto number = [&](std::size_t k) {
+        return k < parts.size() ? parse_number(trimmed(parts[k])) : std::nullopt;
+    };
+    const std::optional<double> x = number(0), y = number(1);
+    if (!x || !y)
+        bad_usage(fmt::format("--at: {}: expected X,Y in {} but got other text", at, crs));
+    geo::PlaceText place =
+        geo::parse_place(parts.size() > 2 ? "0,0," + parts[2] : std::string("0,0"), "--at");
+    const geo::Geodetic found = geo::Crs::parse(crs, "--at-crs").to_geodetic(*x, *y);
+    if (!std::isfinite(found.lat_rad) || !std::isfinite(found.lon_rad))
+        bad_input(fmt::format("--at: {}: no place on Earth in {}", at, crs));
+    place.place.lat_rad = found.lat_rad;
+    place.place.lon_rad = found.lon_rad;
+    return place;
 }
 
 void DaysArguments::add_to(Verb verb) {

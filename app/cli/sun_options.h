@@ -22,13 +22,15 @@
 /// What the verbs under `relevo sun` and `relevo moon` share.
 namespace relevo::cli {
 
-/// --at, --name and --eye-height.
+/// --at, --name and --eye-height; --at-crs.
 struct PlaceArguments {
-    std::string at, name;
+    std::string at, name, crs;
     std::optional<double> eye_height_m;
 
     void add_to(Verb verb);
-    /// @throws Error (Usage)
+    /// --at-crs, for an --at in its coordinates.
+    void add_crs_to(Verb verb);
+    /// @throws Error (Usage), (BadInput) for a CRS that is not known, a place outside of it
     geo::PlaceText parse() const;
 };
 

@@ -89,7 +89,7 @@ Record record_of(const PointsJob& job, const dem::NamedPlace& point, const std::
                       {"lat_deg", angle_deg(point.at.place.lat_rad)},
                       {"lon_deg", angle_deg(point.at.place.lon_rad)}};
     try {
-        const PointForms forms = job.forms(point.at);
+        const PointForms forms = job.forms(point);
         record.open = !forms.doubt.open.empty();
         record.holes = !forms.doubt.holes.empty();
         if (writer.csv())

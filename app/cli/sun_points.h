@@ -43,7 +43,7 @@ struct PointsJob {
     std::string columns;               ///< of its CSV
     std::vector<std::string> remarks;  ///< on top of it
     /// Called on several threads. An Error (BadInput) is that point's own.
-    std::function<PointForms(const geo::PlaceText&)> forms;
+    std::function<PointForms(const dem::NamedPlace&)> forms;
 };
 
 /// One record for each point, in the order of the file: an array of JSON, or CSV whose rows begin

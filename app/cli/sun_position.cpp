@@ -182,7 +182,8 @@ void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFil
                                (sun::is_event_time(spec.at) || sun::is_wall_time(spec.at));
     const PointsJob job{.columns = position_columns(arguments.body),
                         .remarks = {definition_of(arguments.body)},
-                        .forms = [&](const geo::PlaceText& at) {
+                        .forms = [&](const dem::NamedPlace& point) {
+                            const geo::PlaceText& at = point.at;
                             check_height(at);
                             const auto result = std::make_shared<PositionResult>(
                                 result_of(arguments, at, session::parse_quietly(spec, {}, at)));

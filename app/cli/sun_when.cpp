@@ -156,7 +156,8 @@ void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* f
         light::Alignments found;
         DaysArguments::Days asked;
     };
-    const auto forms = [&](const geo::PlaceText& at) {
+    const auto forms = [&](const dem::NamedPlace& point) {
+        const geo::PlaceText& at = point.at;
         const auto result = std::make_shared<WhenResult>();
         result->asked = arguments.days.parse(at.place, false);
         result->horizon = std::make_unique<light::TerrainHorizon>(

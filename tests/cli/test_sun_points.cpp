@@ -38,6 +38,7 @@ std::vector<std::string> with(std::vector<std::string> arguments,
 std::vector<std::vector<std::string>> verbs() {
     return {{"sun", "position", "--time", "2026-02-10T12:00"},
             {"sun", "day", "--date", "2026-02-10"},
+            {"sun", "plane", "--date", "2026-02-10", "--by", "day"},
             {"sun", "day", bundled_dem(), "--from", "2026-02-10", "--to", "2026-02-11"},
             {"sun", "horizon", bundled_dem(), "--step", "10"},
             {"sun", "when", bundled_dem(), "--over", "36.38,-84.27", "--tolerance", "2", "--from",
