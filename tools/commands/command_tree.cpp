@@ -30,10 +30,11 @@ struct Row {
 const std::vector<Row>& rows() {
     static const std::vector<Row> all = {
         {Kind::File,
-         {"DEM",        "-o",       "--scene", "--save-scene", "--from",      "--timings",
-          "--overlay",  "--points", "--times", "--along",      "--save-job",  "--contact-sheet",
-          "JOB",        "A",        "B",       "GOLDEN",       "OUTPUT",      "--slurm",
-          "--parallel", "--stac",   "--tiles", "--weather",    "--land-cover"}},
+         {"DEM",         "-o",       "--scene", "--save-scene", "--from",       "--timings",
+          "--overlay",   "--points", "--times", "--along",      "--save-job",   "--contact-sheet",
+          "JOB",         "A",        "B",       "GOLDEN",       "OUTPUT",       "--slurm",
+          "--parallel",  "--stac",   "--tiles", "--weather",    "--land-cover", "--horizon",
+          "--irradiance"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},
@@ -61,15 +62,15 @@ const std::vector<Row>& rows() {
          {"hours", "first", "last", "spells", "global", "beam", "diffuse", "reflected"}},
         {Kind::Words, {"--format"}, {"png", "jpg", "webp", "avif", "tif", "exr"}},
         {Kind::Words, {"--nodata"}, {"none"}},
+        {Kind::Words, {"--tilt"}, {"ground"}},
+        {Kind::Words, {"--interval"}, {"end", "begin", "instant"}},
         {Kind::Words, {"--base"}, {"auto"}},
-        {Kind::Words, {"--crs", "--clip-crs", "--points-crs"}, {"EPSG:"}},
-        {Kind::Text, {"--crop",      "--bounds",  "--date",          "--name",          "--to",
-                      "--title",     "--size",    "--overlay-title", "--overlay-range", "--range",
-                      "--scale",     "--look-at", "--eye",           "--attribution",   "--at",
-                      "--sun",       "--step",    "--span",          "--shard",         "--over",
-                      "--clip",
-
-                      "--href-base", "NAME"}},
+        {Kind::Words, {"--crs", "--clip-crs", "--points-crs", "--at-crs"}, {"EPSG:"}},
+        {Kind::Text, {"--crop",  "--bounds",  "--date",          "--name",          "--to",
+                      "--title", "--size",    "--overlay-title", "--overlay-range", "--range",
+                      "--scale", "--look-at", "--eye",           "--attribution",   "--at",
+                      "--sun",   "--step",    "--span",          "--shard",         "--over",
+                      "--clip",  "--azimuth", "--linke",         "--href-base",     "NAME"}},
     };
     return all;
 }
