@@ -130,6 +130,7 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::PushID(param.address.c_str());
     ParamValue value = state.effects->values.value(param.address);
     row_label(param.label.empty() ? param.address : param.label);
+    const bool resets = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s%s%s", param.address.c_str(), param.description.c_str(),
                           param.is_static ? "\n" : "",
@@ -137,7 +138,8 @@ void param_row(State& state, const Param& param, bool on) {
     if (widget(param, value) && shader::is_valid(param, value))
         state.set_value(param, shader::format_value(param, value), on);
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
-    if (reset_button(!has_values(state.document.scene.effects, param.address)))
+    const bool is_default = !has_values(state.document.scene.effects, param.address);
+    if (reset_button(is_default) || (resets && !is_default))
         state.set_effects(without_values(state.document.scene.effects, param.address));
     ImGui::PopID();
 }
@@ -178,6 +180,41 @@ std::string lack_of(const State& state, const effect::Effect& effect) {
     return {};
 }
 
+/// Rows of an effect's values: those that matter first, or the others.
+/// @param draws  else they are only counted
+int value_rows(State& state, const effect::Effect& effect, bool on, bool first, bool draws) {
+    constexpr int kFirst = 3;  // of an effect that does not say which
+    const std::vector<std::string>& named = effect.manifest.first;
+    int all = 0, rows = 0;
+    const auto is_wanted = [&](const std::string& address) {
+        const bool leads = named.empty() ? all < kFirst : contains(named, address);
+        ++all;
+        if (leads != first) return false;
+        ++rows;
+        return draws;
+    };
+    for (const shader::TextParam& text : effect.manifest.texts)
+        if (is_wanted(text.address)) text_row(state, text);
+    for (const Param& param : effect.params())
+        if (!param.is_host && is_wanted(param.address)) param_row(state, param, on);
+    return rows;
+}
+
+void effect_values(State& state, const effect::Effect& effect, bool on) {
+    value_rows(state, effect, on, /*first=*/true, /*draws=*/true);
+    if (value_rows(state, effect, on, /*first=*/false, /*draws=*/false) > 0) {
+        if (!state.search.empty()) ImGui::SetNextItemOpen(true);
+        if (ImGui::TreeNode(tr_label("More"))) {
+            value_rows(state, effect, on, /*first=*/false, /*draws=*/true);
+            ImGui::TreePop();
+        }
+    }
+    ImGui::BeginDisabled(!has_values(state.document.scene.effects, effect.id()));
+    if (!effect.params().empty() && ImGui::SmallButton(tr_label("Reset all values")))
+        state.set_effects(without_values(state.document.scene.effects, effect.id()));
+    ImGui::EndDisabled();
+}
+
 void effect_row(State& state, const effect::Effect& effect) {
     const bool is_on = state.effects->selection.has(effect.id());
     ImGui::PushID(effect.id().c_str());
@@ -185,21 +222,15 @@ void effect_row(State& state, const effect::Effect& effect) {
     const bool changed = ImGui::Checkbox("##on", &on);
     ImGui::SameLine();
     const bool open = ImGui::TreeNodeEx(effect.manifest.name.c_str(), ImGuiTreeNodeFlags_None);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", effect.manifest.description.c_str());
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s: %s", effect.id().c_str(), effect.manifest.description.c_str());
     if (const std::string why = is_on ? "" : lack_of(state, effect); !why.empty()) {
         ImGui::SameLine();
         ImGui::TextDisabled("%s", why.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (open) {
-        for (const shader::TextParam& text : effect.manifest.texts)
-            text_row(state, text);
-        for (const Param& param : effect.params())
-            if (!param.is_host) param_row(state, param, is_on);
-        ImGui::BeginDisabled(!has_values(state.document.scene.effects, effect.id()));
-        if (!effect.params().empty() && ImGui::SmallButton(tr_label("Reset all values")))
-            state.set_effects(without_values(state.document.scene.effects, effect.id()));
-        ImGui::EndDisabled();
+        effect_values(state, effect, is_on);
         ImGui::TreePop();
     }
     ImGui::PopID();
@@ -217,9 +248,21 @@ bool is_found(const effect::Effect& effect, const std::string& word) {
     });
 }
 
-}  // namespace
-
-namespace {
+/// A group with its effects, by their names; nothing where the search finds none.
+/// @param word  effect::Manifest::group
+void effect_group(State& state, std::string_view word, const char* title) {
+    std::vector<const effect::Effect*> found;
+    for (const effect::Effect& effect : state.effects->registry.effects())
+        if (effect.manifest.group == word && is_found(effect, state.search))
+            found.push_back(&effect);
+    if (found.empty()) return;
+    std::ranges::sort(found, {}, [](const effect::Effect* one) { return one->manifest.name; });
+    ImGui::Spacing();
+    ImGui::TextDisabled("%s", title);
+    // A row may replace the model and its effects.
+    for (std::size_t i = 0; i < found.size() && !state.new_effects; ++i)
+        effect_row(state, *found[i]);
+}
 
 void preset_choice(State& state) {
     const std::vector<std::string>& chosen = state.document.scene.effects.presets;
@@ -247,10 +290,12 @@ void effects_panel(State& state) {
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", tr("search effects and parameters"), &state.search,
                              ImGuiInputTextFlags_AutoSelectAll);
-    // A row may replace the model and its effects.
-    const std::vector<effect::Effect>& effects = state.effects->registry.effects();
-    for (std::size_t i = 0; i < effects.size() && !state.new_effects; ++i)
-        if (is_found(effects[i], state.search)) effect_row(state, effects[i]);
+    effect_group(state, "ground", tr("Ground"));
+    effect_group(state, "light", tr("Light"));
+    effect_group(state, "air", tr("Air and sky"));
+    effect_group(state, "water", tr("Water and snow"));
+    effect_group(state, "maps", tr("Maps and marks"));
+    effect_group(state, "", tr("Yours"));
     ImGui::PushTextWrapPos();
     for (const effect::BrokenEffect& broken : state.effects->registry.broken())
         ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%s", broken.error.c_str());

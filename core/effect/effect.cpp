@@ -304,6 +304,24 @@ void check_bound(const Effect& effect, const DisplaceSpec& spec) {
         if (!length->address.empty()) check_named(effect, length->address, "displaces", spec.line);
 }
 
+/// What windows show first is there, and can be set.
+void check_first(const Effect& effect) {
+    const std::vector<shader::Param> params = effect.params();
+    for (const std::string& address : effect.manifest.first) {
+        const bool is_param = std::ranges::any_of(params, [&](const shader::Param& param) {
+            return param.address == address && !param.is_host;
+        });
+        const auto& texts = effect.manifest.texts;
+        if (!is_param &&
+            std::ranges::find(texts, address, &shader::TextParam::address) == texts.end())
+            fail(
+                effect.manifest.file.string(), effect.manifest.first_line,
+                fmt::format("first: expected parameters and texts of the plugin, not host, but got "
+                            "\"{}\"",
+                            address.substr(address.find('.') + 1)));
+    }
+}
+
 /// Without a bound core would cull terrain that is displaced into view.
 void check_displace(const Effect& effect) {
     const Manifest& manifest = effect.manifest;
@@ -398,6 +416,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     for (const Rising& rising : effect.manifest.rising)
         for (const std::string& address : rising.addresses)
             check_number(effect, address, "rising", rising.line);
+    check_first(effect);
     check_wants(effect);
     check_passes(effect);
     check_instances(effect);

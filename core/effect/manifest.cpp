@@ -39,6 +39,7 @@ constexpr std::size_t kMaxInstanceSets = 16;
 constexpr std::array<std::string_view, 5> kCoreWords = {"mapped", "near", "night", "outside",
                                                         "water"};
 
+constexpr std::array<std::string_view, 5> kGroups = {"ground", "light", "air", "water", "maps"};
 constexpr std::array<std::string_view, 3> kGroundWords = {"water", "marked_holes", "covered_voids"};
 
 bool is_lower(char c) {
@@ -149,6 +150,14 @@ class ManifestReader {
         manifest_.name = object.string("name");
         manifest_.description = object.string("description", "");
         manifest_.version = object.string("version");
+        manifest_.group = object.string("group", "");
+        if (!manifest_.group.empty() && !contains(kGroups, manifest_.group))
+            object.fail(object.line_of("group"), "group",
+                        fmt::format("expected one of {} but got \"{}\"", fmt::join(kGroups, ", "),
+                                    manifest_.group));
+        manifest_.first_line = object.line_of("first");
+        for (const std::string& name : object.strings("first"))
+            manifest_.first.push_back(manifest_.id + '.' + name);
         manifest_.enabled_by_default = object.boolean("enabled_by_default", true);
         manifest_.default_where = object.strings("default_where");
         for (const std::string& word : manifest_.default_where)

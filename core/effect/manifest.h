@@ -79,6 +79,10 @@ struct Manifest {
     std::string name;
     std::string description;
     std::string version;
+    std::string group;  ///< "ground", "light", "air", "water", "maps"; empty: none
+    /// Addresses of parameters and texts that matter most, which windows show first.
+    std::vector<std::string> first;
+    int first_line = 0;  ///< in plugin.json
     bool enabled_by_default = true;
     std::vector<std::string> default_where;  ///< that the DEM must have for it: ground_words()
 

@@ -8,9 +8,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "effect/manifest.h"
 #include "effect/plugins.h"
+#include "effect/registry.h"
 #include "shader/source.h"
 
 namespace relevo::effect::test::test_manifest {
@@ -23,6 +25,28 @@ using ::testing::IsEmpty;
 constexpr const char* kHead = R"("format": 1, "id": "haze", "name": "Haze", "version": "1.0")";
 const std::string kHook = "void haze_on_albedo(inout Surface s) {}\n";
 
+TEST(Manifest, NamesTheValuesThatAWindowShowsFirst) {
+    const Plugins plugins;
+    const char* const kGlsl =
+        "uniform float haze_blue = 1.0; //@ range(0, 2)\nuniform float haze_air = 1.0; //@ "
+        "range(0, 2)\n";
+    plugins.add("haze", R"("first": ["blue"])", std::string(kGlsl) + kHook);
+    const Effect effect = load_effect(plugins.plugins() / "haze", plugins.data());
+    EXPECT_THAT(effect.manifest.first, ElementsAre("haze.blue"));
+    plugins.add("haze", R"("first": ["blau"])", std::string(kGlsl) + kHook);
+    EXPECT_THAT(error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); }),
+                testing::HasSubstr("first: expected parameters and texts of the plugin, not host, "
+                                   "but got \"blau\""));
+}
+
+TEST(Manifest, OfEachEffectThatIsInstalledHasAGroup) {
+    const Registry registry =
+        Registry::load({relevo::test::source_dir() / "plugins"}, share_dir() / "data");
+    EXPECT_GT(registry.effects().size(), 25U);
+    for (const Effect& effect : registry.effects())
+        EXPECT_FALSE(effect.manifest.group.empty()) << effect.id();
+}
+
 TEST(Manifest, IsReadWhole) {
     const Plugins plugins;
     plugins.write("data/noise/perlin.png", "");
@@ -30,6 +54,7 @@ TEST(Manifest, IsReadWhole) {
     plugins.write("plugins/haze/air.glsl", "float haze_air() { return 1.0; }\n");
     plugins.add("haze", R"(
         "description": "Air that shows.",
+        "group": "air",
         "enabled_by_default": false,
         "provides": ["air"], "requires": ["sky"], "wants": ["shadow_map"], "after": ["relief"],
         "glsl": ["air.glsl", "haze.glsl"],
@@ -47,6 +72,7 @@ TEST(Manifest, IsReadWhole) {
     const Manifest& manifest = effect.manifest;
     EXPECT_EQ(manifest.id, "haze");
     EXPECT_EQ(manifest.description, "Air that shows.");
+    EXPECT_EQ(manifest.group, "air");
     EXPECT_FALSE(manifest.enabled_by_default);
     EXPECT_THAT(manifest.provides, ElementsAre("air"));
     EXPECT_THAT(manifest.needs, ElementsAre("sky"));
@@ -180,7 +206,8 @@ std::string text(const std::string& members) {
 }
 
 constexpr const char* kKeys =
-    "format, id, name, description, version, enabled_by_default, default_where, provides, "
+    "format, id, name, description, version, group, first, enabled_by_default, default_where, "
+    "provides, "
     "exclusive, requires, "
     "wants, after, module, glsl, textures, passes, instances, "
     "marks, texts, displaces, invents, rising, weather, $schema";
@@ -222,6 +249,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"BadWord", with(R"("wants": ["Shadow map"])"),
             "2: wants: expected words of a-z, 0-9 and _ but got \"Shadow map\""},
         Bad{"WordTwice", with(R"("after": ["a", "a"])"), "2: after: \"a\" is listed twice"},
+        Bad{"NoGroup", with(R"("group": "fire")"),
+            "2: group: expected one of ground, light, air, water, maps but got \"fire\""},
         Bad{"NoBool", with(R"("enabled_by_default": "yes")"),
             "2: enabled_by_default: expected true or false but got \"yes\""},
         Bad{"ModulePath", with(R"("module": "../haze.so")"),
