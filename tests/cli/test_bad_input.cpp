@@ -203,7 +203,7 @@ TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture(
         {"sun"}, 2,
         "sun: no command given; there are position, day, horizon, eclipses, carpet, when, "
-        "shadow, hours, sky-view, horizons, along; each has --help");
+        "shadow, hours, plane, sky-view, horizons, along; each has --help");
     expect_no_picture({"plugins", "x"}, 2,
                       "x: no such command; there are list, info, new, check, test");
     expect_no_picture(
