@@ -183,7 +183,7 @@ TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
     const auto name_of = [&](const std::string& name) {
         std::filesystem::create_directories(plugins_ / "aname");
         std::ofstream(plugins_ / "aname/plugin.json")
-            << R"({"format": 1, "id": "aname", "name": ")" << name
+            << R"({"format": 1, "id": "aname", "group": "ground", "name": "0)" << name
             << R"(", "description": "A name", "version": "1.0.0"})";
         std::ofstream(plugins_ / "aname/aname.glsl")
             << "void aname_on_lit(in Surface s, inout vec3 radiance) {}\n";
@@ -195,7 +195,7 @@ TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
     open({dem.string(), "--only", "aname", "--plugin-path", plugins_.string()});
     EXPECT_THAT(program_->title(), testing::HasSubstr("山岳.tif"));
     const image::Image8 before = display_.screen();
-    constexpr glm::ivec4 kPanel{60, 557, 280, 25};  // of the first effect
+    constexpr glm::ivec4 kPanel{60, 581, 280, 25};  // of the first effect of the first group
     const auto differing = [&] {
         const image::Image8 now = display_.screen();
         int count = 0;
