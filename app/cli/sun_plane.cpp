@@ -81,6 +81,8 @@ std::optional<SumBy> sum_by(const PlaneArguments& arguments) {
 struct PlaneRun {
     const PlaneArguments& arguments;
     std::optional<light::IrradianceTable> table;
+    /// Of --horizon, for places of the northern and of the southern half of the Earth.
+    std::optional<std::array<light::FileHorizon, 2>> horizons;
     std::optional<dem::Posts> posts;
 
     double linke(sun::Instant utc, const sun::Zone& zone) const {
@@ -228,7 +230,7 @@ Remarks remarks_of(const PlaneRun& run) {
                      sum_by(arguments) ? "sums, kWh/m2, by the local time at which hours begin"
                                        : "means over the hour that begins at time, W/m2")},
         {"beam_definition",
-         "DNI is spread over the seconds in which the sun is up, the beam is that of the lit ones; "
+         "beam: DNI, spread evenly over the seconds with the sun up, counts in the lit seconds; "
          "azimuth and elevation: in the middle of the hour's part with the sun up"},
         {"sky_definition", fmt::format("sky: {}; ground: albedo {}", sky_of(arguments).text,
                                        arguments.albedo.value_or(figure::kAlbedo.value))},
@@ -269,9 +271,8 @@ PlaneTable table_of(const PlaneRun& run, const dem::NamedPlace& point) {
     const light::DirectLight level(result.place, light::Skyline({0.0}), "a level horizon", options);
     std::unique_ptr<const light::DirectLight> over;
     std::string horizon = "horizon: level";
-    if (!arguments.horizon.empty()) {
-        const light::FileHorizon file =
-            light::read_horizon(arguments.horizon, "--horizon", result.place);
+    if (run.horizons) {
+        const light::FileHorizon& file = (*run.horizons)[result.place.lat_rad < 0 ? 1 : 0];
         horizon = "horizon: " + file.description;
         over = std::make_unique<light::DirectLight>(result.place, file.skyline(),
                                                     "the horizon of a file", options);
@@ -326,8 +327,14 @@ void run_plane(const PlaneArguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile* const file = arguments.output.open(files, arguments.terrain.dem);
-    if (!arguments.horizon.empty()) files.add_input(arguments.horizon, "the horizon");
-    PlaneRun run{arguments, {}, {}};
+    PlaneRun run{arguments, {}, {}, {}};
+    if (!arguments.horizon.empty()) {
+        files.add_input(arguments.horizon, "the horizon");
+        run.horizons.emplace();
+        for (const bool southern : {false, true})
+            (*run.horizons)[southern ? 1 : 0] =
+                light::read_horizon(arguments.horizon, "--horizon", southern);
+    }
     if (!arguments.irradiance.empty()) {
         files.add_input(arguments.irradiance, "the irradiance");
         run.table = read_table(arguments);
@@ -345,9 +352,10 @@ void run_plane(const PlaneArguments& arguments) {
 }
 
 void add_plane_options(Verb verb, PlaneArguments& arguments) {
-    verb.add_option("--tilt", arguments.tilt,
-                    "Tilt of the plane, degrees: 0 level, 90 a wall, or ground, with its azimuth "
-                    "that of the DEM there (0)")
+    verb.add_option(
+            "--tilt", arguments.tilt,
+            "Tilt of the plane, degrees: 0 level, 90 a wall; or ground: slope and aspect of "
+            "the DEM (0)")
         .check({fault_of_tilt, ""});
     verb.add_option("--azimuth", arguments.azimuth,
                     "Where the plane faces, degrees clockwise from true north; needed for a tilt")
@@ -390,8 +398,8 @@ void add_sun_plane(Verb sun_verb) {
     add_plane_options(verb, *arguments);
     arguments->days.add_to(verb);
     verb.option("--tz").description(
-        "Time zone of the rows: Europe/Zurich, +05:30, solar, or auto, that of the place (the "
-        "file's, else auto)");
+        "Time zone of the rows: Europe/Zurich, +05:30, solar, or auto, that of the place (that of "
+        "--irradiance, or else auto)");
     arguments->light.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run_plane(*arguments); });

@@ -15,8 +15,8 @@
 namespace relevo::dem {
 namespace {
 
-/// The size modulo 2^32 that a gzip file ends with (RFC 1952): GDAL reads what is there of one that
-/// is cut.
+/// Size of the unpacked text modulo 2^32, from the last four bytes of a gzip file (RFC 1952). GDAL
+/// reads a truncated file without an error.
 std::uint64_t unpacked_size(const InputFile& file) {
     std::array<unsigned char, 4> bytes{};
     const auto at = static_cast<off_t>(file.size()) - off_t{bytes.size()};

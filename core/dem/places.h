@@ -13,8 +13,8 @@
 /// (also `latitude`, `longitude`, `lng`, `long`, `lat_deg`, `lon_deg`), or `x` and `y` (also
 /// `easting`, `northing`) in a CRS that is given; `name` (also `id`, `title`), `height` as the H of
 /// LAT,LON,H, `time`, `rank`, `tilt`, `azimuth`. Columns are parted by commas, semicolons or tabs;
-/// lines that begin with # are skipped. Heights of GPX and GeoJSON are not read, as those of the
-/// ground are the DEM's. A number is one with a decimal point: what cannot be read as written is an
+/// lines that begin with # are skipped. Heights in GPX and GeoJSON are not read: the DEM has the
+/// ground's. A number is one with a decimal point: what cannot be read as written is an
 /// error, never skipped.
 namespace relevo::dem {
 
@@ -27,7 +27,7 @@ struct NamedPlace {
     std::string time;      ///< as sun::parse_time() reads it; empty where the file has none
     std::size_t line = 0;  ///< of the file, from 1
     std::string rank{};    ///< as written, from a CSV's column
-    std::string tilt{}, azimuth{};  ///< likewise, of a plane there
+    std::string tilt{}, azimuth{};  ///< of a plane at the place, as written
 };
 
 struct NamedLine {

@@ -13,8 +13,8 @@ const Target kIrradiance("irradiance", [](std::string_view bytes) {
         light::read_irradiance(path, "--irradiance",
                                {light::RowTime::parse("instant+0.5"), sun::Zone()});
     });
-    attempt([&] { light::read_horizon(path, "--horizon", {}).skyline(); });
-    light::read_horizon(path, "--horizon", {-0.5, 0, 0});
+    attempt([&] { light::read_horizon(path, "--horizon", false).skyline(); });
+    light::read_horizon(path, "--horizon", true);
 });
 
 }  // namespace relevo::fuzz

@@ -14,7 +14,7 @@ const geo::Geodetic kNorth = geo::geodetic_deg(45, 8), kSouth = geo::geodetic_de
 FileHorizon read(const std::string& text, const geo::Geodetic& place = kNorth) {
     const std::filesystem::path path = test::scratch_dir() / "horizon.txt";
     std::ofstream(path, std::ios::binary) << text;
-    return read_horizon(path.string(), "--horizon", place);
+    return read_horizon(path.string(), "--horizon", place.lat_rad < 0);
 }
 
 double height_deg(const FileHorizon& horizon, double azimuth_deg) {

@@ -114,7 +114,8 @@ TEST(HorizonFiles, AreReadBack) {
             const std::string path = (test::scratch_dir() / "horizon.txt").string();
             std::ofstream(path) << text;
             Heights heights;
-            for (const auto& direction : light::read_horizon(path, "--horizon", place).directions)
+            for (const auto& direction :
+                 light::read_horizon(path, "--horizon", place.lat_rad < 0).directions)
                 heights[direction.azimuth_deg] = direction.elevation_deg;
             expect_profile(heights, profile, text.starts_with("horizon_azimuth"), 0.006);
         }

@@ -142,11 +142,10 @@ Skyline FileHorizon::skyline() const {
     return Skyline(std::move(elevation_rad));
 }
 
-FileHorizon read_horizon(const std::string& path, std::string_view who,
-                         const geo::Geodetic& place) {
+FileHorizon read_horizon(const std::string& path, std::string_view who, bool southern) {
     const dem::FileErrors errors{path, who};
-    FileHorizon found = HorizonReader(errors, place.lat_rad < 0)
-                            .read(dem::read_packed_text(errors, kMostHorizonBytes));
+    FileHorizon found =
+        HorizonReader(errors, southern).read(dem::read_packed_text(errors, kMostHorizonBytes));
     found.description = fmt::format("{}, {} directions, {}, linear between",
                                     printable(std::filesystem::path(path).filename().string()),
                                     found.directions.size(), found.description);

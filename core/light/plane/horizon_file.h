@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "geo/geodetic.h"
 #include "light/point/skyline.h"
 
 /// Reads a horizon that another program has written.
@@ -30,10 +29,10 @@ struct FileHorizon {
 /// PVsyst's, azimuth and height separated by a blank, its azimuths counted from south (clockwise),
 /// on the southern half of the Earth from north (counterclockwise). Lines that begin with # are
 /// skipped. All of them also with .gz.
-/// @param who    what errors begin with, "--horizon"
-/// @param place  whose half of the Earth PVsyst's azimuths are of
-/// @throws Error (BadInput) `who: path: line 17: what` for a file that is none of these, fewer than
-///     two directions, an azimuth that is none or comes twice, an elevation beyond 90 degrees
-FileHorizon read_horizon(const std::string& path, std::string_view who, const geo::Geodetic& place);
+/// @param who       what errors begin with, "--horizon"
+/// @param southern  PVsyst's azimuths are of a place on the southern half of the Earth
+/// @throws Error (BadInput) `who: path: line 17: what` for a file in another format, fewer than two
+///     directions, an azimuth out of range or given twice, an elevation beyond 90 degrees
+FileHorizon read_horizon(const std::string& path, std::string_view who, bool southern);
 
 }  // namespace relevo::light

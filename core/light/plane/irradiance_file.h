@@ -11,15 +11,15 @@
 #include "sun/zone.h"
 
 /// Reads tables of irradiance: EPW (EnergyPlus), typical years of PVGIS (CSV, JSON), CSV of the
-/// NSRDB (with its two lines about the site), and plain CSV; each also with .gz. They are told
-/// apart by how they begin.
+/// NSRDB (with its two lines about the site), and plain CSV; each also with .gz. The beginning of a
+/// file tells its format.
 ///
 /// An EPW row is the hour that ends at its stamp; its minute is 0 or 60 and is not added. PVGIS
 /// names instants, `irradiance_time_offset` hours after the row's time, in its EPW too, whose clock
-/// is UTC. The NSRDB's rows are
-/// instants at their stamps, which its own zenith angles confirm. A plain CSV has the columns time,
-/// or begin and end, and ghi, dni, dhi; its times have offsets, or are of a zone that is given.
-/// Rows follow each other without a gap, but for the months of a typical year, whose years differ.
+/// is UTC. The NSRDB's rows are instants at their stamps, which its own zenith angles confirm. A
+/// plain CSV has the columns time, or begin and end, and ghi, dni, dhi; its times have offsets, or
+/// are of a zone that is given. Rows follow each other without a gap, but for the months of a
+/// typical year, whose years differ.
 namespace relevo::light {
 
 /// What the time of a row is.
