@@ -19,19 +19,28 @@ namespace {
 
 using relevo::session::Session;
 
-std::string read_effects_again(Session& session) {
+/// What the next frame shows.
+struct Shown {
+    Session& session;
+    relevo::scene::Scene scene;
+    relevo::sun::Instant utc;
+    relevo::session::Hints hints;
+    std::string message;
+};
+
+void show(Shown& shown) {
     try {
-        session.set_effects(session.scene().effects);
-        return "effects read again";
+        shown.session.show(shown.scene, shown.utc, shown.hints);
+        if (shown.hints.reload_effects) shown.message = "effects read again";
     } catch (const relevo::Error& error) {
-        return error.what();  // the last good program stays
+        shown.message = error.what();  // the last good program stays
     }
+    shown.hints = {.exact = false};
 }
 
 /// The mouse where no widget takes it.
-void orbit(Session& session) {
+void orbit(relevo::scene::View& view) {
     const ImGuiIO& io = ImGui::GetIO();
-    relevo::scene::View view = session.scene().view;
     if (io.WantCaptureMouse) return;
     view.orbit.zoom *= 1 + 0.2 * io.MouseWheel;
     if (io.MouseDown[0]) {
@@ -39,40 +48,37 @@ void orbit(Session& session) {
         view.orbit.elevation_deg =
             std::clamp(*view.orbit.elevation_deg + 0.3 * io.MouseDelta.y, 1.0, 89.0);
     }
-    session.look(view);
 }
 
-struct Shown {
-    Session& session;
-    std::string message;
-};
-
 void on_key(GLFWwindow* window, int key, int, int action, int) {
-    auto& [session, message] = *static_cast<Shown*>(glfwGetWindowUserPointer(window));
+    auto& shown = *static_cast<Shown*>(glfwGetWindowUserPointer(window));
     if (action == GLFW_RELEASE) return;
-    if (key == GLFW_KEY_LEFT) session.set_time(session.time() + -1800.0);
-    if (key == GLFW_KEY_RIGHT) session.set_time(session.time() + 1800.0);
-    if (key == GLFW_KEY_R) message = read_effects_again(session);
+    if (key == GLFW_KEY_LEFT) shown.utc = shown.utc + -1800.0;
+    if (key == GLFW_KEY_RIGHT) shown.utc = shown.utc + 1800.0;
+    shown.hints.reload_effects = key == GLFW_KEY_R;
 }
 
 void frame(GLFWwindow* window, Shown& shown) {
-    auto& [session, message] = shown;
+    Session& session = shown.session;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     float density = session.effects().values.value("haze.density")[0];
     if (ImGui::SliderFloat("haze", &density, 0, 0.5f))
-        session.set("haze.density", std::to_string(density));
+        shown.scene.effects = relevo::scene::merge(
+            shown.scene.effects, {.settings = {{"haze.density", std::to_string(density)}}});
     ImGui::TextUnformatted(session.sun_text().c_str());
-    orbit(session);
+    orbit(shown.scene.view);
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
-    session.resize(std::max(width, 1), std::max(height, 1));
+    shown.scene.width_px = std::max(width, 1);
+    shown.scene.height_px = std::max(height, 1);
+    show(shown);
     session.draw_available();
     relevo::gl::Framebuffer({&session.texture()}, nullptr, "shown").copy_to_window(width, height);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    glfwSetWindowTitle(window, (session.sun_text() + " " + message).c_str());
+    glfwSetWindowTitle(window, (session.sun_text() + " " + shown.message).c_str());
     glfwSwapBuffers(window);
 }
 
@@ -90,7 +96,7 @@ int main(int count, char** arguments) try {
     ImGui::CreateContext();
     ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);
     ImGui_ImplOpenGL3_Init();
-    Shown shown{session, {}};
+    Shown shown{session, session.scene(), session.time(), {.exact = false}, {}};
     glfwSetWindowUserPointer(window, &shown);
     glfwSetKeyCallback(window, on_key);
     for (; !glfwWindowShouldClose(window); glfwPollEvents())

@@ -41,13 +41,18 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+void move_sun(session::Session& session, double step_s) {
+    if (step_s <= 0) return;
+    session.show(session.scene(), session.time() + step_s, {.exact = false});
+}
+
 /// @param step_s  by which the sun moves
 /// @returns passes of one frame; "sun" is what the moved sun takes before the first of them
 render::PassTimes timed_frame(session::Session& session, double step_s) {
     render::PassTimes times;
     const auto began = Clock::now();
     const std::clock_t processor_began = std::clock();
-    if (step_s > 0) session.set_time(session.time() + step_s);
+    move_sun(session, step_s);
     const render::PassTime sun{"sun", milliseconds_since(began),
                                processor_ms_since(processor_began)};
     session.draw_alone(&times);
@@ -79,7 +84,7 @@ Json frames(session::Session& session, int repeat, double step_s) {
     const std::clock_t processor_began = std::clock();
     for (int i = 0; i < repeat; ++i) {
         const auto began = Clock::now();
-        if (step_s > 0) session.set_time(session.time() + step_s);
+        move_sun(session, step_s);
         session.draw_alone();
         frames_ms.push_back(milliseconds_since(began));
     }

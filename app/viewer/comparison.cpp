@@ -10,11 +10,17 @@ Comparison::Comparison(const SceneDevice& device, Window& window, Messages& mess
                        Discard& discard)
     : device_(device), window_(window), messages_(messages), discard_(discard) {}
 
-void Comparison::start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
-                       LaidOverlay overlay) {
+void Comparison::start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted) {
     thread_ = std::make_unique<SceneThread>(scene, device_, &Window::wake, opened.dem);
+    effects_ = scene.effects;
+    effects_read_ = wanted.effects_read;
+    want(wanted);
+}
+
+void Comparison::want(Wanted wanted) {
+    wanted.scene->effects = effects_;
+    wanted.effects_read = effects_read_;
     thread_->want(wanted);
-    thread_->want_overlay(std::move(overlay));
 }
 
 void Comparison::stop() {

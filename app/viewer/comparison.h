@@ -16,8 +16,9 @@ class Comparison {
     Comparison(const SceneDevice& device, Window& window, Messages& messages, Discard& discard);
 
     /// @param opened   of `scene`; its DEM is not read again
-    void start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
-               LaidOverlay overlay);
+    void start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted);
+    /// Follows the window, but for its effects. Requires thread().
+    void want(Wanted wanted);
     void stop();
     /// The scene's thread; null: there is no comparison.
     SceneThread* thread() const { return thread_.get(); }
@@ -33,6 +34,8 @@ class Comparison {
     Messages& messages_;
     Discard& discard_;
     std::unique_ptr<SceneThread> thread_;
+    scene::Effects effects_;
+    int effects_read_ = 0;
     std::shared_ptr<const Picture> image_;
 };
 

@@ -126,7 +126,7 @@ bool reset_button(bool is_default) {
     return pressed;
 }
 
-void param_row(State& state, const Param& param, bool on) {
+void param_row(State& state, const Param& param) {
     ImGui::PushID(param.address.c_str());
     ParamValue value = state.effects->values.value(param.address);
     row_label(param.label.empty() ? param.address : param.label);
@@ -136,7 +136,7 @@ void param_row(State& state, const Param& param, bool on) {
                           param.is_static ? "\n" : "",
                           param.is_static ? tr("Each value compiles another shader.") : "");
     if (widget(param, value) && shader::is_valid(param, value))
-        state.set_value(param, shader::format_value(param, value), on);
+        state.set_value(param, shader::format_value(param, value));
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
     const bool is_default = !has_values(state.document.scene.effects, param.address);
     if (reset_button(is_default) || (resets && !is_default))
@@ -182,7 +182,7 @@ std::string lack_of(const State& state, const effect::Effect& effect) {
 
 /// Rows of an effect's values: those that matter first, or the others.
 /// @param draws  else they are only counted
-int value_rows(State& state, const effect::Effect& effect, bool on, bool first, bool draws) {
+int value_rows(State& state, const effect::Effect& effect, bool first, bool draws) {
     constexpr int kFirst = 3;  // of an effect that does not say which
     const std::vector<std::string>& named = effect.manifest.first;
     int all = 0, rows = 0;
@@ -196,16 +196,16 @@ int value_rows(State& state, const effect::Effect& effect, bool on, bool first, 
     for (const shader::TextParam& text : effect.manifest.texts)
         if (is_wanted(text.address)) text_row(state, text);
     for (const Param& param : effect.params())
-        if (!param.is_host && is_wanted(param.address)) param_row(state, param, on);
+        if (!param.is_host && is_wanted(param.address)) param_row(state, param);
     return rows;
 }
 
-void effect_values(State& state, const effect::Effect& effect, bool on) {
-    value_rows(state, effect, on, /*first=*/true, /*draws=*/true);
-    if (value_rows(state, effect, on, /*first=*/false, /*draws=*/false) > 0) {
+void effect_values(State& state, const effect::Effect& effect) {
+    value_rows(state, effect, /*first=*/true, /*draws=*/true);
+    if (value_rows(state, effect, /*first=*/false, /*draws=*/false) > 0) {
         if (!state.search.empty()) ImGui::SetNextItemOpen(true);
         if (ImGui::TreeNode(tr_label("More"))) {
-            value_rows(state, effect, on, /*first=*/false, /*draws=*/true);
+            value_rows(state, effect, /*first=*/false, /*draws=*/true);
             ImGui::TreePop();
         }
     }
@@ -230,7 +230,7 @@ void effect_row(State& state, const effect::Effect& effect) {
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (open) {
-        effect_values(state, effect, is_on);
+        effect_values(state, effect);
         ImGui::TreePop();
     }
     ImGui::PopID();
@@ -259,9 +259,8 @@ void effect_group(State& state, std::string_view word, const char* title) {
     std::ranges::sort(found, {}, [](const effect::Effect* one) { return one->manifest.name; });
     ImGui::Spacing();
     ImGui::TextDisabled("%s", title);
-    // A row may replace the model and its effects.
-    for (std::size_t i = 0; i < found.size() && !state.new_effects; ++i)
-        effect_row(state, *found[i]);
+    for (const effect::Effect* const effect : found)
+        effect_row(state, *effect);
 }
 
 void preset_choice(State& state) {

@@ -56,7 +56,7 @@ bool FilmController::advance(double passed_s) {
     const int frame = clock_.frame();
     if (frame == shown_frame_) return false;
     const scene::Shot& shot = plan_->frames.shots[static_cast<std::size_t>(frame)];
-    preview_.show(shot, source_.pose_of(shot.scene.view), plan_->of.wish.choice.value);
+    preview_.show(shot, source_.pose_of(shot.scene.view));
     shown_frame_ = frame;
     return true;
 }

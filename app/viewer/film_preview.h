@@ -19,8 +19,7 @@ class FilmPreview {
     void begin() { before_ = state_.document; }
     /// Makes the document the scene of a frame. Requires is_on().
     /// @param pose   of its view
-    /// @param value  address of the parameter that the film changes; empty: none
-    void show(const scene::Shot& frame, const Pose& pose, const std::string& value);
+    void show(const scene::Shot& frame, const Pose& pose);
     /// Restores the document.
     void end();
     /// The document is another scene's by now: nothing is left to restore.
@@ -29,8 +28,6 @@ class FilmPreview {
   private:
     State& state_;
     std::optional<Document> before_;
-    std::string value_;  // address of the parameter
-    std::string text_;   // of its value in the frame; empty: none
 };
 
 }  // namespace relevo::viewer

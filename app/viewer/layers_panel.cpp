@@ -41,8 +41,7 @@ void effect_opacity(State& state, const Layer& layer) {
     slider(state, share, !layer.light.empty());
     if (share == before) return;
     value[0] = range.min + share * width;
-    if (shader::is_valid(param, value))
-        state.set_value(param, shader::format_value(param, value), layer.is_on);
+    if (shader::is_valid(param, value)) state.set_value(param, shader::format_value(param, value));
 }
 
 void light(State& state, const Layer& layer) {

@@ -225,23 +225,11 @@ void MainWindow::hand_over() {
     if (is_open()) hand_over_scene();
     sun_moved_ = state_.sun_moves;
     state_.step = state_.sun_moves = false;
-    state_.new_effects.reset();
-    state_.new_values.clear();
 }
 
 void MainWindow::hand_over_scene() {
-    want_view();
-    SceneThread& thread = opening_->thread();
     const Opened& opened = *opening_->opened();
-    if (state_.new_effects) thread.want_effects(*state_.new_effects);
-    for (const auto& [address, value] : state_.new_values)
-        thread.want_value(address, value);
     show_true_heights();
-    if (const double now = state_.document.scene.exaggeration; now != wanted_exaggeration_) {
-        wanted_exaggeration_ = now;
-        thread.want_exaggeration(now);
-        stop_comparison();
-    }
     if (state_.step && !film_->shows_frame()) {
         history_.add(state_.document);
         pacing_.need_frames(2);
@@ -249,12 +237,13 @@ void MainWindow::hand_over_scene() {
     if (film_->update(opened, pacing_.is_at_rest())) pacing_.need_frames(2);
     if (!film_->shows_frame()) point_->update(opened, unit());
     if (film_->shows_frame())
-        overlay_->show_frame(thread);
-    else if (overlay_->update(opened, thread))
+        overlay_->show_frame();
+    else if (overlay_->update(opened))
         pacing_.need_frames(2);
+    want_view();
     if (state_.compare_is_wanted && !comparison_->thread()) {
         window_->set_line(free_middle().x / size().x);
-        comparison_->start(whole_scene(), opened, wanted_now(), overlay_->laid());
+        comparison_->start(whole_scene(), opened, wanted_now());
     }
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     if (takes_picture_ && is_image_complete()) take_picture();

@@ -210,7 +210,7 @@ class MainWindow {
     std::unique_ptr<WindowStyle> style_;
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
-    double wanted_exaggeration_ = 1;
+    int effects_read_ = 0;                         // as in Wanted
     sun::Instant first_utc_{};                     ///< at which the scene began
     std::optional<Pose> home_;                     // of the whole DEM,
     glm::vec2 home_size_{0};                       // in a window of this size

@@ -15,21 +15,11 @@ sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun:
     return from.name() == to.name() ? utc : to.resolve(from.local(utc).wall).utc;
 }
 
-bool same(const Wanted& a, const Wanted& b) {
-    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.seconds == b.seconds &&
-           a.exposure_ev == b.exposure_ev && a.backdrop == b.backdrop && a.width_px == b.width_px &&
-           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
-           a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
-           a.view->fov_y_rad == b.view->fov_y_rad &&
-           a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&
-           a.view->eye->place.lon_rad == b.view->eye->place.lon_rad &&
-           a.view->eye->place.height_m == b.view->eye->place.height_m;
-}
-
 }  // namespace
 
 void MainWindow::reload_effects() {
     film_->end_preview();
+    ++effects_read_;
     state_.set_effects(state_.document.scene.effects);
     state_.take_effects(/*is_step=*/false);
     pacing_.need_frames(3);
@@ -50,15 +40,15 @@ Wanted MainWindow::first_wanted() const {
     wanted.width_px = window_->size_px().x;
     wanted.height_px = window_->size_px().y;
     wanted.insets = panel_insets();
+    wanted.effects_read = effects_read_;
     return wanted;
 }
 
 void MainWindow::clear_scene() {
     state_.document.scene = opening_->scene();
-    wanted_exaggeration_ = opening_->opened()->scene.exaggeration;
     scene::Scene& scene = state_.document.scene;
     state_.chooses_exaggeration = std::exchange(scene.chooses_exaggeration, false);
-    scene.exaggeration = wanted_exaggeration_;
+    scene.exaggeration = opening_->opened()->scene.exaggeration;
     export_sheet_.take_scene(state_.document.scene);
     point_->clear();
     overlay_->clear();
@@ -78,27 +68,22 @@ void MainWindow::want_view() {
     if (state_.sun_moves) pacing_.moved();
     pacing_.update_rest();
     const Wanted wanted = wanted_now();
-    if (!(wanted_ && same(*wanted_, wanted))) {
-        opening_->thread().want(wanted);
-        if (SceneThread* const compared = comparison_->thread()) compared->want(wanted);
-    }
+    if (wanted_ == wanted) return;
+    if (wanted_ && wanted_->scene->exaggeration != wanted.scene->exaggeration) stop_comparison();
+    opening_->thread().want(wanted);
+    if (comparison_->thread()) comparison_->want(wanted);
     wanted_ = wanted;
 }
 
 Wanted MainWindow::wanted_now() const {
-    const glm::ivec2 size = window_->size_px();
-    Wanted wanted;
-    wanted.view = view_of(state_.document.pose, state_.land);
-    wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
+    Wanted wanted = first_wanted();
+    wanted.scene = state_.document.scene;
+    wanted.scene->view = view_of(state_.document.pose, state_.land);
     wanted.utc = state_.document.utc;
-    wanted.exposure_ev = state_.document.scene.exposure_ev;
-    wanted.backdrop = state_.document.scene.backdrop;
-    if (film_->shows_frame()) {  // exactly
-        wanted.keep_above_m.reset();
-        wanted.seconds = state_.document.scene.seconds;
-    }
-    wanted.width_px = size.x;
-    wanted.height_px = size.y;
+    wanted.overlay = overlay_->laid();
+    wanted.keeps_seconds = film_->shows_frame();
+    if (!film_->shows_frame())  // which is exact
+        wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
     wanted.moving = !pacing_.is_at_rest();
     wanted.sun_moving = wanted.moving && (state_.sun_moves || sun_moved_);
     return wanted;
@@ -183,9 +168,8 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     const bool has_time = is_first || !opening_->scene().time.at.empty();
     state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
     first_utc_ = document.utc;
-    if (state_.chooses_exaggeration && wanted_exaggeration_ != 1)
-        messages_.note(
-            tr_format("heights × {:g}; View, Heights sets another", wanted_exaggeration_));
+    if (state_.chooses_exaggeration && scene.exaggeration != 1)
+        messages_.note(tr_format("heights × {:g}; View, Heights sets another", scene.exaggeration));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     const std::vector<std::string> names = absolute_names(scene.dems);
@@ -274,8 +258,7 @@ void MainWindow::raise_eye() {
 }
 
 bool MainWindow::is_image_of_now() const {
-    return picture_ && picture_->answers == opening_->thread().wants() && wanted_ &&
-           same(*wanted_, wanted_now());
+    return picture_ && picture_->answers == opening_->thread().wants() && wanted_ == wanted_now();
 }
 
 bool MainWindow::is_image_complete() const {

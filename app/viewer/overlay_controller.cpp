@@ -36,7 +36,6 @@ void OverlayController::clear() {
     shows_frame_ = is_hidden_ = false;
     work_.forget();
     requested_.reset();
-    laid_.reset();
     lays_overlay_ = false;
     state_.overlay.reset();
     exports_when_complete_ = false;
@@ -89,20 +88,12 @@ bool OverlayController::request(const Opened& opened) {
     return true;
 }
 
-void OverlayController::show_frame(SceneThread& thread) {
+void OverlayController::show_frame() {
     shows_frame_ = true;
     is_hidden_ = state_.document.overlay.kind == OverlayKind::None;
-    lay(thread);
 }
 
-void OverlayController::lay(SceneThread& thread) {
-    const LaidOverlay now = laid();
-    if (!lays_overlay_ || now == laid_) return;
-    laid_ = now;
-    thread.want_overlay(now);
-}
-
-bool OverlayController::update(const Opened& opened, SceneThread& thread) {
+bool OverlayController::update(const Opened& opened) {
     shows_frame_ = is_hidden_ = false;
     bool has_changed = request(opened);
     const std::shared_ptr<const OverlayShown> answer = work_.answer();
@@ -112,8 +103,6 @@ bool OverlayController::update(const Opened& opened, SceneThread& thread) {
         lays_overlay_ = true;
         has_changed = true;
     }
-    // The scene's own overlay stays until there is an answer.
-    lay(thread);
     state_.overlay_progress.reset();
     if (requested_ && !work_.is_done()) state_.overlay_progress = work_.progress();
     state_.saved_overlay.clear();
@@ -121,10 +110,11 @@ bool OverlayController::update(const Opened& opened, SceneThread& thread) {
     return has_changed;
 }
 
-LaidOverlay OverlayController::laid() const {
-    if (!is_displayed()) return {};
+std::optional<session::LaidOverlay> OverlayController::laid() const {
+    if (!lays_overlay_) return std::nullopt;
+    if (!is_displayed()) return session::LaidOverlay{};
     const session::Overlay& overlay = state_.overlay->overlay;
-    return {overlay.raster, overlay.time && !state_.document.overlay.shadows};
+    return session::LaidOverlay{overlay.raster, overlay.time && !state_.document.overlay.shadows};
 }
 
 bool OverlayController::is_complete() const {

@@ -21,15 +21,14 @@ class OverlayController {
 
     /// Removes the overlay before another DEM is opened. A running export continues.
     void clear();
-    /// Requests the overlay that the document asks for and passes new results to the scene's
-    /// thread.
+    /// Requests the overlay that the document asks for and takes new results.
     /// @returns whether anything changed that panels show
-    bool update(const Opened& opened, SceneThread& thread);
+    bool update(const Opened& opened);
     /// While a film's frame is shown: with the overlay if a file has it, else without any. What
     /// is requested stays.
-    void show_frame(SceneThread& thread);
-    /// What lies on the ground now.
-    LaidOverlay laid() const;
+    void show_frame();
+    /// What lies on the ground; nullopt: the scene's own overlay, until there is an answer.
+    std::optional<session::LaidOverlay> laid() const;
     /// Whether State::overlay is what the document asks for, from all posts.
     bool is_complete() const;
 
@@ -53,8 +52,6 @@ class OverlayController {
         std::string shown_name;  ///< for panels
     };
 
-    /// Gives the scene's thread what lies on the ground, if that has changed.
-    void lay(SceneThread& thread);
     bool waits_for_posts() const;
     /// Whether the document asks for an overlay that can be computed now.
     bool is_wanted() const;
@@ -71,8 +68,7 @@ class OverlayController {
     Discard& discard_;
     OverlayWork work_;
     std::optional<OverlayWanted> requested_;
-    bool lays_overlay_ = false;        // else the scene's thread has its scene's own
-    std::optional<LaidOverlay> laid_;  // that the scene's thread was given
+    bool lays_overlay_ = false;
     std::unique_ptr<OverlaySave> export_;
     bool exports_when_complete_ = false;
     bool is_hidden_ = false;  // in a film's frame

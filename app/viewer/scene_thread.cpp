@@ -7,7 +7,6 @@
 #include <condition_variable>
 #include <exception>
 #include <future>
-#include <map>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -75,10 +74,6 @@ struct SceneThread::Impl {
     std::condition_variable changed;
     Wanted wanted;
     bool has_new_wants = false, ends = false, rests = false;
-    std::optional<scene::Effects> effects;
-    std::map<std::string, std::string> values;
-    std::optional<LaidOverlay> overlay;  // nullopt: unchanged
-    std::optional<double> exaggeration;
     PictureQueue pictures;
     std::optional<std::string> message;
     std::exception_ptr failure;
@@ -87,9 +82,11 @@ struct SceneThread::Impl {
     std::uint64_t wants = 0;
 
     // Used only on the thread.
-    bool reads_all_posts = false;  // the complete DEM replaces a preview
-    bool awaits_pages = false;     // a frame without motion lacks tile pages
-    bool moves = false;            // effects move without requests
+    scene::Effects asked_effects, effects;  // last, and those of them that did not fail
+    int effects_read = 0;                   // as in Wanted
+    bool reads_all_posts = false;           // the complete DEM replaces a preview
+    bool awaits_pages = false;              // a frame without motion lacks tile pages
+    bool moves = false;                     // effects move without requests
     std::unique_ptr<session::Session> session;
     std::optional<FrameExchange> exchange;  // if frames are shared with the window
     std::uint64_t published = 0;
@@ -134,7 +131,12 @@ struct SceneThread::Impl {
             session = std::make_unique<session::Session>(scene, options, files);
             // The view of the whole DEM depends on the window's size.
             const Wanted first = first_wanted();
-            session->resize(first.width_px, first.height_px);
+            asked_effects = effects = scene.effects;
+            effects_read = first.effects_read;
+            scene::Scene sized = scene_now();
+            sized.width_px = first.width_px;
+            sized.height_px = first.height_px;
+            session->show(sized, session->time(), {.exact = false});
             publish_opened(first.insets);
         } catch (...) {
             const std::lock_guard lock(mutex);
@@ -156,11 +158,13 @@ struct SceneThread::Impl {
 
     /// Holds the lock only for the hand-over, so that the window does not wait.
     void publish_opened(const scene::Insets& insets) {
+        auto anew = std::make_shared<Opened>(
+            Opened{session->dem(), session->ground(), session->scene(), session->outline(),
+                   session->heights_to_aim_at(), session->time(), session->overlay_legend()});
         // An aerial view keeps its sky once it is turned, and is an eye like any other.
-        const scene::Scene& now = session->scene();
+        scene::Scene& now = anew->scene;
         if (scene::backdrop_of(now.backdrop, now.view) == scene::Backdrop::Horizon)
-            session->set_backdrop(scene::Backdrop::Horizon);
-        auto anew = as_opened();
+            now.backdrop = scene::Backdrop::Horizon;
         look_at_whole(*anew, insets);
         const std::lock_guard lock(mutex);
         opened = std::move(anew);
@@ -168,18 +172,20 @@ struct SceneThread::Impl {
 
     /// Looks at the whole scene until the window requests a view.
     void look_at_whole(const Opened& of, const scene::Insets& insets) {
-        const scene::Scene& now = of.scene;
-        if (now.view.eye) return;
-        const double aspect = static_cast<double>(now.width_px) / now.height_px;
-        const Land land{&of.ground.frame, now.exaggeration, {}, {}};
-        session->look(view_of(pose_of(of.camera(now.view, aspect, insets), land), land),
-                      kClearance_m);
+        scene::Scene whole = of.scene;
+        if (whole.view.eye) return;
+        const double aspect = static_cast<double>(whole.width_px) / whole.height_px;
+        const Land land{&of.ground.frame, whole.exaggeration, {}, {}};
+        whole.view = view_of(pose_of(of.camera(whole.view, aspect, insets), land), land);
+        whole.effects = effects;
+        session->show(whole, session->time(), {.exact = false, .keep_above_m = kClearance_m});
     }
 
-    std::shared_ptr<const Opened> as_opened() const {
-        return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
-                                               session->outline(), session->heights_to_aim_at(),
-                                               session->time(), session->overlay_legend()});
+    /// What is drawn now, with effects as they were asked for.
+    scene::Scene scene_now() const {
+        scene::Scene now = session->scene();
+        now.effects = effects;
+        return now;
     }
 
     /// Reads the complete DEM in the background, after the first frame of a preview.
@@ -209,18 +215,9 @@ struct SceneThread::Impl {
         publish_opened(insets);
     }
 
-    void exaggerate(double by, const scene::Insets& insets) {
-        scene.exaggeration = by;
-        session->set_exaggeration(by);
-        publish_opened(insets);
-    }
-
     /// Waits until there is something to draw. @param sharp  nothing is left to do for the request
     void wait_for_requests(std::unique_lock<std::mutex>& lock, bool sharp) {
-        const auto is_asked = [&] {
-            return ends || has_new_wants || effects || !values.empty() || overlay || all_posts ||
-                   exaggeration;
-        };
+        const auto is_asked = [&] { return ends || has_new_wants || all_posts; };
         // Drawing sooner would slow down the tile pages that it waits for.
         const auto drawn_at = Clock::now();
         while (awaits_pages && !is_asked() && session->is_loading() &&
@@ -243,10 +240,6 @@ struct SceneThread::Impl {
             wait_for_requests(lock, sharp);
             if (ends) return;
             const Wanted now = wanted;
-            const auto new_effects = std::exchange(effects, std::nullopt);
-            const auto new_values = std::exchange(values, {});
-            const auto new_overlay = std::exchange(overlay, std::nullopt);
-            const auto new_exaggeration = std::exchange(exaggeration, std::nullopt);
             auto new_posts = std::exchange(all_posts, nullptr);
             const std::uint64_t answers = wants;
             has_new_wants = false;
@@ -261,12 +254,6 @@ struct SceneThread::Impl {
             }
             // After a failure the last frame stays until the next request.
             try {
-                attempt([&] { change(new_effects, new_values); });
-                if (new_overlay)
-                    attempt([&] {
-                        session->set_overlay(new_overlay->raster, new_overlay->without_shadows);
-                    });
-                if (new_exaggeration) attempt([&] { exaggerate(*new_exaggeration, now.insets); });
                 awaits_pages = false;
                 if (!attempt([&] { sharp = draw(now, answers); })) {
                     sharp = true;
@@ -316,11 +303,33 @@ struct SceneThread::Impl {
         message = std::move(text);
     }
 
-    void change(const std::optional<scene::Effects>& new_effects,
-                const std::map<std::string, std::string>& new_values) {
-        if (new_effects) session->set_effects(*new_effects);
-        for (const auto& [address, value] : new_values)
-            session->set(address, value);
+    /// Takes other effects, or the same from changed files.
+    void take_effects(const Wanted& now, session::Hints hints) {
+        hints.reload_effects = std::exchange(effects_read, now.effects_read) != now.effects_read;
+        if (now.scene->effects == asked_effects && !hints.reload_effects) return;
+        asked_effects = now.scene->effects;
+        scene::Scene next = session->scene();
+        next.effects = asked_effects;
+        if (attempt([&] { session->show(next, session->time(), hints); })) effects = asked_effects;
+    }
+
+    /// Shows what is wanted at a fraction of the window's sides.
+    void show(const Wanted& now, double scale, const session::Hints& hints) {
+        if (now.scene) take_effects(now, hints);
+        scene::Scene next = now.scene.value_or(session->scene());
+        next.effects = effects;
+        next.width_px = std::max(1, static_cast<int>(std::lround(now.width_px * scale)));
+        next.height_px = std::max(1, static_cast<int>(std::lround(now.height_px * scale)));
+        moves = session->is_animated() && !now.keeps_seconds;
+        if (moves)
+            next.seconds =
+                std::fmod(scene.seconds + milliseconds_since(opened_at) / 1000, scene::kMaxSeconds);
+        const double before = session->scene().exaggeration;
+        // A forecast may not have the time: the picture then keeps its own.
+        if (!attempt([&] { session->show(next, now.scene ? now.utc : session->time(), hints); }))
+            session->show(next, session->time(), hints);
+        if (next.exaggeration != before) publish_opened(now.insets);
+        scene.exaggeration = next.exaggeration;
     }
 
     /// Fraction of the window's sides at which a frame meets kSoon_ms.
@@ -337,28 +346,15 @@ struct SceneThread::Impl {
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
-        if (now.backdrop) session->set_backdrop(*now.backdrop);
-        if (now.view) session->look(*now.view, now.keep_above_m);
-        // A forecast may not have the time: the picture then keeps its own.
-        if (now.utc && *now.utc != session->time() &&
-            attempt([&] { session->set_time(*now.utc); })) {
-            // Core's lighting is always current.
+        if (now.scene && now.utc != session->time())
             shadows_lag = !session->effects().loaded.modules.empty();
-        }
-        if (now.exposure_ev) session->set_exposure(*now.exposure_ev);
-        session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
-                        std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
+        show(now, scale,
+             {.exact = false, .keep_above_m = now.keep_above_m, .overlay = now.overlay});
         // Shadow maps depend on the eye.
         const bool keep = now.sun_moving && shadows_lag &&
                           session->camera().eye_m == shadows_eye_m &&
                           Clock::now() - shadows_at < kShadowsAge;
-        session->freeze_native(keep);
-        moves = session->is_animated() && !now.seconds;
-        if (now.seconds) session->set_seconds(*now.seconds);
-        if (moves)
-            session->set_seconds(std::fmod(scene.seconds + milliseconds_since(opened_at) / 1000,
-                                           scene::kMaxSeconds));
-        const bool whole = session->draw_available();
+        const bool whole = session->draw_available(keep);
         awaits_pages = !whole && !now.moving && !now.sun_moving;
         if (!keep) {
             shadows_at = Clock::now();
@@ -455,27 +451,8 @@ void SceneThread::want(const Wanted& wanted) {
     });
 }
 
-void SceneThread::want_effects(const scene::Effects& effects) {
-    impl_->change([&](Impl& my) {
-        my.effects = effects;
-        my.values.clear();
-    });
-}
-
-void SceneThread::want_value(const std::string& address, const std::string& value) {
-    impl_->change([&](Impl& my) { my.values[address] = value; });
-}
-
-void SceneThread::want_exaggeration(double exaggeration) {
-    impl_->change([&](Impl& my) { my.exaggeration = exaggeration; });
-}
-
 void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
     impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
-}
-
-void SceneThread::want_overlay(LaidOverlay overlay) {
-    impl_->change([&](Impl& my) { my.overlay = std::move(overlay); });
 }
 
 bool SceneThread::rests() const {

@@ -19,25 +19,20 @@ namespace relevo::viewer {
 
 /// What the window requests. The latest request replaces earlier ones.
 struct Wanted {
-    std::optional<scene::View> view;  ///< nullopt: the scene's
-    /// Least height of the eye above the drawn ground [m]; nullopt: not raised.
-    std::optional<double> keep_above_m = 0;
-    std::optional<sun::Instant> utc;          ///< nullopt: the scene's
-    std::optional<double> exposure_ev;        ///< nullopt: the scene's
-    std::optional<scene::Backdrop> backdrop;  ///< nullopt: the scene's
-    std::optional<double> seconds;    ///< of effects that move; nullopt: they move by themselves
-    int width_px = 1, height_px = 1;  ///< of the window
-    scene::Insets insets;             ///< of its panels, for the scene's view
+    /// Of the DEM that is open. nullopt: as it was opened, all of it in view.
+    std::optional<scene::Scene> scene;
+    sun::Instant utc{};               ///< of `scene`
+    int width_px = 1, height_px = 1;  ///< of the window, instead of the scene's
+    scene::Insets insets;             ///< of its panels, for views of the whole DEM
+    /// As session::Hints.
+    std::optional<double> keep_above_m;
+    std::optional<session::LaidOverlay> overlay;
+    bool keeps_seconds = false;  ///< effects that move are as in the scene; else they go on
     bool moving = false;  ///< the user moves the camera: a quick frame is better than a sharp one
     bool sun_moving = false;  ///< the user moves the sun: shadows may lag behind as well
-};
+    int effects_read = 0;     ///< one more than before: files of effects are read again
 
-/// Colours on the ground.
-struct LaidOverlay {
-    std::shared_ptr<const render::OverlayRaster> raster;  ///< null: none
-    bool without_shadows = false;                         ///< as Session::set_overlay()
-
-    bool operator==(const LaidOverlay&) const = default;
+    bool operator==(const Wanted&) const = default;
 };
 
 /// An open scene.
@@ -74,18 +69,11 @@ class SceneThread {
     /// @throws Error if opening, or reading the complete DEM, has failed
     void check() const;
 
+    /// Effects that fail leave those before, with a message. opened() is replaced for another
+    /// exaggeration.
     void want(const Wanted& wanted);
-    /// Requests other effects, or to reload their files.
-    void want_effects(const scene::Effects& effects);
-    /// Sets a parameter that is not static.
-    void want_value(const std::string& address, const std::string& value);
-
-    /// Sets the vertical exaggeration. opened() is replaced.
-    void want_exaggeration(double exaggeration);
     /// Replaces a preview with the complete DEM.
     void want_dem(std::shared_ptr<const session::LoadedDem> dem);
-
-    void want_overlay(LaidOverlay overlay);
 
     /// True if there is nothing left to draw.
     bool rests() const;

@@ -8,16 +8,6 @@
 #include "session/words.h"
 
 namespace relevo::viewer {
-namespace {
-
-std::string effects_text(const Document& document) {
-    scene::Scene scene;
-    scene.effects = document.scene.effects;
-    return scene::scene_text(scene, "");
-}
-
-}  // namespace
-
 void State::stand_on(const render::Ground& ground) {
     centre = ground.frame.origin();
     air = light::refraction_at(document.scene.refraction,
@@ -51,13 +41,9 @@ void State::set_utc(sun::Instant utc) {
     day = SunDay::of(date, document.zone, centre, air);
 }
 
-void State::set_value(const shader::Param& param, const std::string& text, bool on) {
+void State::set_value(const shader::Param& param, const std::string& text) {
     effects->values.set(param.address, text);
     document.scene.effects = with_value(std::move(document.scene.effects), param.address, text);
-    if (param.is_static || !on)
-        new_effects = document.scene.effects;
-    else
-        new_values.emplace_back(param.address, text);
     if (param.is_static || param.type == shader::ParamType::Bool || !param.words.empty())
         step = true;
 }
@@ -68,7 +54,6 @@ void State::take_effects(bool is_step) {
     try {
         effects = EffectsModel::of(changed, ground_words);
         document.scene.effects = changed;
-        new_effects = changed;
         step = step || is_step;
     } catch (const Error& error) {
         message = error.what();
@@ -77,7 +62,7 @@ void State::take_effects(bool is_step) {
 
 void State::restore(const Document& restored) {
     if (restored.zone.name() != document.zone.name()) day = {};
-    const bool changes_effects = effects_text(restored) != effects_text(document);
+    const bool changes_effects = restored.scene.effects != document.scene.effects;
     document = restored;
     // Until the ground is drawn anew it has the exaggeration that it has now.
     document.pose =

@@ -86,8 +86,6 @@ struct State {
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo
     std::optional<scene::Effects> asked_effects;
-    std::optional<scene::Effects> new_effects;  ///< for the scene's thread
-    std::vector<std::pair<std::string, std::string>> new_values;
 
     /// Places the observer of the sun at a DEM's centre, with the scene's refraction there.
     void stand_on(const render::Ground& ground);
@@ -99,8 +97,8 @@ struct State {
     /// Requests other effects or values, also of static parameters. take_effects() applies them
     /// after the panels are drawn.
     void set_effects(scene::Effects changed) { asked_effects = std::move(changed); }
-    /// Sets a parameter of an effect. @param on  whether the effect is on
-    void set_value(const shader::Param& param, const std::string& text, bool on);
+    /// Sets a parameter of an effect.
+    void set_value(const shader::Param& param, const std::string& text);
     /// Makes the requested effects those of the document. @param is_step  for undo
     void take_effects(bool is_step);
     /// Replaces the document with a state of its history.

@@ -12,6 +12,8 @@ namespace relevo {
 /// Means of a DEM that is larger than memory have about twice as much, because their finest level
 /// is no copy of the heights.
 struct MemoryBudget {
+    bool operator==(const MemoryBudget&) const = default;
+
     static constexpr std::int64_t kMiB = std::int64_t{1} << 20;
     static constexpr std::int64_t kDefault_mib = 3072;  ///< 1 GiB of heights
     static constexpr std::int64_t kBytesAPost = 12;     ///< of figures; 4 of them are its height

@@ -33,6 +33,8 @@ struct LoadOptions {
     /// Averaged levels of large DEMs are kept in the user's cache (LevelCache). Never so for
     /// libraries, which write no files unasked.
     bool cached = false;
+
+    bool operator==(const LoadOptions&) const = default;
 };
 
 /// A DEM that is open: what it is, and its heights on demand. Errors begin with `dem::load`.

@@ -32,6 +32,10 @@ struct Setting {
     std::string text;      ///< as shader::parse_value reads it
     int line = 0;          ///< in the file of a preset or scene; 0: command line
     std::string folder{};  ///< base of relative paths; empty: working folder
+
+    bool operator==(const Setting& other) const {
+        return address == other.address && text == other.text && folder == other.folder;
+    }
 };
 
 /// A file of switches and values.

@@ -37,6 +37,8 @@ inline constexpr double kFill = 0.95;
 /// width and height, opposite sides together below 1.
 struct Insets {
     double left = 0, right = 0, bottom = 0, top = 0;
+
+    bool operator==(const Insets&) const = default;
 };
 
 /// A camera that circles a target.
@@ -50,6 +52,8 @@ struct Orbit {
     /// Framed as from an aeroplane above the near edge (scene/aerial.h); else all of the ground is
     /// in the picture.
     bool aerial = false;
+
+    bool operator==(const Orbit&) const = default;
 };
 
 /// The ground that aerial views frame, in the local frame [m].

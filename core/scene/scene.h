@@ -20,6 +20,8 @@ struct TimeSpec {
     std::string at;    ///< "2026-06-21T18:30+02:00", "sunset-30min"; empty: scene::DefaultDay
     std::string date;  ///< of an event
     std::string zone;  ///< "Europe/Zurich", "auto", "solar"; empty: auto, that of the place
+
+    bool operator==(const TimeSpec&) const = default;
 };
 
 /// Which effects are on, with which values.
@@ -30,6 +32,8 @@ struct Effects {
     std::vector<std::string> plugin_path;  ///< folders of further plugins
     /// Of Scene::weather. Sessions find it; no file has it.
     weather::Facts weather{};
+
+    bool operator==(const Effects&) const = default;
 };
 
 /// A week: a 32-bit float still has steps of 1/16 s there.
@@ -45,6 +49,8 @@ struct Overlay {
     bool lit = false;      ///< shaded by the scene's sun; else drawn in its own colours
     bool shadows = false;  ///< cast shadows are on also if it shows sunlight of its own time
     std::string title;     ///< of the legend; empty: the band's name
+
+    bool operator==(const Overlay&) const = default;
 };
 
 /// Whether a text is the path of a file, which has a slash or a dot, and not one of the names that
@@ -117,6 +123,8 @@ struct Scene {
     bool transparent = false;     ///< what shows no ground of the DEM
     bool ortho = false;           ///< pictures are maps (scene/map_view.h), and `view` is not used
     double resolution = 0;  ///< of a map: side of a pixel [units of the DEM's CRS]; 0: by size
+
+    bool operator==(const Scene&) const = default;
 };
 
 inline constexpr int kMaxSide_px = 65536;

@@ -16,6 +16,8 @@ namespace relevo::scene {
 struct Standpoint {
     geo::Geodetic place;
     bool above_ground = false;  ///< place.height_m counts from the ground
+
+    bool operator==(const Standpoint&) const = default;
 };
 
 /// How a picture all around the eye is projected: core/scene/panorama.h.
@@ -41,6 +43,8 @@ struct View {
 
     /// Takes what does not depend on the place of a camera from another.
     void take_lens_of(const View& other);
+
+    bool operator==(const View&) const = default;
 };
 
 /// Beyond them the ground is less than a pixel, or less than a millimetre of it is seen.

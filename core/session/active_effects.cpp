@@ -213,10 +213,11 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
             return std::nullopt;
     for (const shader::TextParam* text : changed.texts())
         if (changed.text(text->address) != values.text(text->address)) return std::nullopt;
-    if (report)
-        for (const std::string& notice : said)
-            if (!contains(notices, notice)) log::info(notice);
-    notices.insert(notices.end(), said.begin(), said.end());
+    for (std::string& notice : said) {
+        if (contains(notices, notice)) continue;
+        if (report) log::info(notice);
+        notices.push_back(std::move(notice));
+    }
     return changed;
 }
 

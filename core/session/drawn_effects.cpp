@@ -18,14 +18,6 @@ bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
            overlay_raster == other.overlay_raster && hides_shadows == other.hides_shadows;
 }
 
-bool EffectsRequest::operator==(const EffectsRequest& other) const {
-    const auto same = [](const effect::Setting& a, const effect::Setting& b) {
-        return a.address == b.address && a.text == b.text && a.folder == b.folder;
-    };
-    return has_selection_of(other) &&
-           std::ranges::equal(effects.settings, other.effects.settings, same);
-}
-
 DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
     DrawnEffects drawn;
     drawn.request_ = std::move(request);
@@ -104,21 +96,6 @@ bool DrawnEffects::take(const EffectsRequest& request) {
     }
     request_ = request;
     return true;
-}
-
-void DrawnEffects::set(const std::string& address, const std::string& value) {
-    for (const Half& half : halves()) {
-        const shader::Param* const param = half.effects.values.find(address);
-        if ((param && (param->is_static || half.effects.constants)) ||
-            half.effects.values.find_text(address))
-            bad_input(fmt::format(
-                "session: {}: is a static parameter; another value needs another shader", address));
-        half.effects.values.set(address, value);
-        half.renderer->set_values(half.effects.values);
-    }
-    scene::Effects change;
-    change.settings = {{address, value}};
-    request_.effects = scene::merge(std::move(request_.effects), change);
 }
 
 void DrawnEffects::resize(int width_px, int height_px) {

@@ -29,7 +29,7 @@ struct EffectsRequest {
 
     /// True if only parameter values may differ.
     bool has_selection_of(const EffectsRequest& other) const;
-    bool operator==(const EffectsRequest& other) const;
+    bool operator==(const EffectsRequest&) const = default;
 };
 
 /// Loaded effects with their renderer. A comparison has a second selection, drawn in the other
@@ -58,8 +58,6 @@ class DrawnEffects {
     /// @returns true if it now draws that request; else nothing has changed
     /// @throws Error (BadInput) as effect::apply_settings
     bool take(const EffectsRequest& request);
-    /// Sets a parameter. @throws Error (BadInput) if it is static, and as shader::ParamStore
-    void set(const std::string& address, const std::string& value);
     void resize(int width_px, int height_px);
     void render(render::Terrain& terrain, const render::Ground& ground,
                 const render::FrameInputs& inputs, render::PassTimes* times = nullptr);

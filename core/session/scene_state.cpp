@@ -51,10 +51,9 @@ void SceneState::take_shape(bool other) {
     inputs.exposure_ev = scene.exposure_ev;
     inputs.ev100 = scene.ev100;
     inputs.seconds = scene.seconds;
-    if (other) {
-        to_show_ = render::ground_to_show(dem_->to_frame(), *ground_, scene.exaggeration);
-        moved_.reset();
-    }
+    if (!other) return;
+    to_show_ = render::ground_to_show(dem_->to_frame(), *ground_, scene.exaggeration);
+    moved_.reset();
     day_.emplace(ground_->frame.origin(), ground_->block_m <= 0);
 }
 

@@ -34,20 +34,8 @@ const scene::Scene& Session::scene() const {
     return impl_->state.scene;
 }
 
-void Session::look(const scene::View& view, std::optional<double> keep_above_m) {
-    impl_->state.keep_above_m = keep_above_m;
-    impl_->look(view);
-}
-
 scene::GroundHeight Session::heights_to_aim_at() const {
     return session::heights_to_aim_at(impl_->state.dem(), impl_->drawn->renderer().displacement());
-}
-
-void Session::set_time(sun::Instant utc) {
-    impl_->context->make_current();
-    impl_->set_time(utc);
-    impl_->state.scene.time.at = sun::exact_iso(utc);
-    impl_->state.scene.time.date.clear();
 }
 
 void Session::take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
@@ -58,44 +46,16 @@ sun::Instant Session::time() const {
     return impl_->state.utc();
 }
 
-void Session::set_effects(const scene::Effects& effects) {
-    impl_->set_effects(effects);
-}
-
 const ActiveEffects& Session::effects() const {
     return impl_->drawn->effects();
 }
 
-void Session::set(const std::string& address, const std::string& value) {
-    impl_->context->make_current();
-    const render::Displacement before = impl_->drawn->renderer().displacement();
-    impl_->drawn->set(address, value);
-    scene::Effects change;
-    change.settings = {{address, value}};
-    scene::Effects& effects = impl_->state.scene.effects;
-    effects = scene::merge(std::move(effects), change);
-    if (impl_->drawn->renderer().displacement() != before) impl_->look(impl_->state.scene.view);
-}
-
-void Session::show(const scene::Scene& scene, sun::Instant utc) {
-    impl_->show(scene, utc);
-}
-
-void Session::resize(int width_px, int height_px) {
-    const scene::Scene& now = impl_->state.scene;
-    if (width_px == now.width_px && height_px == now.height_px) return;
-    impl_->context->make_current();
-    impl_->resize(width_px, height_px);
-    impl_->look(now.view);
+void Session::show(scene::Scene scene, sun::Instant utc, const Hints& hints) {
+    impl_->show(scene, utc, hints);
 }
 
 void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
-}
-
-void Session::set_overlay(std::shared_ptr<const render::OverlayRaster> raster,
-                          bool without_shadows) {
-    impl_->set_overlay(std::move(raster), without_shadows);
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
@@ -147,28 +107,10 @@ bool Session::is_animated() const {
     return impl_->drawn->renderer().is_animated() || (without && without->is_animated());
 }
 
-void Session::set_exposure(double exposure_ev) {
-    impl_->state.scene.exposure_ev = exposure_ev;
-    impl_->state.inputs.exposure_ev = exposure_ev;
-}
-void Session::set_backdrop(scene::Backdrop backdrop) {
-    impl_->state.scene.backdrop = backdrop;
-}
-void Session::set_exaggeration(double exaggeration) {
-    impl_->state.scene.exaggeration = exaggeration;
-    impl_->state.take_shape(/*other=*/true);
-}
-void Session::set_seconds(double seconds) {
-    impl_->state.scene.seconds = seconds;
-    impl_->state.inputs.seconds = seconds;
-}
-
-void Session::freeze_native(bool freeze) {
-    impl_->state.inputs.freeze_native = freeze;
-}
-
-bool Session::draw_available() {
+bool Session::draw_available(bool freezes_native) {
+    impl_->state.inputs.freeze_native = freezes_native;
     impl_->draw(render::Loading::Background);
+    impl_->state.inputs.freeze_native = false;
     return impl_->terrain->is_complete();
 }
 

@@ -120,6 +120,28 @@ struct Marks;
 /// the first two.
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
+/// Colours on the ground.
+struct LaidOverlay {
+    std::shared_ptr<const render::OverlayRaster> raster;  ///< null: none
+    bool without_shadows = false;  ///< cast shadows are off unless enabled by id
+
+    bool operator==(const LaidOverlay&) const = default;
+};
+
+/// What a window knows of the frames that it asks for. Pictures have none of it.
+struct Hints {
+    /// Frames equal those of a session that is opened with the scene, byte by byte; else detail of
+    /// earlier frames may stay.
+    bool exact = true;
+    /// Least height above the drawn ground for eyes that are not given above it [m]; nullopt: they
+    /// are not raised.
+    std::optional<double> keep_above_m{};
+    bool reload_effects = false;  ///< changed files of effects are read again
+    /// Instead of the scene's overlay. The first one requires other shader programs. nullopt: what
+    /// is there stays.
+    std::optional<LaidOverlay> overlay{};
+};
+
 /// A scene on a device: its DEM, its effects and their renderer. Several sessions may exist at
 /// once; each is used on the thread that created it.
 class Session {
@@ -134,35 +156,18 @@ class Session {
 
     /// The current scene. File names in parameters are absolute.
     const scene::Scene& scene() const;
-    /// Sets the camera. An eye that is given above ground is placed on the drawn ground.
-    /// @param keep_above_m  least height above ground for other eyes [m]; nullopt: not raised
-    /// @throws Error (BadInput) as scene::make_camera
-    void look(const scene::View& view, std::optional<double> keep_above_m = std::nullopt);
-    /// Heights of the currently drawn ground to aim cameras at. May be called on any thread, and
-    /// keeps the DEM alive.
+    /// Heights of the currently drawn ground to aim cameras at, unexaggerated. May be called on any
+    /// thread, and keeps the DEM alive.
     scene::GroundHeight heights_to_aim_at() const;
-    /// Sets the time, and with it the sun.
-    void set_time(sun::Instant utc);
-    /// Shows another scene of the same DEM and reuses what both share. The resulting frames do not
-    /// depend on earlier ones: they are equal byte by byte.
+    /// Shows another scene of the same DEM, holes and overlay, and reuses what both share. An eye
+    /// that is given above ground is placed on the drawn ground.
     /// @param utc  the scene's time
-    /// @throws Error as look(), set(), set_effects() and resize(). The session may then show parts
-    ///     of both scenes.
-    void show(const scene::Scene& scene, sun::Instant utc);
-    /// Switches to other effects, or reloads changed ones.
-    /// @throws Error as those that load, compile and draw. The session then keeps its effects.
-    void set_effects(const scene::Effects& effects);
+    /// @throws Error (BadInput) as scene::make_camera, as those that load, compile and draw
+    ///     effects, and for a time that the weather lacks. Effects are then those before or the
+    ///     scene's, and the session may show other parts of both scenes.
+    void show(scene::Scene scene, sun::Instant utc, const Hints& hints = {});
     /// Installed effects, those that are on, and their parameters.
     const ActiveEffects& effects() const;
-    /// Sets a parameter. @throws Error (BadInput) if it is static, and as shader::ParamStore::set
-    void set(const std::string& address, const std::string& value);
-    /// Size of frames [px].
-    void resize(int width_px, int height_px);
-    /// Draws an overlay on the ground; null: none. The first overlay requires other shader
-    /// programs.
-    /// @param without_shadows  cast shadows are off unless enabled by id
-    void set_overlay(std::shared_ptr<const render::OverlayRaster> raster,
-                     bool without_shadows = false);
     /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
     /// The legend of the scene's overlay; nullopt without one.
@@ -174,19 +179,8 @@ class Session {
     const std::optional<OverlayTime>& overlay_time() const;
     /// Legends of the active effects and of their rasters.
     std::vector<chart::Legend> colour_legends() const;
-    /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
-    /// sun is dragged. Lighting by core is always current.
-    void freeze_native(bool freeze);
-    /// Sets the exposure [EV] of subsequent frames.
-    void set_exposure(double exposure_ev);
-    /// For views from the next look() on.
-    void set_backdrop(scene::Backdrop backdrop);
-    /// Sets the vertical exaggeration of subsequent frames. heights_to_aim_at() stay unexaggerated.
-    void set_exaggeration(double exaggeration);
     /// True if an active effect reads frame.seconds.
     bool is_animated() const;
-    /// Sets the moment of effects that move, for subsequent frames.
-    void set_seconds(double seconds);
 
     /// Replaces a preview (Options::allow_preview) with the complete DEM. The frame's size stays.
     /// Default view and time become those of the complete DEM.
@@ -201,8 +195,10 @@ class Session {
     void draw(render::PassTimes* times = nullptr);
     /// Draws a frame without waiting. Terrain that is not loaded yet is drawn coarser and loads in
     /// the background.
+    /// @param freezes_native  cached passes of native effects, such as shadow maps, stay as they
+    ///     are: they are expensive while the sun is dragged. Lighting by core is always current.
     /// @returns true if the frame is complete
-    bool draw_available();
+    bool draw_available(bool freezes_native = false);
     /// True if terrain is loading, so that a later frame has more detail.
     bool is_loading() const;
     /// Draws only the left half's effects of a comparison, and waits for the device.

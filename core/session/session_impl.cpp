@@ -39,7 +39,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     if (scene.overlay) {
         add_files(*scene.overlay, files);
         overlay_time = time_of(*scene.overlay);
-        hides_shadows = overlay_time && !scene.overlay->shadows;
+        laid.without_shadows = overlay_time && !scene.overlay->shadows;
     }
     std::optional<sun::ParsedTime> time;
     const bool timed = !scene.time.at.empty();
@@ -108,7 +108,7 @@ EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     request.effects.weather = state.weather ? state.weather->facts : weather::Facts{};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
-    request.hides_shadows = has_overlay_raster() && hides_shadows;
+    request.hides_shadows = has_overlay_raster() && laid.without_shadows;
     return request;
 }
 
@@ -155,14 +155,6 @@ void Session::Impl::compute_sky(const LoadedDem& dem,
     };
     if (!sky_view.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
         sky_view = render::compute_sky_view_async(dem.to_draw(), state.scene.exaggeration);
-}
-
-void Session::Impl::set_effects(const scene::Effects& asked) {
-    context->make_current();
-    switch_to(request(asked));
-    take_effects();
-    look(state.scene.view);  // displacement may move the ground under the eye
-    say_unseen(asked);
 }
 
 void Session::Impl::switch_to(const EffectsRequest& wanted) {
@@ -221,53 +213,76 @@ void Session::Impl::resize(int width_px, int height_px) {
     drawn->resize(frame_px().x, frame_px().y);
 }
 
-void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
+void Session::Impl::show(const scene::Scene& next, sun::Instant utc, const Hints& hints) {
     context->make_current();
-    state.inputs.deterministic = true;
     // First what may fail, so that the scene is still the one before.
     const bool other_cover = next.land_cover != state.scene.land_cover;
     const std::shared_ptr<const overlay::Photo> cover =
         other_cover ? open_land_cover(next.land_cover, state.dem()->source->grid()) : land_cover;
-    if (next.weather != state.scene.weather || next.forecast != state.scene.forecast ||
-        next.station_height_m != state.scene.station_height_m) {
-        state.scene.weather = next.weather;
-        state.scene.forecast = next.forecast;
-        state.scene.station_height_m = next.station_height_m;
-        state.weather = weather_of(next, *state.dem());
-    }
-    EffectsRequest wanted = request(next.effects);
-    wanted.mapped = !next.land_cover.file.empty();
-    if (wanted != drawn->request()) {
-        switch_to(wanted);
-        take_effects();
-    }
-    resize(next.width_px, next.height_px);
+    const bool other_air = show_weather(next) || next.refraction != state.scene.refraction;
+    const bool other_effects = show_effects(next, hints);
+    state.inputs.deterministic = hints.exact;
+    state.keep_above_m = hints.keep_above_m;
+    const scene::Scene before = std::exchange(state.scene, next);
     scene::Scene& scene = state.scene;
-    scene.backdrop = next.backdrop;
-    scene.exposure_ev = next.exposure_ev;
-    scene.ev100 = next.ev100;
-    scene.seconds = next.seconds;
-    scene.refraction = next.refraction;
-    scene.samples = next.samples;
-    scene.transparent = next.transparent;
-    scene.ortho = next.ortho;
-    scene.resolution = next.resolution;
+    scene.dems = before.dems;
+    scene.dem = before.dem;
+    scene.holes = before.holes;
+    scene.overlay = before.overlay;
+    scene.effects = before.effects;
+    scene.time = before.time;
+    scene.view = before.view;
+    resize(next.width_px, next.height_px);
     part.reset();
-    const bool other_shape = next.exaggeration != scene.exaggeration;
-    scene.exaggeration = next.exaggeration;
-    if (other_cover || next.pixel_error != scene.pixel_error) {
-        scene.pixel_error = next.pixel_error;
+    const bool other_ground = other_cover || next.pixel_error != before.pixel_error;
+    if (other_ground) {
         land_cover = cover;
         upload(state.dem());
-        scene.land_cover = next.land_cover;
     } else {
-        state.take_shape(other_shape);
+        state.take_shape(next.exaggeration != before.exaggeration);
     }
-    scene.stamps = next.stamps;
+    if (other_air || other_ground || utc != state.utc()) set_time(utc);
     scene.time = next.time;
-    set_time(utc);
     look(next.view);
-    warn_of_eye();
+    if (hints.exact)
+        warn_of_eye();
+    else if (other_effects)
+        say_unseen(next.effects);
+}
+
+bool Session::Impl::show_weather(const scene::Scene& next) {
+    scene::Scene& now = state.scene;
+    if (next.weather == now.weather && next.forecast == now.forecast &&
+        next.station_height_m == now.station_height_m)
+        return false;
+    state.weather = weather_of(next, *state.dem());
+    now.weather = next.weather;
+    now.forecast = next.forecast;
+    now.station_height_m = next.station_height_m;
+    return true;
+}
+
+bool Session::Impl::show_effects(const scene::Scene& next, const Hints& hints) {
+    LaidOverlay other = hints.overlay.value_or(laid);
+    lay(other);
+    EffectsRequest wanted = request(next.effects);
+    wanted.mapped = !next.land_cover.file.empty();
+    if (!hints.reload_effects && wanted == drawn->request()) return false;
+    const bool other_effects = hints.reload_effects || !wanted.has_selection_of(drawn->request());
+    try {
+        switch_to(wanted);
+    } catch (...) {
+        lay(other);
+        throw;
+    }
+    take_effects();
+    return other_effects;
+}
+
+void Session::Impl::lay(LaidOverlay& other) {
+    if (other == laid) return;
+    std::swap(laid, other);
+    terrain->set_overlay(laid.raster);
 }
 
 void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
@@ -296,9 +311,9 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                     dem->source.get());
     if (state.scene.overlay) {
         overlay = read_overlay(*state.scene.overlay, terrain->grid());
-        overlay_raster = overlay->raster;
+        laid.raster = overlay->raster;
     }
-    terrain->set_overlay(overlay_raster);
+    terrain->set_overlay(laid.raster);
     lay_rasters(*drawn);
     stages.emplace_back("upload", milliseconds_since(began));
     state.take_shape(/*other=*/true);
@@ -313,24 +328,10 @@ void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scen
     const scene::Effects effects = drawn->request().effects;
     const EffectsRequest wanted = request(effects);
     if (wanted.ground != drawn->request().ground ||
-        wanted.effects.weather != drawn->request().effects.weather)
-        set_effects(effects);
-}
-
-void Session::Impl::set_overlay(std::shared_ptr<const render::OverlayRaster> wanted,
-                                bool without_shadows) {
-    context->make_current();
-    std::swap(overlay_raster, wanted);
-    std::swap(hides_shadows, without_shadows);
-    terrain->set_overlay(overlay_raster);
-    try {
-        const EffectsRequest with_overlay = request(drawn->request().effects);
-        if (with_overlay != drawn->request()) switch_to(with_overlay);
-    } catch (...) {
-        std::swap(overlay_raster, wanted);
-        std::swap(hides_shadows, without_shadows);
-        terrain->set_overlay(overlay_raster);
-        throw;
+        wanted.effects.weather != drawn->request().effects.weather) {
+        switch_to(wanted);
+        take_effects();
+        look(state.scene.view);  // displacement may move the ground under the eye
     }
 }
 

@@ -64,12 +64,11 @@ struct Session::Impl {
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
 
-    std::shared_ptr<const render::OverlayRaster> overlay_raster;
+    LaidOverlay laid;
     std::optional<Overlay> overlay;                    // of the scene
     std::shared_ptr<const overlay::Photo> land_cover;  // of the scene; null: none
     std::optional<OverlayTime> overlay_time;
-    bool hides_shadows = false;  // of the overlay: EffectsRequest
-    EffectRasters rasters;       // of the drawn effects
+    EffectRasters rasters;  // of the drawn effects
     EffectFields fields;
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
@@ -85,7 +84,7 @@ struct Session::Impl {
     std::shared_ptr<const LoadedDem> load_own() const;
     void open_device(FilesInUse& files);
     EffectsRequest request(const scene::Effects& effects) const;
-    bool has_overlay_raster() const { return overlay_raster || (state.scene.overlay && !terrain); }
+    bool has_overlay_raster() const { return laid.raster || (state.scene.overlay && !terrain); }
     /// Copies the drawn effects into the scene.
     void take_effects();
     render::RendererOptions renderer_options();
@@ -93,7 +92,6 @@ struct Session::Impl {
     void compile(DrawnEffects& effects, const LoadedDem* first_dem = nullptr);
     /// Computes the sky-view factor on the CPU while the driver compiles programs that read it.
     void compute_sky(const LoadedDem& dem, const std::vector<render::ProgramText>& texts);
-    void set_effects(const scene::Effects& asked);
     /// Draws a request: with the current effects, with recent ones, or with newly loaded ones.
     void switch_to(const EffectsRequest& wanted);
     void switch_effects(const EffectsRequest& wanted);
@@ -103,10 +101,15 @@ struct Session::Impl {
     void lay_fields();
     void set_time(sun::Instant utc);
     void resize(int width_px, int height_px);
-    void show(const scene::Scene& next, sun::Instant utc);
+    void show(const scene::Scene& next, sun::Instant utc, const Hints& hints);
+    /// @returns whether the weather is another one
+    bool show_weather(const scene::Scene& next);
+    /// Its effects, over the overlay of the hints.
+    /// @returns whether others are on, or were read again
+    bool show_effects(const scene::Scene& next, const Hints& hints);
+    void lay(LaidOverlay& other);  ///< swaps what lies on the ground
     void upload(const std::shared_ptr<const LoadedDem>& dem);
     void take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given);
-    void set_overlay(std::shared_ptr<const render::OverlayRaster> wanted, bool without_shadows);
     void look(const scene::View& view);
     DrawnShape shape();
     /// @param around  as drawn in a panorama

@@ -113,7 +113,9 @@ int main(int count, char** words) {
     for (std::size_t i = 0; i < path.size(); ++i) {
         view.eye = {path[i], false};
         const double began_ms = clock_ms(), used_ms = processor_ms();
-        session.look(view);
+        scene::Scene next = session.scene();
+        next.view = view;
+        session.show(next, session.time(), {.exact = false});
         if (i == 0) {  // after loading
             session.draw();
             glFinish();

@@ -15,6 +15,7 @@
 #include "session/marks.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -179,7 +180,7 @@ TEST(ContourHeights, StayWhileTheCameraMoves) {
     for (int step = 0; step < 12; ++step) {
         scene.view.orbit.azimuth_deg = 170 + 0.25 * step;
         scene.view.orbit.zoom = 2.5 * std::pow(1.01, step);
-        shown.session.look(scene.view);
+        test::look(shown.session, scene.view);
         shown.session.draw();
         const std::vector<Label> now = shown.labels();
         const SeenGround seen = shown.seen();
@@ -212,9 +213,9 @@ TEST(ContourHeights, TakeFewMilliseconds) {
     std::array<double, 2> frame_ms{1e9, 1e9}, first_ms{}, marks_ms{1e9, 1e9};
     for (int step = 0; step < 24; ++step) {
         const auto on = static_cast<std::size_t>(step % 2);
-        shown.session.set("contours.labels", on ? "true" : "false");
+        test::set(shown.session, "contours.labels", on ? "true" : "false");
         scene.view.orbit.azimuth_deg = 170 + 10 * step;  // ground that was not seen yet
-        shown.session.look(scene.view);
+        test::look(shown.session, scene.view);
         double began_ms = processor_ms();
         shown.session.draw();
         first_ms[on] = std::max(first_ms[on], processor_ms() - began_ms);
@@ -239,7 +240,7 @@ TEST(ContourHeights, AreTheSameWhateverWasDrawnBefore) {
     scene::Scene other = scene;
     other.view.orbit.zoom = 6;
     Shown moved(other);
-    moved.session.look(scene.view);
+    test::look(moved.session, scene.view);
     moved.session.draw();
     EXPECT_EQ(picture.values, moved.session.picture().values);
 }
@@ -249,7 +250,7 @@ TEST(ContourHeights, AreOffWithTheirParameter) {
     scene.effects.settings = {{"contours.labels", "false"}};
     Shown shown(scene);
     EXPECT_TRUE(shown.labels().empty());
-    shown.session.set("contours.labels", "true");
+    test::set(shown.session, "contours.labels", "true");
     shown.session.draw();
     EXPECT_GT(shown.labels().size(), 15u);
 }

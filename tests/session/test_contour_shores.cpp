@@ -12,6 +12,7 @@
 #include "dem/fixture.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -28,7 +29,7 @@ class Lines {
         std::vector<float> depths_m;
         session_.read_depths(depths_m);
         seen_.emplace(session_.camera(), with_.width, with_.height, std::move(depths_m));
-        session_.set("contours.opacity", "0");
+        test::set(session_, "contours.opacity", "0");
         session_.draw();
         without_ = session_.picture();
     }

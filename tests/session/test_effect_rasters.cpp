@@ -10,6 +10,7 @@
 #include "dem/fixture.h"
 #include "dem/source.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -75,20 +76,21 @@ TEST_F(EffectRasters, AreDrawnAndChangedAndSwitchedOffAndOn) {
     Session& session = open(draped(write_photo("dark.tif", 50)));
     EXPECT_NEAR(middle(), 50, 1);
     scene::Effects other = draped(write_photo("light.tif", 200)).effects;
-    session.set_effects(other);
+    test::set_effects(session, other);
     EXPECT_NEAR(middle(), 200, 1);
     scene::Effects off = other;
     off.switches.only = std::vector<std::string>{};
-    session.set_effects(off);
+    test::set_effects(session, off);
     EXPECT_LT(middle(), 190);
-    session.set_effects(other);
+    test::set_effects(session, other);
     EXPECT_NEAR(middle(), 200, 1);
 }
 
 TEST_F(EffectRasters, AMistakeLeavesThePictureAsItWas) {
     Session& session = open(draped(write_photo("dark.tif", 50)));
-    EXPECT_THAT(test::error_of([&] { session.set_effects(draped("/nowhere/photo.tif").effects); }),
-                testing::StartsWith("exit 3: drape.file: /nowhere/photo.tif: "));
+    EXPECT_THAT(
+        test::error_of([&] { test::set_effects(session, draped("/nowhere/photo.tif").effects); }),
+        testing::StartsWith("exit 3: drape.file: /nowhere/photo.tif: "));
     EXPECT_NEAR(middle(), 50, 1);
 }
 
@@ -100,7 +102,7 @@ TEST_F(EffectRasters, AMistakeInAFileOfLinesLeavesThePictureAsItWas) {
     const image::Image8 before = session.picture();
     scene::Effects other = scene.effects;
     other.settings = {{"tracks.file", "/nowhere/walk.gpx"}};
-    EXPECT_THAT(test::error_of([&] { session.set_effects(other); }),
+    EXPECT_THAT(test::error_of([&] { test::set_effects(session, other); }),
                 testing::HasSubstr("/nowhere/walk.gpx"));
     session.draw();
     EXPECT_EQ(session.picture().values, before.values);
@@ -145,7 +147,7 @@ TEST_F(EffectRasters, AChangedFileIsReadAgain) {
     Session& session = open(scene);
     EXPECT_NEAR(middle(), 50, 1);
     std::filesystem::rename(write_photo("new.tif", 120), scene.effects.settings[0].text);
-    session.set_effects(scene.effects);
+    test::set_effects(session, scene.effects);
     EXPECT_NEAR(middle(), 120, 1);
 }
 

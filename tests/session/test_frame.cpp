@@ -13,6 +13,7 @@
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -141,7 +142,7 @@ TEST(Frame, TheBlockStandsInItsOwnShade) {
     const image::Image8 shaded = session.picture();
     std::vector<float> depths;
     session.read_depths(depths);
-    session.set("block.shade", "0");
+    test::set(session, "block.shade", "0");
     session.draw();
     const image::Image8 bare = session.picture();
     const int width = shaded.width, height = shaded.height;
@@ -198,8 +199,8 @@ TEST(Frame, TheBackdropIsLighterAboveThanBelow) {
             EXPECT_LE(picture.at(x, y, 2), picture.at(x, y - 1, 2) + 1) << y;
     }
     // With its own colours it is lighter above.
-    session.set("block.above", "0.60,0.62,0.64");
-    session.set("block.below", "0.43,0.43,0.42");
+    test::set(session, "block.above", "0.60,0.62,0.64");
+    test::set(session, "block.below", "0.43,0.43,0.42");
     session.draw();
     const image::Image8 own = session.picture();
     EXPECT_GT(own.at(1, 0, 1), own.at(1, bottom, 1) + 15);

@@ -18,6 +18,7 @@
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -259,7 +260,7 @@ Explained explained_of(const std::string& dem, Seen to_see = Seen::Land) {
         change(changed);
         FilesInUse more_files;
         Session of(changed, {.device = test::gl_device(), .dem = session.dem()}, more_files);
-        of.set_time(session.time());
+        test::set_time(of, session.time());
         return lightness_of(picture_of(of));
     };
     const auto of_ground = [&](const Values& values) {
@@ -365,7 +366,7 @@ TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
     scene = lit.scene();
     scene.effects.switches.disable = {"shadows"};
     Session bare(scene, {.device = test::gl_device(), .dem = lit.dem()}, more_files);
-    bare.set_time(lit.time());
+    test::set_time(bare, lit.time());
     const Values without = lightness_of(picture_of(bare));
     int darker = 0;
     for (int y = 0; y < scene.height_px; ++y)

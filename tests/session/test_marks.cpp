@@ -14,6 +14,7 @@
 #include "dem/fixture.h"
 #include "session/marks.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -154,8 +155,8 @@ std::vector<double> distances_px(double elevation_deg, double exaggeration, bool
     std::vector<double> distances;
     for (const chart::MarkPoint& mark : shown.marks()) {
         const std::string name(mark.name);
-        shown.session.set("spot.column", name.substr(0, name.find(' ')));
-        shown.session.set("spot.row", name.substr(name.find(' ') + 1));
+        test::set(shown.session, "spot.column", name.substr(0, name.find(' ')));
+        test::set(shown.session, "spot.row", name.substr(name.find(' ') + 1));
         shown.session.draw();
         if (const auto spot = spot_in(shown.session.texture()))
             distances.push_back(distance(*spot, mark.at));
@@ -236,9 +237,9 @@ TEST(Marks, AreOrderedByRankDistanceOrHeight) {
     scene.view.pitch_deg = -15;
     Shown shown(scene);
     EXPECT_THAT(shown.names(), testing::ElementsAre("near", "middle", "crest", "far"));
-    shown.session.set("labels.order", "nearest");
+    test::set(shown.session, "labels.order", "nearest");
     EXPECT_THAT(shown.names(), testing::ElementsAre("near", "middle", "far", "crest"));
-    shown.session.set("labels.order", "highest");
+    test::set(shown.session, "labels.order", "highest");
     EXPECT_THAT(shown.names(), testing::ElementsAre("crest", "far", "near", "middle"));
 }
 
@@ -266,7 +267,7 @@ TEST(Marks, AreInPicturesButNotInLinearOnes) {
     session.draw();
     EXPECT_GT(greens(session.picture(), 0, 640), 200);
     const image::ImageF with = session.radiance();
-    session.set("labels.most", "0");
+    test::set(session, "labels.most", "0");
     session.draw();
     EXPECT_EQ(greens(session.picture(), 0, 640), 0);
     EXPECT_EQ(with.values, session.radiance().values);
@@ -329,15 +330,15 @@ TEST(Marks, TheirFileIsReadAgainOnlyIfItHasChanged) {
     EXPECT_THAT(shown.names(), testing::ElementsAre("before"));
     const auto standing = shown.session.marks().at(0).standing;
     scene.effects.switches.only->push_back("avalanche");
-    shown.session.set_effects(scene.effects);
+    test::set_effects(shown.session, scene.effects);
     EXPECT_EQ(shown.session.marks().at(0).standing, standing);
     written("changed.csv", header + row("afterwards", grid.place(150, 150)));
-    shown.session.set_effects(scene.effects);
+    test::set_effects(shown.session, scene.effects);
     shown.session.draw();
     EXPECT_THAT(shown.names(), testing::ElementsAre("afterwards"));
     // A file that is broken later leaves what there was.
     written("changed.csv", "hello");
-    EXPECT_THAT(test::error_of([&] { shown.session.set_effects(scene.effects); }),
+    EXPECT_THAT(test::error_of([&] { test::set_effects(shown.session, scene.effects); }),
                 HasSubstr("no columns lat and lon"));
     EXPECT_THAT(shown.names(), testing::ElementsAre("afterwards"));
 }

@@ -14,6 +14,7 @@
 #include "session/marks.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -101,7 +102,7 @@ TEST(ModuleMarks, TheGuidesExampleMarksTheHighestPost) {
     const image::Image8 first = shown.session.picture();
     shown.session.draw();
     EXPECT_EQ(first.values, shown.session.picture().values);
-    shown.session.set_effects({.switches = {.only = std::vector<std::string>{}}});
+    test::set_effects(shown.session, {.switches = {.only = std::vector<std::string>{}}});
     shown.session.draw();
     EXPECT_NE(first.values, shown.session.picture().values);
 }
@@ -187,7 +188,7 @@ TEST(Marks, KeepOutOfTheRoomOfStamps) {
     scene.stamps.title_text = "A title as wide as many marks";
     Shown stamped(scene);
     const image::Image8 both = stamped.session.picture();
-    stamped.session.set("labels.most", "0");
+    test::set(stamped.session, "labels.most", "0");
     stamped.session.draw();
     const image::Image8 stamps = stamped.session.picture();
     scene.stamps = {};

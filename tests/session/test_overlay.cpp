@@ -108,7 +108,7 @@ double off_the_mark(const glm::ivec2& at, int size, double above_m) {
     for (int row = 0; row < size; ++row)
         for (int column = 0; column < size; ++column)
             raster->rgba.at(at.x + column, at.y + row) = render::overlay_texel(1, 0, 0, 1);
-    session.set_overlay(raster);
+    session.show(session.scene(), session.time(), {.overlay = LaidOverlay{raster}});
     session.draw();
     const image::Image8 picture = session.picture();
     std::vector<float> depths_m;

@@ -13,6 +13,7 @@
 
 #include "base/units.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -34,7 +35,7 @@ float depth_ahead_m(Session& session, const scene::View& view, Taken taken = Tak
         next.view = view;
         session.show(next, session.time());
     } else {
-        session.look(view);
+        test::look(session, view);
     }
     session.draw();
     std::vector<float> depths_m;
@@ -182,8 +183,8 @@ TEST(Standing, NoEyeIsUnderGroundThatAnEffectDisplaces) {
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     view.eye->place.height_m = kEye_m;
     view.pitch_deg = -90;
-    session.look(view);
-    session.set("swell.height_m", "300");
+    test::look(session, view);
+    test::set(session, "swell.height_m", "300");
     session.draw();
     std::vector<float> depths_m;
     session.read_depths(depths_m);
@@ -199,7 +200,7 @@ TEST(Standing, AnEyeOverTheSeaStandsOnTheWaterThatIsDrawn) {
     scene::View view;
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     view.eye->place.height_m = kEye_m;
-    session.look(view);
+    test::look(session, view);
     const double height_m = session.ground().frame.to_geodetic(session.camera().eye_m).height_m;
     EXPECT_NEAR(height_m, kEye_m, kAccuracy_m);
 }
@@ -212,7 +213,7 @@ TEST(Standing, AnEyeMayBeFarAboveTheGround) {
     view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
     for (const double height_m : {500.0, 100e3, 1e7}) {
         view.eye->place.height_m = height_m;
-        session.look(view);
+        test::look(session, view);
         const geo::Geodetic eye = session.ground().frame.to_geodetic(session.camera().eye_m);
         EXPECT_NEAR(eye.height_m - session.dem()->height_m(session.ground().frame.origin()),
                     height_m, 20);
@@ -231,7 +232,7 @@ TEST(Standing, ZoomComesNearerToWhatIsInTheMiddleOfTheBundledDem) {
         EXPECT_NEAR(depth_ahead_m(session, view) * zoom / whole_m, 1, 0.02) << "zoom " << zoom;
     }
     view.orbit.zoom = 1e6;
-    session.look(view);
+    test::look(session, view);
     const geo::Geodetic eye = session.ground().frame.to_geodetic(session.camera().eye_m);
     EXPECT_NEAR(eye.height_m - session.dem()->height_m(eye), scene::kClearance_m, 1);
 }

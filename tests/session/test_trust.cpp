@@ -16,6 +16,7 @@
 #include "session/active_effects.h"
 #include "session/session.h"
 #include "session/trust.h"
+#include "support/change.h"
 #include "support/counting_server.h"
 #include "support/device.h"
 #include "support/support.h"
@@ -58,7 +59,7 @@ std::string error_of(const json& text, Session& session) {
     return test::error_of([&] {
         const scene::Scene scene = scene::read_scene_text(text.dump(), "s.json", own());
         Trust({}, "s.json", NamedBy::File).check_names(scene);
-        session.set_effects(scene.effects);
+        test::set_effects(session, scene.effects);
     });
 }
 

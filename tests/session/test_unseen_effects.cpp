@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "dem/fixture.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
 
@@ -77,12 +78,12 @@ TEST(UnseenEffects, ChangeThePictureOrSayWhyNot) {
             scene::Effects effects = scene.effects;
             effects.switches.only = ids;
             if (said) said->begin();
-            of.set_effects(effects);
+            test::set_effects(of, effects);
             of.draw();
             shown.push_back(of.picture());
         };
         for (const auto& [name, view] : views) {
-            session.look(view);
+            test::look(session, view);
             show(session);
         }
         // Programs of maps take long to compile: those that a top view does not show.

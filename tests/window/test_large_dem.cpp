@@ -11,6 +11,7 @@
 #include "cli/raster.h"
 #include "image/image.h"
 #include "session/session.h"
+#include "support/change.h"
 #include "viewer/navigation.h"
 #include "viewer/scene_thread.h"
 #include "window/viewer_fixture.h"
@@ -78,8 +79,10 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
     // As the window draws it, upright at its eye.
     const viewer::Land land{&session.ground().frame, 1, {}, {}};
-    session.set_backdrop(whole->scene.backdrop);
-    session.look(view_of(pose_of(camera, land), land));
+    test::change(session, [&](scene::Scene& drawn) {
+        drawn.backdrop = whole->scene.backdrop;
+        drawn.view = view_of(pose_of(camera, land), land);
+    });
     session.draw();
     EXPECT_LE(test::difference(image_of(*picture), session.picture(), 1), 2e-4);
 }
@@ -94,9 +97,12 @@ TEST_F(Viewer, NoEyeIsUnderTheDrawnGround) {
     viewer::SceneThread thread(scene, viewer::SceneDevice("software"), [] {});
     viewer::Wanted wanted;
     wanted.width_px = wanted.height_px = kSide_px;
+    wanted.keep_above_m = 0;
     std::uint64_t number = 0;
     const auto depth_ahead_m = [&](const scene::View& view) {
-        wanted.view = view;
+        wanted.scene = thread.opened()->scene;
+        wanted.utc = thread.opened()->utc;
+        wanted.scene->view = view;
         thread.want(wanted);
         std::shared_ptr<const viewer::Picture> picture;
         EXPECT_TRUE(wait([&] {
