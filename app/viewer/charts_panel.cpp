@@ -19,9 +19,9 @@ namespace {
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
 
-/// Height of the status line and the scale.
-float status_px() {
-    return 3.4f * ImGui::GetFontSize();
+/// Height of the time bar, the status line and the scale.
+float below_px(const State& state) {
+    return state.bar_px + 3.4f * ImGui::GetFontSize();
 }
 
 /// Draws a chart unscaled. @returns its upper left corner in the window
@@ -108,7 +108,7 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         extent_px_ = {std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit)),
                       kHeight_units * unit};
         at_px_ = {std::max(0.0f, size_px.x - 10 - extent_px_.x),
-                  size_px.y - 64 * unit - extent_px_.y};
+                  size_px.y - state.bar_px - 64 * unit - extent_px_.y};
     }
     if (const auto point = chosen_in_window(state, size_px)) {
         const glm::vec2 from = *point - at_px_;
@@ -119,7 +119,7 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
             const float top = ImGui::GetFrameHeight() + 10;
             at_px_.y = point->y - top > size_px.y - point->y
                            ? top
-                           : size_px.y - extent_px_.y - status_px();
+                           : size_px.y - extent_px_.y - below_px(state);
         }
     }
     ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
@@ -137,9 +137,9 @@ void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
     }
     if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
     docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
-    ImGui::SetNextWindowPos({left, size_px.y - status_px()}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowPos({left, size_px.y - below_px(state)}, ImGuiCond_Always, {0, 1});
     ImGui::SetNextWindowSize({right - left, docked_px_});
-    state.docked_px = docked_px_ + status_px() - 2 * ImGui::GetFontSize();
+    state.docked_px = docked_px_ + 1.4f * ImGui::GetFontSize();
     is_open_ = false;  // place() begins anew
 }
 

@@ -139,8 +139,9 @@ scene::Insets MainWindow::panel_insets() const {
     if (!state_.settings.panels) return {};
     const auto text_px = static_cast<float>(unit() * kUsualText_px);
     scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;                          // the menu
-    insets.bottom = (2.0 * text_px + state_.docked_px) / size().y;  // the status line
+    insets.top = 1.5 * text_px / size().y;  // the menu
+    // The status line and the time bar.
+    insets.bottom = ((film_->is_open() ? 2 : 2 + kBar) * text_px + state_.docked_px) / size().y;
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;
@@ -161,6 +162,8 @@ void MainWindow::draw_panels() {
         import_sheet_.draw(size());
         return;
     }
+    const bool has_bar = state_.settings.panels && !film_->is_open();
+    state_.bar_px = has_bar ? static_cast<float>(kBar * kUsualText_px * unit()) : 0;
     if (picture_) draw_over_image();
     film_->draw_edges(size());
     state_.can_undo =
@@ -178,6 +181,7 @@ void MainWindow::draw_panels() {
             state_.docked_px = 0;
         else
             charts_.draw(state_, size(), unit());
+        if (has_bar) time_bar(state_, size());
     }
     if (const auto to = std::exchange(gives_keys_, std::nullopt))
         window_->give_keys_to(*to == Command::MenuKeys ? nullptr
@@ -215,7 +219,8 @@ void MainWindow::draw_over_image() {
     marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
     if (!film_->shows_frame()) draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
-    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), top);
+    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), top,
+                         state_.bar_px);
     legend_.draw();
     if (comparison_->thread()) draw_sides(window_->line() * size().x, top);
 }

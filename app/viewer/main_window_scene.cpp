@@ -237,6 +237,7 @@ void MainWindow::take_shape() {
     use_dem();
     Document& document = state_.document;
     document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
+    state_.set_utc(document.utc);
     history_.amend(document);
     state_.measurement = {};  // its ends lie on the ground as it was drawn
     pacing_.moved();

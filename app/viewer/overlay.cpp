@@ -69,7 +69,7 @@ chart::Rect north_place(glm::vec2 size_px, float top_px) {
 
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
-                          float top_px) {
+                          float top_px, float bottom_px) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     // True north at the eye, as if the arrow lay on level ground.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
@@ -95,7 +95,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const auto width = static_cast<float>(length_m / m_a_px);
     const std::string text = tr_format("{} here", length_text(length_m));
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 end{size_px.x - 24, size_px.y - 24};
+    const ImVec2 end{size_px.x - 24, size_px.y - 24 - bottom_px};
     const float wide = std::max(width, extent.x), tall = extent.y + 10;
     list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, kShade, 4);
     list.AddLine({end.x - width, end.y}, end, kInk, 2);

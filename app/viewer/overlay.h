@@ -35,10 +35,11 @@ void draw_sides(float line_px, float top_px);
 chart::Rect north_place(glm::vec2 size_px, float top_px);
 
 /// @param middle_m  ground at the centre of the image; none: no scale bar
-/// @param top_px    height of the menu
+/// @param top_px     height of the menu
+/// @param bottom_px  height of the time bar
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
-                          float top_px);
+                          float top_px, float bottom_px);
 
 void key_sheet();
 

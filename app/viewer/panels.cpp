@@ -55,7 +55,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     const auto width = static_cast<float>(kPanel_px * px_a_unit);
     const float top = 10 + ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({kBeside_px, top}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size_px.y - top - 50});
+    ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size_px.y - top - 50 - state.bar_px});
     ImGui::Begin("Relevo", nullptr,
                  ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
@@ -107,7 +107,7 @@ void status_line(const State& state, const std::string& work) {
     if (!work.empty()) text += "   " + work;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
+    const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - state.bar_px - extent.y - 10};
     list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
                        IM_COL32(0, 0, 0, 150), 4);
     list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());

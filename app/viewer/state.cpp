@@ -39,6 +39,12 @@ void State::set_utc(sun::Instant utc) {
         extremes = {SunDay::of({date.year, 6, 21}, document.zone, centre, air),
                     SunDay::of({date.year, 12, 21}, document.zone, centre, air)};
     day = SunDay::of(date, document.zone, centre, air);
+    moon.reset();
+}
+
+void State::set_date(sun::Date date) {
+    const int minute = DayMinute::of(document.utc, document.zone).minute;
+    set_utc(DayMinute{date, minute}.utc(document.zone));
 }
 
 void State::set_value(const shader::Param& param, const std::string& text) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/frame_block.h"
+#include "sun/moon_events.h"
 #include "viewer/command.h"
 #include "viewer/document.h"
 #include "viewer/measurement.h"
@@ -38,7 +39,8 @@ struct State {
     effect::GroundWords ground_words;  ///< of the DEM; empty: not known yet
     bool is_preview = false;           ///< a coarse DEM stands in until all posts are read
     SunDay day;
-    std::vector<SunDay> extremes;  ///< the solstices of its year
+    std::vector<SunDay> extremes;      ///< the solstices of its year
+    std::optional<sun::MoonDay> moon;  ///< of the day; nullopt: not computed yet
 
     bool time_is_pinned = false;  ///< other DEMs are shown at this time of day even if it is night
     bool playing = false;
@@ -82,6 +84,7 @@ struct State {
     std::optional<glm::vec2> side_panel_px;
     float point_room_px = 0;  ///< height of the point's text
     float docked_px = 0;      ///< height of what is docked above the status line
+    float bar_px = 0;         ///< height of the time bar at the lower edge; 0: hidden
     glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo
@@ -94,6 +97,8 @@ struct State {
     void use_dem_of(const Opened& opened);
     /// Sets the time. Ignores dates outside 1900-2100.
     void set_utc(sun::Instant utc);
+    /// The same time of another day.
+    void set_date(sun::Date date);
     /// Requests other effects or values, also of static parameters. take_effects() applies them
     /// after the panels are drawn.
     void set_effects(scene::Effects changed) { asked_effects = std::move(changed); }
@@ -105,6 +110,12 @@ struct State {
     void restore(const Document& restored);
 };
 
+/// "September", in the user's language. @param month  1 to 12
+const char* month_name(int month);
+/// Height of the time bar, of the texts' height.
+inline constexpr double kBar = 2.75;
+/// Date, time and the day's light at the lower edge. @param size_px  of the window
+void time_bar(State& state, glm::vec2 size_px);
 void sun_panel(State& state);
 /// "azimuth 114.27°, height 65.13°": the sun's position at the DEM's centre.
 std::string sun_figures(const State& state);

@@ -143,6 +143,26 @@ struct Shown {
 
 }  // namespace
 
+namespace {
+
+/// As large as usual, or as the screen has room for.
+GLFWwindow* create(const std::string& title) {
+    int left = 0, top = 0, width = 0, height = 0;
+    float scale = 1;
+    if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor()) {
+        glfwGetMonitorWorkarea(monitor, &left, &top, &width, &height);
+        glfwGetMonitorContentScale(monitor, &scale, nullptr);
+    }
+    const auto fitting = [&](int usual, int room) {
+        const int most = static_cast<int>(static_cast<float>(room) / std::max(scale, 1.0f));
+        return most > 0 ? std::min(usual, most) : usual;
+    };
+    return glfwCreateWindow(fitting(kWidth, width), fitting(kHeight, height), title.c_str(),
+                            nullptr, nullptr);
+}
+
+}  // namespace
+
 struct Window::Impl {
     GLFWwindow* handle = nullptr;
     std::optional<gl::Context> context;
@@ -178,7 +198,7 @@ struct Window::Impl {
         // Some drivers cannot report the loss of a device.
         for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
             glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
-            handle = glfwCreateWindow(kWidth, kHeight, title.c_str(), nullptr, nullptr);
+            handle = create(title);
             if (handle) break;
         }
         if (!handle) {

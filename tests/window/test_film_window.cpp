@@ -123,7 +123,7 @@ TEST_F(FilmWindow, ItsEndLeavesSceneAndUndoAsTheyWere) {
     ASSERT_TRUE(settles());
     EXPECT_EQ(scene(), before) << "there is nothing to undo";
     act({"key", "f"});
-    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), picture, 8) < 0.02; }));
+    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), picture, 8) < 0.023; }));
 }
 
 TEST_F(FilmWindow, AnotherCommandActsOnTheSceneBefore) {

@@ -255,7 +255,7 @@ TEST_F(LayersInWindow, AnOverlayOfAnotherTimeHasNoShadowsUnlessAskedFor) {
 TEST_F(LayersInWindow, AreSwitchedMovedAndRemovedInThePanel) {
     open_with_hours({"--overlay-opacity", "0.4", "--enable", "contours"});
     constexpr int kSwitch = 29, kDown = 311, kRemove = 335;
-    constexpr int kFirst = 393, kSecond = 445, kShadows = 517;  // rows
+    constexpr int kFirst = 283, kSecond = 335, kShadows = 407;  // rows
     const auto saved = [&](const std::function<bool(const nlohmann::json&)>& holds) {
         return wait([&] { return holds(scene()); });
     };

@@ -39,13 +39,13 @@ class ViewPanel : public Viewer {
     void open_panel() {
         open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
         // The heading below Sun.
-        act({"mousemove", "200", "315", "click", "1"});
+        act({"mousemove", "200", "205", "click", "1"});
         act({"mousemove", "900", "60"});
         ASSERT_TRUE(settles());
     }
     /// Drags a slider of the panel. @param y  of its row
     void slide(int y, int from_x, int to_x) { drag(1, from_x, y, to_x - from_x, 0); }
-    static constexpr int kLens = 341, kExposure = 393, kHeights = 419, kZone = 445;
+    static constexpr int kLens = 231, kExposure = 283, kHeights = 309, kZone = 335;
 };
 
 TEST_F(ViewPanel, LensExposureAndHeightsAreThoseOfTheScene) {
@@ -125,17 +125,17 @@ TEST_F(Viewer, EscClosesMenusListsAndTheCalendar) {
     const nlohmann::json before = scene();
     const auto is_closed_again = [&](const glm::ivec4& area, const glm::ivec2& at,
                                      const char* button) {
-        press({"mousemove", "700", "770"});
+        press({"mousemove", "700", "700"});
         ASSERT_TRUE(settles());
         const image::Image8 shown = display_.screen();
         ASSERT_TRUE(changes_in(area, [&] {
             press({"mousemove", std::to_string(at.x), std::to_string(at.y), "click", button});
-            press({"mousemove", "700", "770"});
+            press({"mousemove", "700", "700"});
         }));
         press({"key", "Escape"});
         EXPECT_TRUE(wait([&] { return count_other(shown, display_.screen(), area) < 30; }));
     };
-    is_closed_again({100, 120, 230, 160}, {88, 99}, "1");  // the calendar of the date
+    is_closed_again({150, 560, 200, 180}, {210, 783}, "1");  // the calendar of the date
     // A list of the export sheet: the sheet stays for the next Esc.
     const glm::ivec4 sheet{850, 130, 300, 260};
     const image::Image8 without = display_.screen();

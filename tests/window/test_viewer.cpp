@@ -91,8 +91,8 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
         EXPECT_GE(box[0], 375);
         EXPECT_LE(box[1], 1275);
         EXPECT_GE(box[2], 20);
-        EXPECT_LE(box[3], 780);
-        const double wide = (box[1] - box[0]) / 900.0, high = (box[3] - box[2]) / 744.0;
+        EXPECT_LE(box[3], 736);
+        const double wide = (box[1] - box[0]) / 900.0, high = (box[3] - box[2]) / 700.0;
         EXPECT_NEAR(std::max(wide, high), 0.95, 0.02) << wide << " " << high;
     };
     fills_the_room(taken(1));

@@ -16,7 +16,7 @@ namespace {
 TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
     // Chart and panel colours: the day's way, first and last light; direct sun through the year.
     constexpr glm::ivec3 kDay{0xe0, 0x7b, 0x12}, kSun{0xff, 0xd2, 0x4a};
-    constexpr glm::ivec4 kChart{410, 495, 850, 240};
+    constexpr glm::ivec4 kChart{410, 451, 850, 240};
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
     EXPECT_EQ(count_near(display_.screen(), kChart, kDay), 0);
     act({"mousemove", "900", "350"});
@@ -39,7 +39,7 @@ TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
     act({"click", "1"});
     ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kChart, kSun) > 20000; }));
     ASSERT_TRUE(settles());
-    act({"mousemove", "520", "590"});
+    act({"mousemove", "520", "546"});
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     act({"click", "1"});
     act({"mousemove", "900", "350"});
@@ -51,7 +51,7 @@ TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
 
 TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
     constexpr glm::ivec3 kDay{0xe0, 0x7b, 0x12};
-    constexpr glm::ivec4 kAbove{410, 40, 850, 400}, kBelow{410, 480, 850, 300};
+    constexpr glm::ivec4 kAbove{410, 40, 850, 380}, kBelow{410, 440, 850, 300};
     open({dem_, "--view", "az=165,el=28", "--time", "2026-06-21T18:00:00Z", "--disable", "haze"});
     const auto click = [&](const char* x, const char* y) {
         act({"mousemove", x, y});
@@ -59,13 +59,13 @@ TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
         act({"click", "1"});
     };
     // The cut side in front, whose upper edge is where a post is.
-    click("700", "490");
+    click("700", "470");
     ASSERT_TRUE(settles());
     std::this_thread::sleep_for(std::chrono::seconds(2));
     EXPECT_EQ(count_near(display_.screen(), kAbove, kDay), 0);
     EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
     // Ground where the charts would open.
-    click("1150", "510");
+    click("1150", "470");
     ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) > 1000; }));
     EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
     // Opened again they are where they were.
@@ -195,7 +195,7 @@ TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
     open({dem.string(), "--only", "aname", "--plugin-path", plugins_.string()});
     EXPECT_THAT(program_->title(), testing::HasSubstr("山岳.tif"));
     const image::Image8 before = display_.screen();
-    constexpr glm::ivec4 kPanel{60, 581, 280, 25};  // of the first effect of the first group
+    constexpr glm::ivec4 kPanel{60, 471, 280, 25};  // of the first effect of the first group
     const auto differing = [&] {
         const image::Image8 now = display_.screen();
         int count = 0;
@@ -316,7 +316,7 @@ TEST_F(Viewer, EscGivesUpOpeningADem) {
     std::ofstream(folder_ / "bin/zenity") << "#!/bin/sh\necho '" << slow.string() << "'\n";
     std::filesystem::permissions(folder_ / "bin/zenity", std::filesystem::perms::owner_all);
     open({dem_, "--only", "--memory", "64"});
-    constexpr glm::ivec4 kStatus{0, 765, 1280, 30};
+    constexpr glm::ivec4 kStatus{0, 721, 1280, 30};
     const nlohmann::json before = scene();
     // The scene that is open stays, and can be worked with.
     ASSERT_TRUE(changes_in(kStatus, [&] { act({"key", "ctrl+o"}); }));
@@ -446,7 +446,7 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
     };
     // The status line ends in "Esc cancels"; "drawing ..." would not reach so far.
     const auto is_opening = [&] {
-        return count_near(display_.screen(), {190, 770, 200, 20}, {255, 255, 255}, 60) > 30;
+        return count_near(display_.screen(), {190, 726, 200, 20}, {255, 255, 255}, 60) > 30;
     };
     act({"mousemove", "500", "60"});  // no ground, a short status line
     const auto seconds = [](const std::function<void()>& act) {
