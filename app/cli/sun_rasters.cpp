@@ -19,7 +19,6 @@
 #include "base/text.h"
 #include "dem/file_state.h"
 #include "dem/files_of.h"
-#include "figure/about.h"
 
 namespace relevo::cli {
 namespace {
@@ -56,15 +55,6 @@ dem::Window around(const dem::Window& a, const dem::Window& b) {
 }
 
 }  // namespace
-
-dem::Grid RasterGround::grid_of(const dem::Window& raster) const {
-    return raster == whole() ? posts.grid()
-                             : posts.grid().part(raster, raster.columns, raster.rows);
-}
-
-std::vector<dem::Window> RasterGround::parts_of(const dem::Window& raster) const {
-    return part_posts == 0 ? std::vector{raster} : figure::raster_parts(raster, part_posts);
-}
 
 void RasterArguments::add_to(Verb verb_of_rasters) {
     verb = verb_of_rasters;
@@ -178,12 +168,9 @@ RasterGround RasterArguments::load() const {
     log::HeldNotices notices;
     dem::Posts posts = dem::Posts::load(dem.paths, of_others, facts ? &*facts : nullptr);
     notices.release();
-    const dem::Grid& grid = posts.grid();
-    const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
-                                         : dem::Window{0, 0, grid.columns(), grid.rows()};
-    const std::int64_t part_posts =
-        posts.in_memory() ? 0 : options.memory.posts / figure::kPostsAPart;
-    return {std::move(posts), window, part_posts, options, is_planned, std::move(stamp)};
+    const dem::Window window = rectangle ? dem::window_of(posts.grid(), *rectangle, "--clip")
+                                         : figure::whole_window(posts.grid());
+    return {std::move(posts), window, options, is_planned, std::move(stamp)};
 }
 
 void RasterArguments::apply_to(figure::Figure& figure) const {
@@ -199,7 +186,6 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
       file_(file),
       figure_(figure),
       bands_(figure.bands()),
-      metadata_(figure.metadata(ground.posts)),
       halo_m_(figure.halo_m(ground.posts)) {
     if (arguments.tiles.given())
         choose_tiles();
@@ -210,9 +196,7 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesIn
         posts_ += posts_of(tile.window);
     }
     if (!is_dry() && !is_done()) {
-        if (file_)
-            writer_.emplace(*file_, ground.grid_of(ground.window), figure_.type(), bands_,
-                            options_of_file());
+        if (file_) writer_.emplace(*file_, figure, ground.posts, ground.window, options_of_file());
         bar_.emplace(printable(arguments.output.path));
     }
     began_ = Progress::Clock::now();
@@ -243,10 +227,11 @@ void RasterRun::choose_tiles() {
                                     ground_.options.memory);
         far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
                      arguments_.output.path, ground_.is_planned);
-        metadata_.emplace_back("FAR_GROUND", far_->description());
+        far_metadata_.emplace_back("FAR_GROUND", far_->description());
         halo_m_ = *arguments_.tiles.halo_km * 1000;
     }
-    output::RasterMetadata meaning = metadata_;
+    output::RasterMetadata meaning = figure_.metadata(posts);
+    std::ranges::copy(far_metadata_, std::back_inserter(meaning));
     for (const output::RasterBand& band : bands_) {
         meaning.emplace_back("band", band.name);
         meaning.insert(meaning.end(), band.metadata.begin(), band.metadata.end());
@@ -285,25 +270,21 @@ void RasterRun::count(double of_call) {
         throw Enough();
 }
 
-void RasterRun::put(std::size_t band, const dem::Window& part, const Array2d<float>& values) {
-    if (!writer_) return;
-    const int column = part.column - raster_.column, row = part.row - raster_.row;
-    if (figure_.type() == output::RasterType::Byte)
-        writer_->put(band, column, row, figure::mask_of(values));
-    else
-        writer_->put(band, column, row, values);
-}
-
 figure::PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Posts* around,
                                       const dem::Window& window) {
-    return figure_.maker({.posts = posts,
-                          .around = around,
-                          .window = window,
-                          .middle = ground_.posts.grid().center(),
-                          .put = [this](std::size_t band, const dem::Window& part,
-                                        const Array2d<float>& values) { put(band, part, values); },
-                          .done = [this](double of_call) { count(of_call); },
-                          .is_estimate = is_dry()});
+    return figure_.maker(
+        {.posts = posts,
+         .around = around,
+         .window = window,
+         .middle = ground_.posts.grid().center(),
+         .put =
+             [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
+                 if (writer_)
+                     writer_->put(band, part.column - raster_.column, part.row - raster_.row,
+                                  values);
+             },
+         .done = [this](double of_call) { count(of_call); },
+         .is_estimate = is_dry()});
 }
 
 bool RasterRun::make_all() {
@@ -331,7 +312,8 @@ bool RasterRun::make_all() {
 
 /// A tile with its halo is in memory, and made at once.
 std::vector<dem::Window> RasterRun::parts_of(const dem::Window& raster) const {
-    return far_ ? std::vector{raster} : ground_.parts_of(raster);
+    return far_ ? std::vector{raster}
+                : figure::raster_parts(ground_.posts, raster, ground_.options.memory);
 }
 
 void RasterRun::make_far(const output::PlannedTile& tile) {
@@ -355,18 +337,15 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
             if (has_been_made(tile)) return;
             throw;
         }
-        writer_.emplace(*own, ground_.grid_of(tile.window), figure_.type(), bands_,
-                        options_of_file());
+        writer_.emplace(*own, figure_, ground_.posts, tile.window, options_of_file());
     }
-    output::RasterMetadata metadata = metadata_;
+    output::RasterMetadata metadata = far_metadata_;
     if (writer_) look_beyond(tile.window, metadata);
-    figure::PartMade sum;
-    for (const dem::Window& part : parts_of(raster)) {
+    const auto begin = [&](const dem::Window& part) {
         part_share_ = posts_of(part) / posts_;
         sampled_.begin_part(part_share_, seconds_since(began_));
-        figure::PartMade made = make_part(part);
-        sum = {sum.holes + made.holes, std::move(made.definition)};
-    }
+    };
+    const figure::PartMade made = figure::make_parts(make_part, parts_of(raster), begin);
     if (!writer_) return;
     inner_voids_ += inner_voids_of(tile.window, posts, raster);
     if (folder_) {
@@ -374,10 +353,7 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
         metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
     }
     try {
-        output::RasterMetadata about =
-            figure::metadata_of(figure_, ground_.posts, RELEVO_VERSION, sum, tile.window);
-        about.insert(about.end(), metadata.begin(), metadata.end());
-        writer_->finish(about);
+        writer_->finish(RELEVO_VERSION, made, metadata);
     } catch (const Error&) {
         if (!has_been_made(tile)) throw;
     }

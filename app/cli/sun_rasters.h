@@ -12,9 +12,7 @@
 #include "cli/sun_options.h"
 #include "cli/tile_folder.h"
 #include "dem/clip.h"
-#include "figure/figure.h"
-#include "light/raster/beyond.h"
-#include "output/raster_writer.h"
+#include "figure/run.h"
 
 /// What the verbs that give a figure for every post of a DEM share.
 namespace relevo::cli {
@@ -22,16 +20,10 @@ namespace relevo::cli {
 /// A DEM, and what of it rasters are made of.
 struct RasterGround {
     dem::Posts posts;
-    dem::Window window;           ///< that is asked for
-    std::int64_t part_posts = 0;  ///< that are computed at once; 0: all of a raster
-    dem::LoadOptions options{};   ///< with which it was read
-    bool is_planned = false;      ///< the folder's plan is of this DEM as it is
-    std::string stamp{};          ///< of tiles: output::stamp_of() all files of the DEM
-
-    dem::Window whole() const { return {0, 0, posts.grid().columns(), posts.grid().rows()}; }
-    dem::Grid grid_of(const dem::Window& raster) const;
-    /// Of a raster, one after the other.
-    std::vector<dem::Window> parts_of(const dem::Window& raster) const;
+    dem::Window window;          ///< that is asked for
+    dem::LoadOptions options{};  ///< with which it was read
+    bool is_planned = false;     ///< the folder's plan is of this DEM as it is
+    std::string stamp{};         ///< of tiles: output::stamp_of() all files of the DEM
 };
 
 /// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest, --tiles, --halo, --shard,
@@ -81,7 +73,6 @@ class RasterRun {
     /// @param posts, around, window  as figure::Work
     figure::PartMaker maker_of(const dem::Posts& posts, const dem::Posts* around,
                                const dem::Window& window);
-    void put(std::size_t band, const dem::Window& part, const Array2d<float>& values);
     void count(double of_call);
     /// Creation options of the result: as many threads as memory allows, and what the user says.
     std::vector<std::string> options_of_file() const;
@@ -105,7 +96,7 @@ class RasterRun {
     OutputFile* file_;
     const figure::Figure& figure_;
     std::vector<output::RasterBand> bands_;
-    output::RasterMetadata metadata_;
+    output::RasterMetadata far_metadata_;
     double halo_m_ = 0;
     std::optional<FarGround> far_;
     std::optional<TileFolder> folder_;
@@ -115,7 +106,7 @@ class RasterRun {
     dem::Window raster_;  ///< that is being made, of the posts that it is made from
     bool warned_ = false;
     std::int64_t inner_voids_ = 0;
-    std::optional<output::RasterWriter> writer_;
+    std::optional<figure::RasterFile> writer_;
     std::optional<ProgressBar> bar_;
     double share_ = 0, part_share_ = 0;
     SampledTime sampled_;

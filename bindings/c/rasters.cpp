@@ -15,6 +15,7 @@
 #include "dem.h"
 #include "figure/hours.h"
 #include "figure/hours_bands.h"
+#include "figure/run.h"
 #include "figure/shadow.h"
 #include "figure/sky_view.h"
 #include "options.h"
@@ -50,7 +51,6 @@ class RasterCall {
     }
 
     const dem::Posts& posts() { return dem_->posts(); }
-    dem::Window all() const { return {0, 0, dem_->grid().columns(), dem_->grid().rows()}; }
     light::TerrainAccess terrain() {
         return {.middle = [this] { return dem_->grid().center(); },
                 .posts = [this]() -> const dem::Posts& { return posts(); }};
@@ -58,29 +58,17 @@ class RasterCall {
 
     /// Makes all values, and says what came of them.
     void run(const figure::Figure& figure) {
-        const std::optional<light::Beyond> beyond = figure.beyond(posts(), all());
+        const std::optional<light::Beyond> beyond =
+            figure.beyond(posts(), figure::whole_window(dem_->grid()));
         if (beyond) log::warning(beyond->advice());
-        const figure::PartMaker make =
-            figure.maker({.posts = posts(),
-                          .window = all(),
-                          .middle = dem_->grid().center(),
-                          .put = [this](std::size_t band, const dem::Window& part,
-                                        const Array2d<float>& values) { put(band, part, values); },
-                          .done = [this](double share) { progress_.add(share / calls_); }});
-        calls_ = static_cast<double>(figure.calls());
-        const double all_posts = static_cast<double>(columns_ * rows_);
-        std::vector<dem::Window> parts{all()};
-        if (!posts().in_memory())
-            parts =
-                figure::raster_parts(all(), dem_->named().dem.memory.posts / figure::kPostsAPart);
-        figure::PartMade sum;
-        for (const dem::Window& part : parts) {
-            progress_.begin_part(static_cast<double>(part.columns) * part.rows / all_posts);
-            figure::PartMade made = make(part);
-            sum = {sum.holes + made.holes, std::move(made.definition)};
-        }
+        const figure::PartMade made = figure::make_all(
+            figure, posts(), dem_->named().dem.memory,
+            [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
+                put(band, part, values);
+            },
+            [this](double share) { progress_.add(share); });
         if (!about_) return;
-        nlohmann::ordered_json json{{"definition", sum.definition}, {"holes", sum.holes}};
+        nlohmann::ordered_json json{{"definition", made.definition}, {"holes", made.holes}};
         for (const output::RasterBand& band : figure.bands())
             json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (beyond) json["beyond"] = beyond->text(figure.would());
@@ -97,13 +85,11 @@ class RasterCall {
         }
     }
 
-  private:
     std::shared_ptr<Dem> dem_;
     float* values_;
     std::size_t columns_, rows_;
     Progress progress_;
     const char** about_;
-    double calls_ = 1;
 };
 
 void shadow(RasterCall& call, const char* text) {
