@@ -279,14 +279,14 @@ class Inputs(Case):
 
     def test_times(self):
         time = QDateTime(QDate(2026, 6, 21), QTime(18, 30))
-        self.assertEqual(when_of(time, "", "").at, "2026-06-21T18:30:00")
-        self.assertEqual(when_of(time, "", "Asia/Tokyo").zone, "Asia/Tokyo")
-        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.UTC), "", "").at, "2026-06-21T18:30:00Z")
-        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.OffsetFromUTC, 7200), "", "").at,
+        self.assertEqual(when_of(time, "", "")["time"], "2026-06-21T18:30:00")
+        self.assertEqual(when_of(time, "", "Asia/Tokyo")["zone"], "Asia/Tokyo")
+        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.UTC), "", "")["time"], "2026-06-21T18:30:00Z")
+        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.OffsetFromUTC, 7200), "", "")["time"],
                          "2026-06-21T16:30:00Z")  # fmt: skip
-        self.assertEqual((when_of(time, "noon", "").at, when_of(time, "noon", "").date), ("noon", "2026-06-21"))
-        self.assertEqual(when_of("2026-03-08 02:30", "", "").at, "2026-03-08T02:30")
-        self.assertEqual(when_of("2026-06-21T12:00+02:00", "noon", "").date, "2026-06-21")
+        self.assertEqual((when_of(time, "noon", "")["time"], when_of(time, "noon", "")["date"]), ("noon", "2026-06-21"))
+        self.assertEqual(when_of("2026-03-08 02:30", "", "")["time"], "2026-03-08T02:30")
+        self.assertEqual(when_of("2026-06-21T12:00+02:00", "noon", "")["date"], "2026-06-21")
         self.assertIsNone(when_of(None, "", ""))
         with self.assertRaisesRegex(RelevoError, "expected also a time"):
             when_of(None, "noon", "")
