@@ -56,13 +56,10 @@ dem::Window around(const dem::Window& a, const dem::Window& b) {
 
 }  // namespace
 
-void RasterArguments::add_to(Verb verb_of_rasters) {
+void RasterArguments::add_to(Verb verb_of_rasters, figure::Figure& figure) {
     verb = verb_of_rasters;
     dem.add_to(*verb);
-    verb->add_option(
-            "-k,--terrestrial-refraction", terrestrial_refraction,
-            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(figure::kTerrestrialRefraction));
+    add_number(*verb, figure::kTerrestrialRefraction, figure.terrestrial_refraction, "-k,");
     output.endings = {"tif", "tiff"};
     verb->add_option("-o,--output", output.path,
                      "Cloud-optimised GeoTIFF to write, on the DEM's grid; with --tiles a folder")
@@ -76,9 +73,7 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
                      "casts shadows")
         .type_name("W,S,E,N");
     verb->add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
-    verb->add_option("--highest", highest_m,
-                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        .check(in_range(figure::kHighest_m));
+    add_number(*verb, figure::kHighest_m, figure.highest_m);
     tiles.add_to(*verb);
     if (PlanArguments::is_for(*verb))
         plan.add_to(*verb);
@@ -171,11 +166,6 @@ RasterGround RasterArguments::load() const {
     const dem::Window window = rectangle ? dem::window_of(posts.grid(), *rectangle, "--clip")
                                          : figure::whole_window(posts.grid());
     return {std::move(posts), window, options, is_planned, std::move(stamp)};
-}
-
-void RasterArguments::apply_to(figure::Figure& figure) const {
-    figure.terrestrial_refraction = terrestrial_refraction;
-    figure.highest_m = highest_m;
 }
 
 RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,

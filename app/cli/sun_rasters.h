@@ -26,28 +26,27 @@ struct RasterGround {
     std::string stamp{};         ///< of tiles: output::stamp_of() all files of the DEM
 };
 
-/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest, --tiles, --halo, --shard,
-/// --resume.
+/// DEM..., -o, --overwrite, --co, --clip, --clip-crs, --tiles, --halo, --shard, --resume, and for
+/// the figure -k and --highest.
 struct RasterArguments {
     DemArguments dem;
-    double terrestrial_refraction = figure::kTerrestrialRefraction.value;
     OutputArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;
-    std::optional<double> highest_m;  ///< of terrain beyond the DEM
     bool dry_run = false;
     TileArguments tiles;
     PlanArguments plan;  ///< of a verb of `plan`
     std::optional<Verb> verb;
 
-    void add_to(Verb verb_of_rasters);
+    /// @param figure  lives until the command line has been read
+    void add_to(Verb verb_of_rasters, figure::Figure& figure);
     /// Opens the result, before any work is done; of tiles, each is opened later: null.
     /// @throws Error as OutputArguments::open, (Usage) for creation options that there are not
     OutputFile* open(FilesInUse& files) const;
     /// @throws Error (Usage, BadInput) as dem::load, dem::parse_clip and dem::window_of
     RasterGround load() const;
-    /// Gives a figure what it takes from these.
-    void apply_to(figure::Figure& figure) const;
+    /// Whether the command line has an option of the verb.
+    bool has(const char* option) const { return verb->option(option).count() > 0; }
 };
 
 /// Rasters being made, part by part, with a bar on a terminal: one, or the tiles of a folder. With

@@ -26,7 +26,7 @@ struct ShadowArguments {
     std::string times;
     RefractionArguments refraction;
     std::string sun;
-    bool soft = false;
+    figure::Shadow figure;
 };
 
 /// A sun, and what is to be said of it.
@@ -166,7 +166,7 @@ void give_suns(figure::Shadow& figure, const std::vector<Asked>& suns, bool time
     }
 }
 
-void run_shadow(const ShadowArguments& arguments) {
+void run_shadow(ShadowArguments& arguments) {
     check(arguments);
     const bool timed = !arguments.times.empty();
     FilesInUse files;
@@ -176,11 +176,9 @@ void run_shadow(const ShadowArguments& arguments) {
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
     const RasterGround ground = arguments.raster.load();
     const std::vector<Asked> suns = all_suns(arguments, times, ground.posts);
-    figure::Shadow figure;
-    arguments.raster.apply_to(figure);
+    figure::Shadow& figure = arguments.figure;
     give_suns(figure, suns, timed);
     figure.refraction = arguments.sun.empty() ? arguments.refraction.name() : "";
-    figure.soft = arguments.soft;
     std::vector<Counts> counts(suns.size());
     std::string definition;
     figure.seen = [&](std::size_t k, const light::Shadows& part) {
@@ -190,9 +188,9 @@ void run_shadow(const ShadowArguments& arguments) {
     };
     if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
     if (timed)
-        print_many(suns, counts, arguments.soft);
+        print_many(suns, counts, figure.soft);
     else
-        print_one(suns.front(), counts.front(), arguments.soft);
+        print_one(suns.front(), counts.front(), figure.soft);
     fmt::print("\n{}\nrefraction of the sun: {}\n", definition, figure.air(ground.posts));
 }
 
@@ -202,7 +200,7 @@ void add_sun_shadow(Verb sun_verb) {
     const auto arguments = std::make_shared<ShadowArguments>();
     const Verb verb =
         sun_verb.add_verb("shadow", "Shadow mask of a DEM at a given time, as a raster");
-    arguments->raster.add_to(verb);
+    arguments->raster.add_to(verb, arguments->figure);
     arguments->time.add_to(verb);
     verb.add_option("--times", arguments->times,
                     "Many times instead of --time: a CSV with a column time and optionally name; "
@@ -211,7 +209,7 @@ void add_sun_shadow(Verb sun_verb) {
                     "Sun direction instead of a time: AZ,EL in degrees from true north at the "
                     "DEM's centre; grid:AZ,EL from grid north");
     arguments->refraction.add_to(verb);
-    verb.add_flag("--soft", arguments->soft,
+    verb.add_flag("--soft", arguments->figure.soft,
                   "Visible fraction of the solar disc, 0 to 1, instead of a mask");
     verb.callback([arguments] { run_shadow(*arguments); });
 }

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "figure/horizons.h"
 #include "figure/hours.h"
 #include "figure/shadow.h"
-#include "figure/sky_view.h"
 #include "viewer/export.h"
 #include "viewer/sun_model.h"
 #include "viewer/translation.h"

@@ -13,11 +13,10 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "dem.h"
+#include "figure/horizons.h"
 #include "figure/hours.h"
-#include "figure/hours_bands.h"
 #include "figure/run.h"
 #include "figure/shadow.h"
-#include "figure/sky_view.h"
 #include "options.h"
 #include "session/words.h"
 
@@ -25,9 +24,8 @@ namespace relevo::c {
 namespace {
 
 void take_terrestrial(json::ObjectReader& reader, figure::Figure& figure) {
-    figure.terrestrial_refraction =
-        number(reader, "terrestrial_refraction", figure::kTerrestrialRefraction);
-    if (reader.has("highest")) figure.highest_m = number(reader, "highest", figure::kHighest_m);
+    figure.terrestrial_refraction = number(reader, figure::kTerrestrialRefraction);
+    if (reader.has("highest")) figure.highest_m = number(reader, figure::kHighest_m);
 }
 
 std::string refraction_of(json::ObjectReader& reader) {
@@ -136,15 +134,15 @@ void take_days(json::ObjectReader& reader, HoursWanted& wanted) {
 /// @throws Error (BadInput) for unknown bands, and for two of one name
 void take_bands(json::ObjectReader& reader, HoursWanted& wanted) {
     const std::vector<std::string> bands = reader.strings("bands");
-    for (auto band = bands.begin(); band != bands.end(); ++band) {
-        if (!contains(figure::hours_words(), *band))
+    for (const std::string& band : bands)
+        if (!contains(figure::Hours::all_words(), band))
             reader.fail(reader.line_of("bands"), "bands",
                         fmt::format("expected some of {} but got {}",
-                                    fmt::join(figure::hours_words(), ", "), *band));
-        if (std::find(bands.begin(), band, *band) != band)
-            reader.fail(reader.line_of("bands"), "bands", *band + " is named twice");
-    }
+                                    fmt::join(figure::Hours::all_words(), ", "), band));
     if (!bands.empty()) wanted.figure.words = bands;
+    const std::string repeated = wanted.figure.repeated_word();
+    if (!repeated.empty())
+        reader.fail(reader.line_of("bands"), "bands", repeated + " is named twice");
 }
 
 void take_hours(const char* text, HoursWanted& wanted) {
@@ -153,14 +151,13 @@ void take_hours(const char* text, HoursWanted& wanted) {
     figure::Hours& figure = wanted.figure;
     take_days(reader, wanted);
     take_bands(reader, wanted);
-    figure.step_s = number(reader, "step", figure::kStep_s);
-    const bool has_irradiation = std::ranges::any_of(figure.words, figure::needs_irradiation);
+    figure.step_s = number(reader, figure::kStep_s);
     for (const char* key : {"linke", "albedo"})
-        if (reader.has(key) && !has_irradiation)
+        if (reader.has(key) && !figure.has_irradiation())
             reader.fail(reader.line_of(key), key,
                         "needs one of the bands global, beam, diffuse, reflected");
-    figure.irradiation.linke = number(reader, "linke", figure::kLinke);
-    figure.irradiation.albedo = number(reader, "albedo", figure::kAlbedo);
+    figure.irradiation.linke = number(reader, figure::kLinke);
+    figure.irradiation.albedo = number(reader, figure::kAlbedo);
     take_terrestrial(reader, figure);
     figure.refraction = refraction_of(reader);
     reader.finish();
@@ -180,8 +177,7 @@ void sky_view(RasterCall& call, const char* text) {
     Options options(text, "relevo_sky_view");
     json::ObjectReader& reader = options.reader();
     figure::SkyView figure;
-    figure.directions =
-        static_cast<int>(number(reader, "directions", figure::kSkyDirections, true));
+    figure.directions = static_cast<int>(number(reader, figure::kSkyDirections, true));
     figure.level = reader.boolean("level", false);
     take_terrestrial(reader, figure);
     reader.finish();
