@@ -107,7 +107,7 @@ void run_hours(HoursArguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
-    const RasterGround ground = arguments.raster.load();
+    const figure::RasterGround ground = arguments.raster.load();
     const DaysArguments::Days days = arguments.days.parse(ground.posts.grid().center());
     figure::Hours& figure = arguments.figure;
     figure.time = time_of(days);
@@ -117,7 +117,7 @@ void run_hours(HoursArguments& arguments) {
         figure.step_s = step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
     Summary sum;
     figure.seen = [&](const light::SunHours& part) { sum.add(part); };
-    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
+    if (!arguments.raster.make(file, files, ground, figure)) return;
     sum.say_more_than_level();
     fmt::print("time                {} to {}\n", figure.from(), figure.to());
     fmt::print(

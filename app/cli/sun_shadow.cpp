@@ -174,7 +174,7 @@ void run_shadow(ShadowArguments& arguments) {
     OutputFile* const file = arguments.raster.open(files);
     std::vector<dem::NamedTime> times;
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
-    const RasterGround ground = arguments.raster.load();
+    const figure::RasterGround ground = arguments.raster.load();
     const std::vector<Asked> suns = all_suns(arguments, times, ground.posts);
     figure::Shadow& figure = arguments.figure;
     give_suns(figure, suns, timed);
@@ -186,7 +186,7 @@ void run_shadow(ShadowArguments& arguments) {
         counts[k].shaded += part.shaded_posts;
         definition = part.definition;
     };
-    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
+    if (!arguments.raster.make(file, files, ground, figure)) return;
     if (timed)
         print_many(suns, counts, figure.soft);
     else

@@ -15,12 +15,11 @@ struct Arguments {
     RasterArguments raster;
     Figure figure;
 
-    /// @returns whether files were made, as RasterRun::make_all()
+    /// @returns whether files were made, as RasterArguments::make()
     bool make() const {
         FilesInUse files;
         OutputFile* const file = raster.open(files);
-        const RasterGround ground = raster.load();
-        return RasterRun(raster, file, files, ground, figure).make_all();
+        return raster.make(file, files, raster.load(), figure);
     }
 };
 

@@ -1,21 +1,16 @@
-#include "cli/raster_estimate.h"
+#include "figure/estimate.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "base/allocation.h"
-#include "base/log.h"
-#include "base/progress.h"
-#include "cli/shared.h"
 #include "light/sweep/sweep.h"
 
-namespace relevo::cli {
+namespace relevo::figure {
 namespace {
 
 // Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how many
 // tiles of all bands it has at once then.
+constexpr double kMiB = 1 << 20;  // bytes
 constexpr double kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20;
 // Measured: while a tile is read with its halo, what is put together.
 constexpr double kSite_mib = 64;
@@ -67,33 +62,4 @@ RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem
             heights / kMiB};
 }
 
-void RasterEstimate::print() const {
-    fmt::print("posts               {:.0f}, in {} part{}\n", posts, parts, parts == 1 ? "" : "s");
-    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n", memory_mib,
-               heights_mib);
-    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
-               duration_text(computing_s), 100 * sampled_share, sampled_s, threads);
-    fmt::print(
-        "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
-        "folder of the result\n",
-        bands, bands == 1 ? "" : "s", result_bytes / static_cast<double>(bands) / kMiB);
-}
-
-MemoryBudget memory_of_allocation(const MemoryBudget& memory) {
-    constexpr std::int64_t kLeast_mib = 16, kProgram_mib = 256;
-    const Allocation& given = allocation();
-    if (!given.memory_bytes) return memory;
-    const std::int64_t mib = *given.memory_bytes / MemoryBudget::kMiB - kProgram_mib;
-    return MemoryBudget::of_mib(std::clamp(mib, kLeast_mib, memory.mib()));
-}
-
-void say_allocation(const MemoryBudget& memory) {
-    const Allocation& given = allocation();
-    const auto by = [](const std::string& name) {
-        return name.empty() ? std::string() : " (" + name + ")";
-    };
-    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads, by(given.threads_by),
-                          memory.mib(), by(given.memory_by)));
-}
-
-}  // namespace relevo::cli
+}  // namespace relevo::figure
