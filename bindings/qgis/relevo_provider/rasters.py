@@ -99,17 +99,8 @@ class SunHours(RasterAlgorithm):
     )
     FROM, TO, YEAR, BANDS = "FROM", "TO", "YEAR", "BANDS"
     STEP, LINKE, ALBEDO = "STEP", "LINKE", "ALBEDO"
-    _BANDS = ["hours", "first", "last", "spells", "global", "beam", "diffuse", "reflected"]
-    _TITLES = {
-        "hours": "Hours of direct sun",
-        "first": "First sun",
-        "last": "Last sun",
-        "spells": "Sunshine periods",
-        "global": "Global irradiation",
-        "beam": "Beam irradiation",
-        "diffuse": "Diffuse irradiation",
-        "reflected": "Reflected irradiation",
-    }
+    _TITLES = {"hours": "Hours of direct sun", "first": "First sun", "last": "Last sun", "spells": "Sunshine periods"}
+    _IRRADIATION = ["global", "beam", "diffuse", "reflected"]
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
@@ -119,11 +110,8 @@ class SunHours(RasterAlgorithm):
         whole, real = QgsProcessingParameterNumber.Integer, QgsProcessingParameterNumber.Double
         self.addParameter(QgsProcessingParameterNumber(self.YEAR, "Year instead of days", whole, None, True, 1900, 2100))
         self.add_zone()
-        self.addParameter(
-            QgsProcessingParameterEnum(
-                self.BANDS, "Bands", self._BANDS, allowMultiple=True, defaultValue=["hours"], usesStaticStrings=True
-            )
-        )
+        bands = [*self._TITLES, *self._IRRADIATION]
+        self.addParameter(QgsProcessingParameterEnum(self.BANDS, "Bands", bands, True, ["hours"], False, True))
         self.add_advanced(
             QgsProcessingParameterNumber(self.STEP, "Time step of at most four days [min]", real, 3, False, 1 / 60, 60)
         )
@@ -150,11 +138,12 @@ class SunHours(RasterAlgorithm):
         )
         # Those that count: Relevo refuses others.
         numbers = {"step": 60 * step} if "year" not in days and step != 3 else {}
-        if any(band in self._BANDS[4:] for band in bands):
+        if any(band in self._IRRADIATION for band in bands):
             numbers.update(linke=linke, albedo=albedo)
         zone = self.text(parameters, self.ZONE, context) or None
-        title = f"{self._TITLES[bands[0]]}, {' to '.join(map(str, days.values()))}"
-        return {**days, "zone": zone, "bands": bands, **numbers}, title
+        what = self._TITLES.get(bands[0], f"{bands[0].capitalize()} irradiation")
+        options = {**days, "zone": zone, "bands": bands, **numbers}
+        return options, f"{what}, {' to '.join(map(str, days.values()))}"
 
     def _days(self, parameters, context) -> Options:
         first, last = (self._date(parameters, name, context) for name in (self.FROM, self.TO))
