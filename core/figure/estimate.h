@@ -1,9 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-
-#include "dem/posts.h"
 
 namespace relevo::figure {
 
@@ -40,19 +37,5 @@ struct RasterEstimate {
     std::size_t bands = 1;
     double result_bytes = 0;  ///< before compression
 };
-
-/// Memory of a run [MiB]; all of it, and that of heights.
-struct RasterMemory {
-    double all_mib = 0, heights_mib = 0;
-};
-/// @param part_posts    the most posts of a part
-/// @param raster        a result file
-/// @param bytes_a_post  Figure::bytes_a_post()
-/// @param bytes_a_value, bands  of the result
-/// @param memory        dem::LoadOptions::memory of `posts`
-/// @param far_bytes     FarGround::kept_bytes(); 0: all ground is posts
-RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
-                           int bytes_a_post, int bytes_a_value, std::size_t bands,
-                           const MemoryBudget& memory, double far_bytes);
 
 }  // namespace relevo::figure

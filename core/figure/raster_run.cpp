@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "light/sweep/sweep.h"
 
 namespace relevo::figure {
 namespace {
@@ -66,10 +67,7 @@ RasterRun::RasterRun(const RasterRunOptions& options, OutputFile* file, FilesInU
         window_ = around(window_, tile.window);
         posts_ += posts_of(tile.window);
     }
-    if (!is_dry() && !is_done()) {
-        if (file_) writer_.emplace(*file_, figure, ground.posts, ground.window, options_of_file());
-        bar_.emplace(printable(options.output));
-    }
+    if (!is_dry() && !is_done()) bar_.emplace(printable(options.output));
     began_ = Progress::Clock::now();
     if (is_done() && options.purpose != RasterRunOptions::Purpose::Plan)
         log::info(fmt::format("no tile is to be made; {} are there already", folder_->there()));
@@ -135,9 +133,8 @@ void RasterRun::count(double of_call) {
     passed_s_ = seconds_since(began_);
     sampled_.end_step(step, passed_s_);
     if (bar_) bar_->show(share_);
-    if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1 &&
-        sampled_.suffices())
-        throw Enough();
+    const double worked_s = passed_s_ - ready_s_ - sites_s_;
+    if (is_dry() && worked_s > kEnough_s && share_ < 1 && sampled_.suffices()) throw Enough();
 }
 
 PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Posts* around,
@@ -193,17 +190,18 @@ void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
                      const PartMaker& make_part, const dem::Posts& posts) {
     raster_ = raster;
     std::optional<OutputFile> own;
-    if (folder_ && !is_dry()) {
+    output::RasterMetadata metadata = far_metadata_;
+    if (!is_dry()) {
         try {
-            own.emplace(folder_->open(tile, files_));
+            if (folder_) own.emplace(folder_->open(tile, files_));
         } catch (const Error&) {
             if (has_been_made(tile)) return;
             throw;
         }
-        writer_.emplace(*own, figure_, ground_.posts, tile.window, options_of_file());
+        writer_.emplace(own ? *own : *file_, figure_, ground_.posts, tile.window,
+                        options_of_file());
+        look_beyond(tile.window, metadata);
     }
-    output::RasterMetadata metadata = far_metadata_;
-    if (writer_) look_beyond(tile.window, metadata);
     const auto begin = [&](const dem::Window& part) {
         part_share_ = posts_of(part) / posts_;
         sampled_.begin_part(part_share_, seconds_since(began_));
@@ -265,40 +263,54 @@ void RasterRun::say_what_was_made() const {
         folder_->there() > 0 ? fmt::format("; {} were there already", folder_->there()) : ""));
 }
 
-RasterEstimate RasterRun::estimate() const {
-    RasterEstimate found;
-    double most = 0;  // posts of a part
+void RasterRun::estimate_memory(RasterEstimate& found) const {
+    // Measured: the program with its libraries; what GDAL keeps of a file that it writes, and how
+    // many tiles of all bands it has at once then; what is put together while a tile is read with
+    // its halo.
+    constexpr double kMiB = 1 << 20, kProgram_mib = 120, kWriting_mib = 256, kTilesAtOnce = 20,
+                     kSite_mib = 64;
+    constexpr double kTile = 512;  // posts a side
+    double part_posts = 0, far_bytes = 0;
     dem::Window largest;
     for (const output::PlannedTile& tile : todo_) {
         if (posts_of(tile.window) > posts_of(largest)) largest = tile.window;
+        if (far_) far_bytes = std::max(far_bytes, far_->kept_bytes(tile.window));
         for (const dem::Window& part : parts_of(tile.window)) {
-            most = std::max(most, posts_of(part));
+            part_posts = std::max(part_posts, posts_of(part));
             ++found.parts;
         }
     }
-    const int bytes_a_value = figure_.type() == output::RasterType::Float ? 4 : 1;
-    MemoryBudget memory_of_posts = ground_.options.memory;
-    double far_bytes = 0;
-    if (far_) {
-        memory_of_posts.posts /= FarGround::kShareOfOthers;
-        for (const output::PlannedTile& tile : todo_)
-            far_bytes = std::max(far_bytes, far_->kept_bytes(tile.window));
-    }
-    const RasterMemory memory =
-        raster_memory(ground_.posts, most, largest, figure_.bytes_a_post(), bytes_a_value,
-                      bands_.size(), memory_of_posts, far_bytes);
-    found.posts = posts_;
-    found.memory_mib = memory.all_mib;
-    found.heights_mib = memory.heights_mib;
-    found.ready_s = ready_s_;
-    const double sites_s = sites_s_ / static_cast<double>(std::max<std::size_t>(1, sites_)) *
-                           static_cast<double>(todo_.size());
-    found.computing_s = ready_s_ + sites_s + sampled_.all_s();
-    found.sampled_share = share_;
-    found.sampled_s = passed_s_;
-    found.threads = thread_count();
-    found.bands = bands_.size();
-    found.result_bytes = posts_ * bytes_a_value * static_cast<double>(bands_.size());
+    // What is kept of the heights, what sweeps keep of those in memory, and the file's blocks.
+    const MemoryBudget& memory = ground_.options.memory;
+    const double all = posts_of(whole_window(ground_.posts.grid())), a_height = sizeof(float);
+    const double held =
+        ground_.posts.in_memory()
+            ? all * (a_height + (far_ ? 0 : light::Sweep::kBytesAPost))
+            : a_height * double(memory.posts / (far_ ? FarGround::kShareOfOthers : 1));
+    const double heights = held + std::min(double(memory.block_bytes), a_height * all) +
+                           (far_ ? far_bytes + kSite_mib * kMiB : 0);
+    // A result is written from what is kept of it.
+    const double tiles = std::ceil(largest.columns / kTile) * std::ceil(largest.rows / kTile);
+    const double band = bytes_a_value(), tile = kTile * kTile * band * double(bands_.size());
+    const double writing = part_posts * band + std::min(kWriting_mib * kMiB, tiles * tile) +
+                           std::min(kTilesAtOnce, 3 * tiles + 2) * tile;
+    found.heights_mib = heights / kMiB;
+    found.memory_mib =
+        (heights + std::max(part_posts * figure_.bytes_a_post(), writing)) / kMiB + kProgram_mib;
+}
+
+RasterEstimate RasterRun::estimate() const {
+    const double sites_s =
+        sites_s_ / double(std::max<std::size_t>(1, sites_)) * double(todo_.size());
+    RasterEstimate found{.posts = posts_,
+                         .ready_s = ready_s_,
+                         .computing_s = ready_s_ + sites_s + sampled_.all_s(),
+                         .sampled_share = share_,
+                         .sampled_s = passed_s_,
+                         .threads = thread_count(),
+                         .bands = bands_.size(),
+                         .result_bytes = posts_ * bytes_a_value() * double(bands_.size())};
+    estimate_memory(found);
     return found;
 }
 

@@ -80,6 +80,8 @@ class RasterRun {
     void look_beyond(const dem::Window& raster, output::RasterMetadata& metadata);
     bool is_dry() const { return options_.purpose != RasterRunOptions::Purpose::Make; }
     void say_what_was_made() const;
+    int bytes_a_value() const { return figure_.type() == output::RasterType::Float ? 4 : 1; }
+    void estimate_memory(RasterEstimate& found) const;
     bool has_been_made(const output::PlannedTile& tile) const;
     std::int64_t inner_voids_of(const dem::Window& raster, const dem::Posts& posts,
                                 const dem::Window& of_posts) const;
