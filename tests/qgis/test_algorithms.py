@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import sys
 import tempfile
@@ -127,6 +128,21 @@ class Provider(unittest.TestCase):
     def test_presets_are_those_of_the_program(self):
         names = [path.stem for path in (ROOT / "data" / "presets").glob("*.json")]
         self.assertEqual(PictureAlgorithm.PRESETS, ["none", *sorted(names)])
+
+    def test_numbers_and_bands_are_those_of_core(self):
+        core = ROOT / "core" / "figure"
+        options = re.findall(r"Option k(\w+)\{\s*\{([^}]*)\}", (core / "options.h").read_text())
+        numbers = {name: [float(number) for number in three.split(",")] for name, three in options}
+        registry = QgsApplication.processingRegistry()
+        for word, parameter, option, unit in (
+            ("sunhours", "STEP", "Step_s", 60), ("sunhours", "LINKE", "Linke", 1), ("sunhours", "ALBEDO", "Albedo", 1),
+            ("skyview", "DIRECTIONS", "SkyDirections", 1),
+        ):  # fmt: skip
+            one = registry.algorithmById("relevo:" + word).parameterDefinition(parameter)
+            ours = [unit * number for number in (one.defaultValue(), one.minimum(), one.maximum())]
+            self.assertEqual(ours, numbers[option], option)
+        bands = registry.algorithmById("relevo:sunhours").parameterDefinition("BANDS").options()
+        self.assertEqual(bands, re.findall(r'^    \{"(\w+)", "', (core / "hours.cpp").read_text(), re.MULTILINE))
 
     def test_says_where_relevo_is_missing(self):
         path = os.environ["PATH"]
