@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/allocation.h"
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -159,10 +160,9 @@ std::vector<std::string> PlanArguments::words(const Verb& verb) const {
     std::vector<std::string> words = split(verb.command(), ' '), names{"--"};
     words.erase(words.begin());  // plan
     for (const GivenOption& option : verb.given()) {
-        static const std::vector<std::string> kOfPlan{"--slurm",        "--parallel",   "--cpus",
-                                                      "--task-minutes", "--most-tasks", "--resume",
-                                                      "--overwrite"};
-        if (std::ranges::find(kOfPlan, option.name) != kOfPlan.end()) continue;
+        if (contains(kNames, option.name) || option.name == "--resume" ||
+            option.name == "--overwrite")
+            continue;
         if (option.is_flag) words.push_back(option.name);
         for (const std::string& value : option.values) {
             if (option.is_flag) break;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/files_in_use.h"
@@ -20,6 +22,8 @@ struct PlanArguments {
     int threads = 0;              ///< of a task; 0: those of this run
     int task_minutes = 10, most_tasks = 1000;
 
+    static constexpr std::array<std::string_view, 5> kNames{"--slurm", "--parallel", "--cpus",
+                                                            "--task-minutes", "--most-tasks"};
     /// Whether a verb is one of `plan`.
     static bool is_for(const Verb& verb);
     void add_to(Verb verb);

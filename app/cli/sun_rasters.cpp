@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/allocation.h"
 #include "base/contains.h"
@@ -25,43 +26,22 @@
 namespace relevo::cli {
 namespace {
 
-/// Options that change no figure, and those of `relevo plan`.
-bool is_of_this_run(const GivenOption& option) {
-    constexpr std::array<std::string_view, 12> kOfThisRun{
-        "DEM",      "--output", "--overwrite", "--shard", "--resume",       "--dry-run",
-        "--memory", "--slurm",  "--parallel",  "--cpus",  "--task-minutes", "--most-tasks"};
-    return contains(kOfThisRun, option.name);
-}
-
-std::string text_of(const GivenOption& option) {
-    if (option.is_flag) return option.name;
-    std::string text = option.name + "=";
-    for (std::size_t i = 0; i < option.values.size(); ++i)
-        text += (i > 0 ? "," : "") + option.values[i];
-    return text;
-}
-
-/// That of a verb of `plan` is that of the verb itself.
-std::string without_plan(std::string command) {
+/// The verb, without `plan`, and those options that change values: "sun hours",
+/// "--date=2026-06-21".
+std::vector<std::string> meaning_of(const Verb& verb) {
+    constexpr std::array<std::string_view, 7> kOfThisRun{
+        "DEM", "--output", "--overwrite", "--shard", "--resume", "--dry-run", "--memory"};
     constexpr std::string_view kPlan = "plan ";
-    return command.starts_with(kPlan) ? command.substr(kPlan.size()) : command;
-}
-
-/// Options that change values, in lines. Names of DEMs are not in it.
-std::string meaning_of(const Verb& verb) {
-    std::string text = "relevo " RELEVO_VERSION "\n" + without_plan(verb.command()) + "\n";
-    for (const GivenOption& option : verb.given())
-        if (!is_of_this_run(option)) text += text_of(option) + "\n";
-    return text;
-}
-
-/// The command without inputs, outputs and what concerns this run alone, for people:
-/// "sun hours --date=2026-06-21".
-std::string command_text(const Verb& verb) {
-    std::string text = without_plan(verb.command());
-    for (const GivenOption& option : verb.given())
-        if (!is_of_this_run(option)) text += " " + text_of(option);
-    return text;
+    const std::string command = verb.command();
+    std::vector<std::string> words{command.starts_with(kPlan) ? command.substr(kPlan.size())
+                                                              : command};
+    for (const GivenOption& option : verb.given()) {
+        if (contains(kOfThisRun, option.name) || contains(PlanArguments::kNames, option.name))
+            continue;
+        words.push_back(option.name);
+        if (!option.is_flag) words.back() += fmt::format("={}", fmt::join(option.values, ","));
+    }
+    return words;
 }
 
 void print(const figure::RasterEstimate& estimate) {
@@ -104,11 +84,7 @@ void add_tiles(Verb verb, RasterArguments& arguments) {
                     "those of an index, as gdaltindex and STAC have it")
         .type_name("N|INDEX")
         .group("Tiles");
-    verb.add_option("--halo", arguments.tiles.halo_km,
-                    "Posts only so many km around a tile, ground beyond as means, exact to 0.1 "
-                    "degrees (all posts)")
-        .check(in_range(0.1, 1000.0))
-        .group("Tiles");
+    add_number(verb, figure::kHalo_km, arguments.tiles.halo_km).group("Tiles");
     verb.add_option("--shard", arguments.shard,
                     "Make one part of the tiles: I/N, or array in an array task of a scheduler")
         .group("Tiles");
@@ -231,16 +207,18 @@ figure::RasterGround RasterArguments::load() const {
 bool RasterArguments::make(OutputFile* file, FilesInUse& files, const figure::RasterGround& ground,
                            const figure::Figure& figure) const {
     using Purpose = figure::RasterRunOptions::Purpose;
-    figure::RasterRunOptions options{.purpose = plan.on   ? Purpose::Plan
-                                                : dry_run ? Purpose::Estimate
-                                                          : Purpose::Make,
-                                     .version = RELEVO_VERSION,
-                                     .output = output.path,
-                                     .overwrite = output.overwrite,
-                                     .creation_options = creation_options,
-                                     .tiles = tiles,
-                                     .command = command_text(*verb),
-                                     .meaning = meaning_of(*verb)};
+    const std::vector<std::string> meaning = meaning_of(*verb);
+    figure::RasterRunOptions options{
+        .purpose = plan.on   ? Purpose::Plan
+                   : dry_run ? Purpose::Estimate
+                             : Purpose::Make,
+        .version = RELEVO_VERSION,
+        .output = output.path,
+        .overwrite = output.overwrite,
+        .creation_options = creation_options,
+        .tiles = tiles,
+        .command = fmt::format("{}", fmt::join(meaning, " ")),
+        .meaning = fmt::format("relevo " RELEVO_VERSION "\n{}\n", fmt::join(meaning, "\n"))};
     // --crs is about the DEM, and so about the index of tiles where the DEM is that index.
     if (contains(dem.paths, tiles.tiles)) options.tiles.crs = dem.options().crs;
     if (!shard.empty()) {

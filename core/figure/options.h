@@ -30,6 +30,11 @@ inline constexpr Range kTilt_deg{0, 0, 90};
 inline constexpr Range kAzimuth_deg{0, 0, 360};  ///< without a default for a tilt above 0
 inline constexpr Option kSkyDirections{
     {36, 4, 3600}, "directions", "Number of azimuths around each post (36)"};
+/// Without it: all posts, and no means.
+inline constexpr Option kHalo_km{{0, 0.1, 1000},
+                                 "halo",
+                                 "Posts only so many km around a tile, ground beyond as means, "
+                                 "exact to 0.1 degrees (all posts)"};
 inline constexpr Option kHorizonDirections{{36, 1, 720}, "directions", kSkyDirections.help};
 
 }  // namespace relevo::figure

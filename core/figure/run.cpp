@@ -35,14 +35,6 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
     return about;
 }
 
-/// @param lit  as light::Shadows
-Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
-    Array2d<std::uint8_t> mask(lit.width(), lit.height());
-    for (std::size_t i = 0; i < mask.size(); ++i)
-        mask.data()[i] = std::isnan(lit.data()[i]) ? 255 : lit.data()[i] > 0;
-    return mask;
-}
-
 dem::Grid grid_of(const dem::Grid& grid, const dem::Window& window) {
     return window == whole_window(grid) ? grid : grid.part(window, window.columns, window.rows);
 }
@@ -117,13 +109,6 @@ RasterFile::RasterFile(OutputFile& file, const Figure& figure, const dem::Posts&
       window_(window),
       writer_(file, grid_of(posts.grid(), window), figure.type(), figure.bands(),
               std::move(options)) {}
-
-void RasterFile::put(std::size_t band, int column, int row, const Array2d<float>& values) {
-    if (figure_.type() == output::RasterType::Byte)
-        writer_.put(band, column, row, mask_of(values));
-    else
-        writer_.put(band, column, row, values);
-}
 
 void RasterFile::finish(const std::string& version, const PartMade& made,
                         const output::RasterMetadata& more) {

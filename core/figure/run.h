@@ -52,7 +52,9 @@ class RasterFile {
                const dem::Window& window, std::vector<std::string> options = {});
 
     /// @param column, row  of the file
-    void put(std::size_t band, int column, int row, const Array2d<float>& values);
+    void put(std::size_t band, int column, int row, const Array2d<float>& values) {
+        writer_.put(band, column, row, values);
+    }
     /// @param version  of Relevo
     /// @param made     sums over all parts
     /// @param more     metadata, after those of the figure
