@@ -255,8 +255,7 @@ void tell_raster_plan(const PlanArguments& arguments, const figure::RasterRun& r
     }
     warn_of_wide_halo(run.halo_m(), posts, todo);
     const fs::path folder = options.output;
-    tell_tasks(arguments, {.unit = "tile",
-                           .left = todo.size(),
+    tell_tasks(arguments, {.left = todo.size(),
                            .ready_s = estimate.ready_s,
                            .computing_s = estimate.computing_s,
                            .threads = estimate.threads,

@@ -40,8 +40,7 @@ struct PlanArguments {
 
 /// A command that is to be done by many tasks.
 struct PlannedWork {
-    std::string unit;        ///< "tile", "picture"
-    std::size_t left = 0;    ///< of these
+    std::size_t left = 0;    ///< tiles or pictures
     double ready_s = 0;      ///< of each task, before its work proper
     double computing_s = 0;  ///< of all, on `threads`
     int threads = 1;

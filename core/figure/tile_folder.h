@@ -60,7 +60,6 @@ class TileFolder {
     /// Whether a tile is there and whole by now, made by another process.
     bool is_whole(const output::PlannedTile& tile) const;
 
-    const std::filesystem::path& path() const { return folder_; }
     const output::TilePlan& plan() const { return plan_; }
     /// That are to be made, of this shard.
     const std::vector<output::PlannedTile>& todo() const { return todo_; }
