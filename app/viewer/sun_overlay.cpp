@@ -177,7 +177,8 @@ bool same_figures(const OverlayWanted& a, const OverlayWanted& b) {
                a.file->lit == b.file->lit;
     const FigureWanted &x = a.figure, &y = b.figure;
     return x.kind == y.kind && x.time.begin == y.time.begin && x.time.end == y.time.end &&
-           x.refraction == y.refraction && x.zone.name() == y.zone.name();
+           x.refraction == y.refraction &&
+           (x.kind == OverlayKind::Mask || x.zone.name() == y.zone.name());
 }
 
 double OverlayShown::value_at(const geo::Geodetic& place) const {

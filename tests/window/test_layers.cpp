@@ -222,6 +222,9 @@ TEST(SunFigures, OfWhatTheyDoNotDependOnAreTheSame) {
     using enum OverlayPeriod;
     EXPECT_TRUE(same_figures(later(OverlayKind::Mask, Day, "none"),
                              later(OverlayKind::Mask, Year, "none")));
+    OverlayWanted mask = later(OverlayKind::Mask, Day, "none");
+    mask.figure.zone = sun::Zone();
+    EXPECT_TRUE(same_figures(mask, later(OverlayKind::Mask, Day, "none")));
     OverlayWanted sky;
     sky.figure = figure_with({.kind = OverlayKind::SkyView});
     EXPECT_TRUE(same_figures(sky, later(OverlayKind::SkyView, Week, "none")));
