@@ -29,8 +29,8 @@ ALLOWED = (
     ("file_kind.cpp", r"Feature|Point", "GeoJSON"),
     ("film_plan.cpp", r"job: film:", "part of a message of core, to find it"),
     ("open_dialog.cpp", r"zenity .*", "a command line"),
-    ("overlay_controller.cpp", r"sun (hours|shadow|sky-view)( --bands \{\})?", "command lines"),
-    ("sun_overlay.cpp", r"Sky-view factor|Direct sun, .*|(First|Last) light|Irradiation|Sun hours|.* to .*",
+    ("sun_overlay.cpp", r"sun (hours|shadow|sky-view)( --bands \w+)?", "command lines"),
+    ("sun_overlay.cpp", r"Sky-view factor|Direct sun|(First|Last) light|Irradiation|Sun hours|.* to .*",
      "titles in scenes and pictures, which do not depend on the language"),
     ("window_words.cpp", r".*--.*", "parts of messages of core, to find them"),
 )

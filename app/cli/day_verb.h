@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,17 @@ struct DayForms {
     std::function<void()> print;
     std::function<chart::Drawing()> drawing = {};  ///< null if the verb draws nothing
 };
+
+/// Forms of a result by its rows_of(), json_of(), csv_of() and print_text().
+/// @param terrain  whether there is a DEM
+template <typename Result>
+DayForms forms_of(const std::shared_ptr<const Result>& result, bool terrain) {
+    return {.point = {.rows = [=] { return rows_of(*result, terrain); },
+                      .json = [=] { return json_of(*result); },
+                      .doubt = result->doubt},
+            .csv = [=] { return csv_of(*result); },
+            .print = [=] { print_text(*result); }};
+}
 
 struct DayFigure {
     /// Columns of CSV for many points. @param terrain  whether there is a DEM

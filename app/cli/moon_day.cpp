@@ -7,7 +7,6 @@
 #include "cli/day_parts.h"
 #include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "geo/format.h"
 #include "sun/moon_events.h"
 
 namespace relevo::cli {
@@ -22,15 +21,12 @@ constexpr const char* kPhases =
     "phases: the moon's apparent geocentric ecliptic longitude is 0, 90, 180 or 270 degrees more "
     "than the sun's; illuminated fraction: at the middle of the local day";
 
-/// All figures of the verb, before they are written as text, CSV or JSON.
-struct MoonDayResult {
-    geo::Geodetic place;
-    DaysArguments::Days asked;
-    std::string definition;
-    std::vector<sun::MoonDay> days;
-    std::vector<light::LightDay> light;  ///< of the same days; empty without a DEM
-    std::string light_definition, horizon_definition;
-    light::Doubt doubt;
+constexpr DayResult::Words kMoonWords{
+    "direct_moonlight", "phase_definition", kPhases,
+    "date,all_day",     kMoonKinds,         ",moon_up_h,illuminated_fraction,phase,phase_time"};
+
+struct MoonDayResult : DayResult {
+    std::vector<sun::MoonDay> days{};
 };
 
 const char* all_day_of(const sun::MoonDay& day) {
@@ -62,45 +58,11 @@ ordered_json day_json(const MoonDayResult& result, std::size_t i) {
                           {"utc", utc_json(phase.utc)},
                           {"local", sun::to_iso(phase.utc, result.asked.zone)}});
     json["events"] = events_json(day.events, result.asked.zone);
-    if (!result.light.empty()) {
-        json["direct_moonlight"] = lit_json(result.light[i].lit);
-        json["direct_moonlight_h"] = result.light[i].lit_s / 3600;
-        if (!result.doubt.holes.empty()) json["not_known_h"] = result.light[i].not_known_s / 3600;
-    }
     return json;
 }
 
 ordered_json json_of(const MoonDayResult& result) {
-    ordered_json json;
-    json["place"] = place_json(result.place);
-    json["zone"] = result.asked.zone.name();
-    add_assumption(json, result.asked.assumption);
-    json["definition"] = result.definition;
-    json["phase_definition"] = kPhases;
-    if (!result.light.empty()) {
-        json["light_definition"] = result.light_definition;
-        json["horizon_definition"] = result.horizon_definition;
-    }
-    if (!result.doubt.holes.empty()) json["hole_sectors"] = sectors_json(result.doubt.holes);
-    if (result.asked.single) {
-        json.update(day_json(result, 0));
-        return json;
-    }
-    ordered_json& days = json["days"] = ordered_json::array();
-    for (std::size_t i = 0; i < result.days.size(); ++i)
-        days.push_back(day_json(result, i));
-    return json;
-}
-
-/// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
-std::string moon_columns(bool light, bool holes) {
-    std::string text = "date,all_day";
-    for (const EventKind kind : kMoonKinds)
-        text += fmt::format(",{}", sun::name_of(kind));
-    text += ",moon_up_h,illuminated_fraction,phase,phase_time";
-    if (light) text += ",direct_moonlight,direct_moonlight_h";
-    if (holes) text += ",not_known,not_known_h";
-    return text;
+    return json_of(result, result.days.size(), [&](std::size_t i) { return day_json(result, i); });
 }
 
 std::string row_of(const MoonDayResult& result, std::size_t i, bool holes) {
@@ -118,52 +80,12 @@ std::string row_of(const MoonDayResult& result, std::size_t i, bool holes) {
     text += fmt::format(",{:.4f},{:.4f},{},{}", day.moon_up_s / 3600, day.illuminated_fraction,
                         sun::phase_name(day.phase_longitude_rad),
                         day.phases.empty() ? "" : sun::to_iso(day.phases.front().utc, zone));
-    if (!result.light.empty())
-        text += fmt::format(",{},{:.4f}", spans_of(result.light[i].lit, zone),
-                            result.light[i].lit_s / 3600);
-    if (!holes) return text;
-    return text + fmt::format(",{},{:.4f}", spans_of(not_known_of(result.light[i].lit), zone),
-                              result.light[i].not_known_s / 3600);
-}
-
-std::vector<std::string> rows_of(const MoonDayResult& result, bool holes) {
-    std::vector<std::string> rows;
-    for (std::size_t i = 0; i < result.days.size(); ++i)
-        rows.push_back(row_of(result, i, holes));
-    return rows;
-}
-
-/// What the figures mean.
-std::vector<std::string> definitions_of(const MoonDayResult& result) {
-    std::vector<std::string> definitions{result.definition, kPhases};
-    if (!result.light.empty()) {
-        definitions.push_back(result.light_definition);
-        definitions.push_back(result.horizon_definition);
-    }
-    if (!result.doubt.holes.empty())
-        definitions.push_back(not_known_text(result.doubt, "direct moonlight"));
-    return definitions;
-}
-
-std::string csv_of(const MoonDayResult& result) {
-    const bool holes = !result.doubt.holes.empty();
-    std::string text =
-        csv_remarks(definitions_of(result)) + moon_columns(!result.light.empty(), holes) + "\n";
-    for (const std::string& row : rows_of(result, holes))
-        text += row + "\n";
-    return text;
-}
-
-void print_definitions(const MoonDayResult& result) {
-    fmt::print("\n");
-    for (const std::string& definition : definitions_of(result))
-        fmt::print("{}\n", definition);
+    return text + light_columns(result, i, holes);
 }
 
 void print_day(const MoonDayResult& result) {
     const sun::MoonDay& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
-    fmt::print("date                {}, {}\n", sun::to_string(day.date), zone.name());
     print_events(day.events, zone);
     if (const char* all_day = all_day_of(day))
         fmt::print("all day             the moon stays {}\n", all_day);
@@ -178,8 +100,6 @@ void print_day(const MoonDayResult& result) {
 void print_days(const MoonDayResult& result) {
     const sun::Zone& zone = result.asked.zone;
     const bool lit = !result.light.empty();
-    fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
-               sun::to_string(result.asked.last), zone.name());
     fmt::print("\n{:<12}{:<10}{:<10}{:<10}{:>10}{:>8}  {:<24}{}\n", "date", "moonrise", "transit",
                "moonset", "up", "disc", "phase", lit ? "moonlight" : "");
     for (std::size_t i = 0; i < result.days.size(); ++i) {
@@ -203,51 +123,25 @@ void print_days(const MoonDayResult& result) {
 }
 
 void print_text(const MoonDayResult& result) {
-    fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
-               result.place.height_m);
+    print_head(result);
     result.asked.single ? print_day(result) : print_days(result);
     print_definitions(result);
-}
-
-/// @param posts  null without a DEM
-MoonDayResult result_at(const DayArguments& arguments, const DaysArguments::Days& asked,
-                        const geo::PlaceText& at, const dem::Posts* posts) {
-    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
-    if (!posts) check_has_ground(at);
-    MoonDayResult result;
-    result.asked = asked;
-    result.place = at.place;
-    if (posts) {
-        const light::TerrainHorizon horizon(*posts, at.place,
-                                            arguments.terrain.horizon(at, eye_height_m));
-        result.place = horizon.place();
-        const light::DirectLight direct(horizon, arguments.light.light(result.place, eye_height_m));
-        result.light = direct.days(asked.first, asked.last, asked.zone);
-        result.doubt = light::doubt_of(direct, result.light, horizon.profile(kDoubtDirections),
-                                       arguments.terrain.highest_m);
-        result.light_definition = direct.definition() + "; at any phase, and by day too";
-        result.horizon_definition = horizon.description();
-    }
-    const sun::RiseRule rule = arguments.light.rule(result.place, eye_height_m);
-    result.definition = rule.description();
-    result.days = sun::moon_days(asked.first, asked.last, asked.zone, result.place, rule);
-    return result;
 }
 
 void run(const DayArguments& arguments) {
     const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
                            const dem::Posts* posts) {
-        const auto result =
-            std::make_shared<const MoonDayResult>(result_at(arguments, asked, at, posts));
-        return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
-                                  .json = [=] { return json_of(*result); },
-                                  .doubt = result->doubt},
-                        .csv = [=] { return csv_of(*result); },
-                        .print = [=] { print_text(*result); }};
+        const auto result = std::make_shared<MoonDayResult>(DayResult{kMoonWords, asked});
+        const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
+        std::optional<light::TerrainHorizon> horizon;
+        if (posts) horizon.emplace(*posts, at.place, arguments.terrain.horizon(at, eye_height_m));
+        if (find_light(arguments, at, horizon ? &*horizon : nullptr, *result))
+            result->light_definition += "; at any phase, and by day too";
+        result->days = sun::moon_days(asked.first, asked.last, asked.zone, result->place,
+                                      arguments.light.rule(result->place, eye_height_m));
+        return forms_of(std::shared_ptr<const MoonDayResult>(result), posts != nullptr);
     };
-    run_days(arguments, {.columns = [](bool terrain) { return moon_columns(terrain, terrain); },
-                         .remarks = {kPhases},
-                         .forms = forms});
+    run_days(arguments, kMoonWords, forms);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/allocation.h"
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -16,7 +17,6 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/far_ground.h"
 #include "cli/shared.h"
 #include "cli/sun.h"
 
@@ -109,7 +109,7 @@ double posts_read_of_sites(const dem::Posts& posts, const std::vector<output::Pl
     double sum = 0;
     dem::Window last;
     for (const output::PlannedTile& tile : tiles) {
-        const dem::Window site = FarGround::halo_of(posts.grid(), halo_m, tile.window);
+        const dem::Window site = figure::FarGround::halo_of(posts.grid(), halo_m, tile.window);
         sum += count(site) - count(common(site, last));
         last = site;
     }
@@ -160,10 +160,9 @@ std::vector<std::string> PlanArguments::words(const Verb& verb) const {
     std::vector<std::string> words = split(verb.command(), ' '), names{"--"};
     words.erase(words.begin());  // plan
     for (const GivenOption& option : verb.given()) {
-        static const std::vector<std::string> kOfPlan{"--slurm",        "--parallel",   "--cpus",
-                                                      "--task-minutes", "--most-tasks", "--resume",
-                                                      "--overwrite"};
-        if (std::ranges::find(kOfPlan, option.name) != kOfPlan.end()) continue;
+        if (contains(kNames, option.name) || option.name == "--resume" ||
+            option.name == "--overwrite")
+            continue;
         if (option.is_flag) words.push_back(option.name);
         for (const std::string& value : option.values) {
             if (option.is_flag) break;
@@ -199,7 +198,7 @@ void tell_tasks(const PlanArguments& arguments, const PlannedWork& work) {
 namespace {
 
 /// Of tiles that are narrow for their halo.
-void warn_of_wide_halo(const RasterPlan& plan, const dem::Posts& posts,
+void warn_of_wide_halo(double halo_m, const dem::Posts& posts,
                        const std::vector<output::PlannedTile>& todo) {
     // No wider than the DEM is beyond a tile.
     const glm::dvec2 spacing_m = posts.grid().post_spacing_m();
@@ -210,7 +209,7 @@ void warn_of_wide_halo(const RasterPlan& plan, const dem::Posts& posts,
                  beyond_m = std::max(posts.grid().columns() * spacing_m.x,
                                      posts.grid().rows() * spacing_m.y) -
                             side_m;
-    const double sides = std::min(plan.halo_m, beyond_m) / side_m;
+    const double sides = std::min(halo_m, beyond_m) / side_m;
     constexpr double kWide = 2;
     if (sides > kWide)
         log::warning(
@@ -221,10 +220,14 @@ void warn_of_wide_halo(const RasterPlan& plan, const dem::Posts& posts,
 
 }  // namespace
 
-void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
-                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo) {
-    const RasterEstimate& estimate = plan.estimate;
-    fmt::print("tiles               {} {}, {} there already\n", plan.tiles, plan.kind, plan.there);
+void tell_raster_plan(const PlanArguments& arguments, const figure::RasterRun& run,
+                      const figure::RasterRunOptions& options, const dem::Posts& posts,
+                      std::vector<std::string> words) {
+    const figure::RasterEstimate estimate = run.estimate();
+    const std::vector<output::PlannedTile>& todo = run.todo();
+    const std::size_t tiles = run.folder()->plan().tiles.size();
+    fmt::print("tiles               {} {}, {} there already\n", tiles, options.tiles.description(),
+               run.folder()->there());
     const dem::TileReport& found = posts.about().tiles;
     if (const std::int64_t voids = found.missing.count + found.broken.count; voids > 0)
         fmt::print("voids               {} of {} tiles of the DEM are missing or broken\n", voids,
@@ -232,11 +235,12 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
     fmt::print(
         "halo                {:.1f} km: ground so far off can change a figure (relief "
         "{:.0f} m)\n",
-        plan.halo_m / 1000, double{posts.highest_m()} - posts.lowest_m());
+        run.halo_m() / 1000, double{posts.highest_m()} - posts.lowest_m());
     if (!todo.empty()) {
         const double bytes = bytes_of_type(posts.about().data_type);
-        const double read = bytes * (plan.is_far ? posts_read_of_sites(posts, todo, plan.halo_m)
-                                                 : posts_read_on_demand(posts, todo, plan.halo_m));
+        const double read =
+            bytes * (options.tiles.halo_km ? posts_read_of_sites(posts, todo, run.halo_m())
+                                           : posts_read_on_demand(posts, todo, run.halo_m()));
         fmt::print("memory              some {:.0f} MiB a task, {:.0f} of them heights\n",
                    estimate.memory_mib, estimate.heights_mib);
         fmt::print(
@@ -249,20 +253,19 @@ void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
         fmt::print("writing             {} before compression\n",
                    bytes_text(estimate.result_bytes));
     }
-    warn_of_wide_halo(plan, posts, todo);
-    const fs::path folder = plan.folder;
-    tell_tasks(arguments, {.unit = "tile",
-                           .left = todo.size(),
+    warn_of_wide_halo(run.halo_m(), posts, todo);
+    const fs::path folder = options.output;
+    tell_tasks(arguments, {.left = todo.size(),
                            .ready_s = estimate.ready_s,
                            .computing_s = estimate.computing_s,
                            .threads = estimate.threads,
                            .memory_mib = estimate.memory_mib,
-                           .words = plan.words,
+                           .words = std::move(words),
                            .merge_words = {"merge", "--output=" + (folder / "mosaic.vrt").string(),
                                            "--stac=" + (folder / "mosaic.json").string(),
-                                           "--overwrite", "--", plan.folder},
-                           .rasters = plan.tiles * plan.bands,
-                           .overwrite = plan.overwrite});
+                                           "--overwrite", "--", options.output},
+                           .rasters = tiles * estimate.bands,
+                           .overwrite = options.overwrite});
 }
 
 void add_plan(Verb app) {

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/files_in_use.h"
-#include "cli/raster_estimate.h"
 #include "cli/task_scripts.h"
 #include "cli/verb.h"
-#include "output/tile_plan.h"
+#include "figure/raster_run.h"
 
 /// `relevo plan COMMAND...`: what a command takes, and the tasks that do it.
 namespace relevo::cli {
@@ -21,6 +22,8 @@ struct PlanArguments {
     int threads = 0;              ///< of a task; 0: those of this run
     int task_minutes = 10, most_tasks = 1000;
 
+    static constexpr std::array<std::string_view, 5> kNames{"--slurm", "--parallel", "--cpus",
+                                                            "--task-minutes", "--most-tasks"};
     /// Whether a verb is one of `plan`.
     static bool is_for(const Verb& verb);
     void add_to(Verb verb);
@@ -37,8 +40,7 @@ struct PlanArguments {
 
 /// A command that is to be done by many tasks.
 struct PlannedWork {
-    std::string unit;        ///< "tile", "picture"
-    std::size_t left = 0;    ///< of these
+    std::size_t left = 0;    ///< tiles or pictures
     double ready_s = 0;      ///< of each task, before its work proper
     double computing_s = 0;  ///< of all, on `threads`
     int threads = 1;
@@ -52,21 +54,11 @@ struct PlannedWork {
 /// @throws Error as OutputFile
 void tell_tasks(const PlanArguments& arguments, const PlannedWork& work);
 
-/// A raster in tiles that is planned.
-struct RasterPlan {
-    RasterEstimate estimate;
-    std::size_t tiles = 0, there = 0, bands = 1;
-    std::string kind;     ///< of the tiles: TileArguments::description()
-    double halo_m = 0;    ///< how far off ground can change a figure
-    bool is_far = false;  ///< ground beyond the halo is means
-    std::string folder;
-    std::vector<std::string> words;
-    bool overwrite = false;
-};
-
-/// Prints tiles, halo, memory, processor hours and bytes, and tell_tasks().
-/// @param todo  tiles
-void tell_raster_plan(const PlanArguments& arguments, const RasterPlan& plan,
-                      const dem::Posts& posts, const std::vector<output::PlannedTile>& todo);
+/// Prints tiles, halo, memory, processor hours and bytes of rasters in tiles, and tell_tasks().
+/// @param posts  of the DEM
+/// @param words  PlannedWork::words
+void tell_raster_plan(const PlanArguments& arguments, const figure::RasterRun& run,
+                      const figure::RasterRunOptions& options, const dem::Posts& posts,
+                      std::vector<std::string> words);
 
 }  // namespace relevo::cli

@@ -353,8 +353,7 @@ class Run {
         const std::vector<std::string> words = arguments_.plan.words(*arguments_.verb);
         std::vector<std::string> check = words;
         check.insert(std::ranges::find(check, "--"), "--missing");
-        tell_tasks(arguments_.plan, {.unit = "picture",
-                                     .left = shots_.size(),
+        tell_tasks(arguments_.plan, {.left = shots_.size(),
                                      .ready_s = 0,
                                      .computing_s = computing_s,
                                      .threads = thread_count(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,8 +97,16 @@ struct ViewArguments {
 
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
 Check in_range(double min, double max);
-inline Check in_range(const figure::Option& option) {
-    return in_range(option.min, option.max);
+inline Check in_range(const figure::Range& range) {
+    return in_range(range.min, range.max);
+}
+/// An option of figures. @param letter  "-k,", or none
+template <typename Number>
+Option add_number(const Verb& verb, const figure::Option& option, Number& number,
+                  const std::string& letter = "") {
+    std::string name = option.key;
+    std::ranges::replace(name, '_', '-');
+    return verb.add_option(letter + "--" + name, number, option.help).check(in_range(option));
 }
 
 /// Any number that is one: no infinity, nothing but digits and an exponent.

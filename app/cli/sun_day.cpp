@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <tuple>
@@ -11,7 +10,6 @@
 #include "cli/day_parts.h"
 #include "cli/day_verb.h"
 #include "cli/sun.h"
-#include "geo/format.h"
 #include "sun/position.h"
 #include "sun/seasons.h"
 
@@ -31,15 +29,15 @@ constexpr const char* kTwilights =
     "level horizon; golden hour: centre from 4 below to 6 above; blue hour: from 6 to 4 below; all "
     "without refraction";
 
-/// All figures of the verb, before they are written as text, CSV or JSON.
-struct DayResult {
-    geo::Geodetic place;
-    DaysArguments::Days asked;
-    std::string definition;
-    std::vector<sun::Day> days;
-    std::vector<light::LightDay> light;  ///< of the same days; empty without a DEM
-    std::string light_definition, horizon_definition;
-    light::Doubt doubt;
+constexpr DayResult::Words kSunWords{"direct_sun", "twilight_definition",
+                                     kTwilights,   "date,polar",
+                                     kSunKinds,    ",day_length_h,golden_hour,blue_hour"};
+
+/// With what its diagram is drawn from.
+struct SunDayResult : DayResult {
+    std::vector<sun::Day> days{};
+    std::optional<light::TerrainHorizon> horizon{};
+    std::optional<light::DirectLight> direct{};  // refers to horizon
 };
 
 const char* polar_of(const sun::Day& day) {
@@ -48,7 +46,7 @@ const char* polar_of(const sun::Day& day) {
                                                    : nullptr;
 }
 
-ordered_json day_json(const DayResult& result, std::size_t i) {
+ordered_json day_json(const SunDayResult& result, std::size_t i) {
     const sun::Day& day = result.days[i];
     ordered_json json;
     json["date"] = sun::to_string(day.date);
@@ -60,11 +58,6 @@ ordered_json day_json(const DayResult& result, std::size_t i) {
     json["golden_hour"] = spans_json(day.golden_hour);
     json["blue_hour"] = spans_json(day.blue_hour);
     json["events"] = events_json(day.events, result.asked.zone);
-    if (!result.light.empty()) {
-        json["direct_sun"] = lit_json(result.light[i].lit);
-        json["direct_sun_h"] = result.light[i].lit_s / 3600;
-        if (!result.doubt.holes.empty()) json["not_known_h"] = result.light[i].not_known_s / 3600;
-    }
     return json;
 }
 
@@ -77,43 +70,16 @@ ordered_json seasons_json(int year) {
             {"december_solstice_utc", utc_json(s.december_solstice)}};
 }
 
-ordered_json json_of(const DayResult& result) {
-    ordered_json json;
-    json["place"] = place_json(result.place);
-    json["zone"] = result.asked.zone.name();
-    add_assumption(json, result.asked.assumption);
-    json["definition"] = result.definition;
-    json["twilight_definition"] = kTwilights;
-    if (!result.light.empty()) {
-        json["light_definition"] = result.light_definition;
-        json["horizon_definition"] = result.horizon_definition;
-    }
-    if (!result.doubt.holes.empty()) json["hole_sectors"] = sectors_json(result.doubt.holes);
-    if (result.asked.single) {
-        json.update(day_json(result, 0));
-    } else {
-        ordered_json& days = json["days"] = ordered_json::array();
-        for (std::size_t i = 0; i < result.days.size(); ++i)
-            days.push_back(day_json(result, i));
-    }
+ordered_json json_of(const SunDayResult& result) {
+    ordered_json json =
+        json_of(result, result.days.size(), [&](std::size_t i) { return day_json(result, i); });
     ordered_json& seasons = json["seasons"] = ordered_json::array();
     for (int year = result.asked.first.year; year <= result.asked.last.year; ++year)
         seasons.push_back(seasons_json(year));
     return json;
 }
 
-/// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
-std::string day_columns(bool light, bool holes) {
-    std::string text = "date,polar";
-    for (const EventKind kind : kSunKinds)
-        text += fmt::format(",{}", sun::name_of(kind));
-    text += ",day_length_h,golden_hour,blue_hour";
-    if (light) text += ",direct_sun,direct_sun_h";
-    if (holes) text += ",not_known,not_known_h";
-    return text;
-}
-
-std::string row_of(const DayResult& result, std::size_t i, bool holes) {
+std::string row_of(const SunDayResult& result, std::size_t i, bool holes) {
     const sun::Zone& zone = result.asked.zone;
     const sun::Day& day = result.days[i];
     const char* polar = polar_of(day);
@@ -126,33 +92,7 @@ std::string row_of(const DayResult& result, std::size_t i, bool holes) {
     }
     text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, spans_of(day.golden_hour, zone),
                         spans_of(day.blue_hour, zone));
-    if (!result.light.empty())
-        text += fmt::format(",{},{:.4f}", spans_of(result.light[i].lit, zone),
-                            result.light[i].lit_s / 3600);
-    if (!holes) return text;
-    return text + fmt::format(",{},{:.4f}", spans_of(not_known_of(result.light[i].lit), zone),
-                              result.light[i].not_known_s / 3600);
-}
-
-std::vector<std::string> rows_of(const DayResult& result, bool holes) {
-    std::vector<std::string> rows;
-    for (std::size_t i = 0; i < result.days.size(); ++i)
-        rows.push_back(row_of(result, i, holes));
-    return rows;
-}
-
-std::string csv_of(const DayResult& result) {
-    std::vector<std::string> remarks{result.definition, kTwilights};
-    if (!result.light.empty()) {
-        remarks.push_back(result.light_definition);
-        remarks.push_back(result.horizon_definition);
-    }
-    const bool holes = !result.doubt.holes.empty();
-    if (holes) remarks.push_back(not_known_text(result.doubt, "direct sun"));
-    std::string text = csv_remarks(remarks) + day_columns(!result.light.empty(), holes) + "\n";
-    for (const std::string& row : rows_of(result, holes))
-        text += row + "\n";
-    return text;
+    return text + light_columns(result, i, holes);
 }
 
 void print_seasons(const DayResult& result) {
@@ -169,25 +109,7 @@ void print_seasons(const DayResult& result) {
     }
 }
 
-void print_head(const DayResult& result) {
-    fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
-               result.place.height_m);
-    if (result.asked.single)
-        fmt::print("date                {}, {}\n", sun::to_string(result.asked.first),
-                   result.asked.zone.name());
-    else
-        fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
-                   sun::to_string(result.asked.last), result.asked.zone.name());
-}
-
-void print_definitions(const DayResult& result) {
-    fmt::print("\n{}\n{}\n", result.definition, kTwilights);
-    if (!result.light.empty())
-        fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
-    if (!result.doubt.holes.empty()) fmt::print("{}\n", not_known_text(result.doubt, "direct sun"));
-}
-
-void print_day(const DayResult& result) {
+void print_day(const SunDayResult& result) {
     const sun::Day& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
@@ -214,7 +136,7 @@ void print_day(const DayResult& result) {
     print_definitions(result);
 }
 
-void print_days(const DayResult& result) {
+void print_days(const SunDayResult& result) {
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
     const bool lit = !result.light.empty();
@@ -244,37 +166,11 @@ void print_days(const DayResult& result) {
     print_definitions(result);
 }
 
-/// The days of a place without terrain.
-void add_days(const DayArguments& arguments, const geo::PlaceText& at, DayResult& result) {
-    check_has_ground(at);
-    result.place = at.place;
-    sun::DayOptions options;
-    options.rule = arguments.light.rule(at.place, arguments.place.eye_height_m);
-    result.days = sun::day_events(result.asked.first, result.asked.last, result.asked.zone,
-                                  at.place, options);
-    result.definition = options.rule.description();
+void print_text(const SunDayResult& result) {
+    result.asked.single ? print_day(result) : print_days(result);
 }
 
-/// Those of a place with a horizon. @returns what its diagram is drawn from
-light::DirectLight add_lit_days(const DayArguments& arguments, const light::TerrainHorizon& horizon,
-                                DayResult& result) {
-    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
-    result.place = horizon.place();
-    light::DirectLight direct(horizon, arguments.light.light(result.place, eye_height_m));
-    result.light = direct.days(result.asked.first, result.asked.last, result.asked.zone);
-    result.doubt = light::doubt_of(direct, result.light, horizon.profile(kDoubtDirections),
-                                   arguments.terrain.highest_m);
-    for (const light::LightDay& day : result.light)
-        result.days.push_back(day.flat);
-    result.light_definition = direct.definition();
-    result.horizon_definition = horizon.description();
-    result.definition = arguments.light.rule(result.place, eye_height_m).description();
-    return direct;
-}
-
-/// @param direct  null without a DEM
-chart::Drawing draw(const DayArguments& arguments, const DayResult& result,
-                    const light::DirectLight* direct) {
+chart::Drawing draw(const DayArguments& arguments, const SunDayResult& result) {
     chart::SunPathDiagram diagram;
     diagram.place = result.place;
     diagram.place_name = arguments.place.name;
@@ -282,55 +178,39 @@ chart::Drawing draw(const DayArguments& arguments, const DayResult& result,
     diagram.year = result.asked.first.year;
     diagram.refraction = arguments.light.refraction.at(result.place);
     if (result.asked.single) diagram.day = result.days.front();
-    if (direct) {
-        diagram.terrain = &direct->skyline();
+    if (result.direct) {
+        diagram.terrain = &result.direct->skyline();
         diagram.terrain_definition = result.horizon_definition;
-        diagram.holes = direct->holes();
+        diagram.holes = result.direct->holes();
         if (result.asked.single) diagram.light = result.light.front();
         diagram.light_definition = result.light_definition;
     }
     return diagram.draw();
 }
 
-/// A place's days, and what its diagram is drawn from.
-struct PlaceDays {
-    DayResult result;
-    std::optional<light::TerrainHorizon> horizon;
-    std::optional<light::DirectLight> direct;  // refers to horizon
-};
-
-DayForms forms_of(const DayArguments& arguments, const DaysArguments::Days& asked,
+DayForms forms_at(const DayArguments& arguments, const DaysArguments::Days& asked,
                   const geo::PlaceText& at, const dem::Posts* posts) {
-    const auto days = std::make_shared<PlaceDays>();
-    DayResult& result = days->result;
-    result.asked = asked;
-    if (posts) {
-        days->horizon.emplace(*posts, at.place,
-                              arguments.terrain.horizon(at, arguments.place.eye_height_m));
-        days->direct.emplace(add_lit_days(arguments, *days->horizon, result));
-    } else {
-        add_days(arguments, at, result);
-    }
-    return {
-        .point = {.rows = [=] { return rows_of(days->result, posts != nullptr); },
-                  .json = [=] { return json_of(days->result); },
-                  .doubt = result.doubt},
-        .csv = [=] { return csv_of(days->result); },
-        .print =
-            [=] { days->result.asked.single ? print_day(days->result) : print_days(days->result); },
-        .drawing =
-            [=, &arguments] {
-                return draw(arguments, days->result, days->direct ? &*days->direct : nullptr);
-            }};
+    const auto result = std::make_shared<SunDayResult>(DayResult{kSunWords, asked});
+    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
+    if (posts)
+        result->horizon.emplace(*posts, at.place, arguments.terrain.horizon(at, eye_height_m));
+    result->direct =
+        find_light(arguments, at, result->horizon ? &*result->horizon : nullptr, *result);
+    sun::DayOptions options;
+    options.rule = arguments.light.rule(result->place, eye_height_m);
+    if (!posts)
+        result->days = sun::day_events(asked.first, asked.last, asked.zone, at.place, options);
+    for (const light::LightDay& day : result->light)
+        result->days.push_back(day.flat);
+    DayForms forms = forms_of(std::shared_ptr<const SunDayResult>(result), posts != nullptr);
+    forms.drawing = [=, &arguments] { return draw(arguments, *result); };
+    return forms;
 }
 
 void run_day(const DayArguments& arguments) {
-    run_days(
-        arguments,
-        {.columns = [](bool terrain) { return day_columns(terrain, terrain); },
-         .remarks = {kTwilights},
-         .forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
-                      const dem::Posts* posts) { return forms_of(arguments, asked, at, posts); }});
+    run_days(arguments, kSunWords,
+             [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
+                 const dem::Posts* posts) { return forms_at(arguments, asked, at, posts); });
 }
 
 }  // namespace

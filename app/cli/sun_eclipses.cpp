@@ -305,13 +305,9 @@ EclipsesResult eclipses_at(const DayArguments& arguments, const DaysArguments::D
 void run_eclipses(const DayArguments& arguments) {
     const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
                            const dem::Posts* posts) {
-        const auto result =
-            std::make_shared<const EclipsesResult>(eclipses_at(arguments, asked, at, posts));
-        return DayForms{.point = {.rows = [=] { return rows_of(*result, posts != nullptr); },
-                                  .json = [=] { return json_of(*result); },
-                                  .doubt = result->doubt},
-                        .csv = [=] { return csv_of(*result); },
-                        .print = [=] { print_text(*result); }};
+        return forms_of(
+            std::make_shared<const EclipsesResult>(eclipses_at(arguments, asked, at, posts)),
+            posts != nullptr);
     };
     run_days(arguments, {.columns = eclipse_columns, .remarks = {kDefinition}, .forms = forms});
 }

@@ -16,7 +16,6 @@
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
 #include "figure/hours.h"
-#include "figure/hours_bands.h"
 #include "figure/sun_over_middle.h"
 
 namespace relevo::cli {
@@ -27,13 +26,8 @@ struct HoursArguments {
     DaysArguments days;
     RefractionArguments refraction;
     std::optional<std::string> step;
-    std::vector<std::string> bands{"hours"};
-    std::optional<double> linke, albedo;
+    figure::Hours figure;
 };
-
-bool has_spells(const std::vector<std::string>& bands) {
-    return std::ranges::any_of(bands, figure::needs_spells);
-}
 
 sun::TimeSpan time_of(const DaysArguments::Days& days) {
     return {days.zone.day(days.first).begin, days.zone.day(days.last).end};
@@ -42,39 +36,35 @@ sun::TimeSpan time_of(const DaysArguments::Days& days) {
 constexpr const char* kCommas = "separate bands with commas and no blanks: hours,first";
 
 bool is_band(const std::string& word) {
-    return contains(figure::hours_words(), word);
+    return contains(figure::Hours::all_words(), word);
 }
 
 /// What is wrong with a band; empty: nothing.
 std::string check_band(const std::string& band) {
     if (is_band(band)) return {};
     if (trimmed(band).empty() || band.find(' ') != std::string::npos) return kCommas;
-    return fmt::format("expected some of {} but got {}", fmt::join(figure::hours_words(), ", "),
-                       band);
+    return fmt::format("expected some of {} but got {}",
+                       fmt::join(figure::Hours::all_words(), ", "), band);
 }
 
 /// What can be said before the DEM is read.
 void check(const HoursArguments& arguments) {
-    const std::vector<std::string>& bands = arguments.bands;
     for (const std::string& path : arguments.raster.dem.paths)
         if (is_band(path) && !std::filesystem::exists(path))
             bad_usage(fmt::format("--bands: {}: {}", path, kCommas));
     if (arguments.step) step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
-    for (std::size_t i = 0; i < bands.size(); ++i)
-        if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
-            bands.begin() + static_cast<std::ptrdiff_t>(i))
-            bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
-    if ((arguments.linke || arguments.albedo) &&
-        std::ranges::none_of(bands, figure::needs_irradiation))
-        bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected",
-                              arguments.linke ? "--linke" : "--albedo"));
+    const std::string repeated = arguments.figure.repeated_word();
+    if (!repeated.empty()) bad_usage(fmt::format("--bands: {} is named twice", repeated));
+    for (const char* option : {"--linke", "--albedo"})
+        if (arguments.raster.has(option) && !arguments.figure.has_irradiation())
+            bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected", option));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
     if (end - begin <= 86400 * light::SunHoursOptions::kMostDays) return;
     if (arguments.step)
         bad_usage(fmt::format(
             "--step: for at most {:.10g} days; longer periods use directions of the sun",
             light::SunHoursOptions::kMostDays));
-    if (has_spells(bands))
+    if (arguments.figure.has_spells())
         bad_usage(
             fmt::format("--bands: first, last and spells are available for at most {:.10g} days",
                         light::SunHoursOptions::kMostDays));
@@ -113,25 +103,21 @@ struct Summary {
     }
 };
 
-void run_hours(const HoursArguments& arguments) {
+void run_hours(HoursArguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
-    const RasterGround ground = arguments.raster.load();
+    const figure::RasterGround ground = arguments.raster.load();
     const DaysArguments::Days days = arguments.days.parse(ground.posts.grid().center());
-    figure::Hours figure;
-    arguments.raster.apply_to(figure);
+    figure::Hours& figure = arguments.figure;
     figure.time = time_of(days);
     figure.zone = days.zone;
-    figure.words = arguments.bands;
     figure.refraction = arguments.refraction.name();
     if (arguments.step)
         figure.step_s = step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
-    if (arguments.linke) figure.irradiation.linke = *arguments.linke;
-    if (arguments.albedo) figure.irradiation.albedo = *arguments.albedo;
     Summary sum;
     figure.seen = [&](const light::SunHours& part) { sum.add(part); };
-    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
+    if (!arguments.raster.make(file, files, ground, figure)) return;
     sum.say_more_than_level();
     fmt::print("time                {} to {}\n", figure.from(), figure.to());
     fmt::print(
@@ -147,24 +133,20 @@ void run_hours(const HoursArguments& arguments) {
 void add_sun_hours(Verb sun_verb) {
     const auto arguments = std::make_shared<HoursArguments>();
     const Verb verb = sun_verb.add_verb("hours", "Hours of direct sun of each post, as a raster");
-    arguments->raster.add_to(verb);
+    arguments->raster.add_to(verb, arguments->figure);
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
     verb.add_option("--step", arguments->step,
                     "Time step of the sun, for at most four days (3min), or minutes alone");
-    verb.add_option("--bands", arguments->bands,
+    verb.add_option("--bands", arguments->figure.words,
                     "Bands: hours; for at most four days also first, last (minutes from the start) "
                     "and spells (number of sunshine periods); global, beam, diffuse, reflected "
                     "(clear-sky irradiation, kWh/m2)")
         .delimiter(',')
         .one_word()
         .check({check_band, ""});
-    verb.add_option("--linke", arguments->linke,
-                    "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)")
-        .check(in_range(figure::kLinke));
-    verb.add_option("--albedo", arguments->albedo,
-                    "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)")
-        .check(in_range(figure::kAlbedo));
+    add_number(verb, figure::kLinke, arguments->figure.irradiation.linke);
+    add_number(verb, figure::kAlbedo, arguments->figure.irradiation.albedo);
     verb.callback([arguments] { run_hours(*arguments); });
 }
 

@@ -171,15 +171,8 @@ light::LightOptions LightArguments::light(const geo::Geodetic& place,
 
 void TerrainArguments::add_to(Verb verb) {
     dem.add_to(verb);
-    verb.add_option(
-            "-k,--terrestrial-refraction", refraction,
-            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(figure::kTerrestrialRefraction))
-        .group("Horizon");
-    verb.add_option("--highest", highest_m,
-                    "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        .check(in_range(-12000.0, 9000.0))
-        .group("Horizon");
+    add_number(verb, figure::kTerrestrialRefraction, refraction, "-k,").group("Horizon");
+    add_number(verb, figure::kHighestAtPoint_m, highest_m).group("Horizon");
 }
 
 light::HorizonOptions TerrainArguments::horizon(const geo::PlaceText& at,

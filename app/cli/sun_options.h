@@ -92,7 +92,7 @@ struct TerrainView {
 /// DEM..., -k and --highest, for verbs that look at the terrain from a place.
 struct TerrainArguments {
     DemArguments dem;
-    double refraction = 0.13;
+    double refraction = figure::kTerrestrialRefraction.value;
     std::optional<double> highest_m;
 
     void add_to(Verb verb);

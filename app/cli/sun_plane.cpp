@@ -31,7 +31,7 @@ struct PlaneArguments : DayArguments {
 };
 
 /// What is wrong with a number; empty: nothing. @param more  said in addition
-std::string fault_in(const figure::Option& range, const std::string& text, const char* more) {
+std::string fault_in(const figure::Range& range, const std::string& text, const char* more) {
     const auto number = parse_number(text);
     if (number && *number >= range.min && *number <= range.max) return {};
     return fmt::format("expected {} to {}{}", range.min, range.max,

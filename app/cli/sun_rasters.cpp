@@ -1,78 +1,104 @@
 #include "cli/sun_rasters.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <array>
 #include <filesystem>
 #include <iterator>
-#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "base/allocation.h"
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "base/log.h"
-#include "base/parallel_for.h"
+#include "base/progress.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "cli/shard.h"
+#include "dem/clip.h"
 #include "dem/file_state.h"
 #include "dem/files_of.h"
-#include "figure/about.h"
 
 namespace relevo::cli {
 namespace {
 
-constexpr double kEnough_s = 2;  // of computing, to say how long all of it takes
-
-/// A dry run knows enough.
-struct Enough {};
-
-double seconds_since(Progress::Clock::time_point began) {
-    return std::chrono::duration<double>(Progress::Clock::now() - began).count();
+/// The verb, without `plan`, and those options that change values: "sun hours",
+/// "--date=2026-06-21".
+std::vector<std::string> meaning_of(const Verb& verb) {
+    constexpr std::array<std::string_view, 7> kOfThisRun{
+        "DEM", "--output", "--overwrite", "--shard", "--resume", "--dry-run", "--memory"};
+    constexpr std::string_view kPlan = "plan ";
+    const std::string command = verb.command();
+    std::vector<std::string> words{command.starts_with(kPlan) ? command.substr(kPlan.size())
+                                                              : command};
+    for (const GivenOption& option : verb.given()) {
+        if (contains(kOfThisRun, option.name) || contains(PlanArguments::kNames, option.name))
+            continue;
+        words.push_back(option.name);
+        if (!option.is_flag) words.back() += fmt::format("={}", fmt::join(option.values, ","));
+    }
+    return words;
 }
 
-double posts_of(const dem::Window& window) {
-    return double(window.columns) * window.rows;
+void print(const figure::RasterEstimate& estimate) {
+    fmt::print("posts               {:.0f}, in {} part{}\n", estimate.posts, estimate.parts,
+               estimate.parts == 1 ? "" : "s");
+    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n", estimate.memory_mib,
+               estimate.heights_mib);
+    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
+               duration_text(estimate.computing_s), 100 * estimate.sampled_share,
+               estimate.sampled_s, estimate.threads);
+    fmt::print(
+        "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
+        "folder of the result\n",
+        estimate.bands, estimate.bands == 1 ? "" : "s",
+        estimate.result_bytes / static_cast<double>(estimate.bands) / kMiB);
 }
 
-/// Whether some posts of a window have heights, by those that are at hand.
-bool has_ground(const dem::Posts& posts, const dem::Window& window) {
-    constexpr int kSide = 8;
-    for (int i = 0; i < kSide * kSide; ++i)
-        if (!std::isnan(posts.thinned_m(window.column + window.columns * (i % kSide) / kSide,
-                                        window.row + window.rows * (i / kSide) / kSide)))
-            return true;
-    return false;
+/// Memory of a task, which may have less than the machine; the program itself takes some of it.
+MemoryBudget memory_of_allocation(const MemoryBudget& memory) {
+    constexpr std::int64_t kLeast_mib = 16, kProgram_mib = 256;
+    const Allocation& given = allocation();
+    if (!given.memory_bytes) return memory;
+    const std::int64_t mib = *given.memory_bytes / MemoryBudget::kMiB - kProgram_mib;
+    return MemoryBudget::of_mib(std::clamp(mib, kLeast_mib, memory.mib()));
 }
 
-/// A window around both.
-dem::Window around(const dem::Window& a, const dem::Window& b) {
-    if (a.is_empty()) return b;
-    const int column = std::min(a.column, b.column), row = std::min(a.row, b.row);
-    return {column, row, std::max(a.end_column(), b.end_column()) - column,
-            std::max(a.end_row(), b.end_row()) - row};
+/// Says how many threads and how much memory a task has, and what limits them.
+void say_allocation(const MemoryBudget& memory) {
+    const Allocation& given = allocation();
+    const auto by = [](const std::string& name) {
+        return name.empty() ? std::string() : " (" + name + ")";
+    };
+    log::info(fmt::format("{} threads{}, {} MiB of memory{}", given.threads, by(given.threads_by),
+                          memory.mib(), by(given.memory_by)));
+}
+
+void add_tiles(Verb verb, RasterArguments& arguments) {
+    verb.add_option("--tiles", arguments.tiles.tiles,
+                    "Write tiles into the folder that -o names, a GeoTIFF each: of N x N posts, or "
+                    "those of an index, as gdaltindex and STAC have it")
+        .type_name("N|INDEX")
+        .group("Tiles");
+    add_number(verb, figure::kHalo_km, arguments.tiles.halo_km).group("Tiles");
+    verb.add_option("--shard", arguments.shard,
+                    "Make one part of the tiles: I/N, or array in an array task of a scheduler")
+        .group("Tiles");
+    verb.add_flag("--resume", arguments.tiles.resume,
+                  "Keep tiles that are there, complete and of this command")
+        .group("Tiles");
 }
 
 }  // namespace
 
-dem::Grid RasterGround::grid_of(const dem::Window& raster) const {
-    return raster == whole() ? posts.grid()
-                             : posts.grid().part(raster, raster.columns, raster.rows);
-}
-
-std::vector<dem::Window> RasterGround::parts_of(const dem::Window& raster) const {
-    return part_posts == 0 ? std::vector{raster} : figure::raster_parts(raster, part_posts);
-}
-
-void RasterArguments::add_to(Verb verb_of_rasters) {
+void RasterArguments::add_to(Verb verb_of_rasters, figure::Figure& figure) {
     verb = verb_of_rasters;
     dem.add_to(*verb);
-    verb->add_option(
-            "-k,--terrestrial-refraction", terrestrial_refraction,
-            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
-        .check(in_range(figure::kTerrestrialRefraction));
+    add_number(*verb, figure::kTerrestrialRefraction, figure.terrestrial_refraction, "-k,");
     output.endings = {"tif", "tiff"};
     verb->add_option("-o,--output", output.path,
                      "Cloud-optimised GeoTIFF to write, on the DEM's grid; with --tiles a folder")
@@ -86,10 +112,8 @@ void RasterArguments::add_to(Verb verb_of_rasters) {
                      "casts shadows")
         .type_name("W,S,E,N");
     verb->add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
-    verb->add_option("--highest", highest_m,
-                     "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
-        .check(in_range(figure::kHighest_m));
-    tiles.add_to(*verb);
+    add_number(*verb, figure::kHighest_m, figure.highest_m);
+    add_tiles(*verb, *this);
     if (PlanArguments::is_for(*verb))
         plan.add_to(*verb);
     else
@@ -111,18 +135,20 @@ void check_results(const RasterArguments& arguments, const std::filesystem::path
     for (const std::filesystem::path& script : results)
         if (folder_of(script) == folder_of(of_plan))
             make_folder_of(of_plan, "-o");  // as the plan would
-    arguments.plan.check(files, arguments.tiles.shard, overwrite);
+    arguments.plan.check(files, arguments.shard, overwrite);
     results.push_back(folder);
     std::ranges::copy(output::plan_files(folder), std::back_inserter(results));
     files.check_planned(results, "-o");
-    if (!overwrite) check_plan_files(folder);
+    if (!overwrite) figure::check_plan_files(folder);
 }
 
 }  // namespace
 
 OutputFile* RasterArguments::open(FilesInUse& files) const {
     output::check_creation_options(creation_options);
-    tiles.check();
+    if (!tiles.given() && !shard.empty()) bad_usage("--shard: needs --tiles");
+    if (!tiles.given() && tiles.resume) bad_usage("--resume: needs --tiles");
+    if (!tiles.given() && tiles.halo_km) bad_usage("--halo: needs --tiles");
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
     const std::filesystem::path folder = output.path;
@@ -137,11 +163,6 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
 
 namespace {
 
-/// --crs is about the DEM, and so about the index of tiles where the DEM is that index.
-std::string crs_of_tiles(const RasterArguments& arguments) {
-    return contains(arguments.dem.paths, arguments.tiles.tiles) ? arguments.dem.options().crs : "";
-}
-
 /// Of all files that the DEM is read from, also those that a name stands for, and of how they are
 /// read.
 std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
@@ -153,7 +174,7 @@ std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadO
 
 }  // namespace
 
-RasterGround RasterArguments::load() const {
+figure::RasterGround RasterArguments::load() const {
     if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
     std::optional<dem::Clip> rectangle;
     if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
@@ -165,319 +186,58 @@ RasterGround RasterArguments::load() const {
     if (tiles.given()) {
         if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
-        const auto known = plan_of(output.path, output.overwrite);
+        const auto known = figure::plan_of(output.path, output.overwrite);
         stamp = stamp_of_dem(dem.paths, options);
         is_planned = known && known->stamp == stamp;
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }
     dem::LoadOptions of_others = options;
     if (tiles.halo_km) {
-        of_others.memory.posts /= FarGround::kShareOfOthers;
-        of_others.memory.whole_posts /= FarGround::kShareOfOthers;
+        of_others.memory.posts /= figure::FarGround::kShareOfOthers;
+        of_others.memory.whole_posts /= figure::FarGround::kShareOfOthers;
     }
     log::HeldNotices notices;
     dem::Posts posts = dem::Posts::load(dem.paths, of_others, facts ? &*facts : nullptr);
     notices.release();
-    const dem::Grid& grid = posts.grid();
-    const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
-                                         : dem::Window{0, 0, grid.columns(), grid.rows()};
-    const std::int64_t part_posts =
-        posts.in_memory() ? 0 : options.memory.posts / figure::kPostsAPart;
-    return {std::move(posts), window, part_posts, options, is_planned, std::move(stamp)};
+    const dem::Window window = rectangle ? dem::window_of(posts.grid(), *rectangle, "--clip")
+                                         : figure::whole_window(posts.grid());
+    return {std::move(posts), window, dem.paths, options, is_planned, std::move(stamp)};
 }
 
-void RasterArguments::apply_to(figure::Figure& figure) const {
-    figure.terrestrial_refraction = terrestrial_refraction;
-    figure.highest_m = highest_m;
-}
-
-RasterRun::RasterRun(const RasterArguments& arguments, OutputFile* file, FilesInUse& files,
-                     const RasterGround& ground, const figure::Figure& figure)
-    : arguments_(arguments),
-      ground_(ground),
-      files_(files),
-      file_(file),
-      figure_(figure),
-      bands_(figure.bands()),
-      metadata_(figure.metadata(ground.posts)),
-      halo_m_(figure.halo_m(ground.posts)) {
-    if (arguments.tiles.given())
-        choose_tiles();
-    else
-        todo_ = {{"", ground.window}};
-    for (const output::PlannedTile& tile : todo_) {
-        window_ = around(window_, tile.window);
-        posts_ += posts_of(tile.window);
+bool RasterArguments::make(OutputFile* file, FilesInUse& files, const figure::RasterGround& ground,
+                           const figure::Figure& figure) const {
+    using Purpose = figure::RasterRunOptions::Purpose;
+    const std::vector<std::string> meaning = meaning_of(*verb);
+    figure::RasterRunOptions options{
+        .purpose = plan.on   ? Purpose::Plan
+                   : dry_run ? Purpose::Estimate
+                             : Purpose::Make,
+        .version = RELEVO_VERSION,
+        .output = output.path,
+        .overwrite = output.overwrite,
+        .creation_options = creation_options,
+        .tiles = tiles,
+        .command = fmt::format("{}", fmt::join(meaning, " ")),
+        .meaning = fmt::format("relevo " RELEVO_VERSION "\n{}\n", fmt::join(meaning, "\n"))};
+    // --crs is about the DEM, and so about the index of tiles where the DEM is that index.
+    if (contains(dem.paths, tiles.tiles)) options.tiles.crs = dem.options().crs;
+    if (!shard.empty()) {
+        const Shard part = parse_shard(shard, environment_variable);
+        options.tiles.shard = part.number;
+        options.tiles.shards = part.count;
     }
-    if (!is_dry() && !is_done()) {
-        if (file_)
-            writer_.emplace(*file_, ground.grid_of(ground.window), figure_.type(), bands_,
-                            options_of_file());
-        bar_.emplace(printable(arguments.output.path));
+    figure::RasterRun run(options, file, files, ground, figure);
+    run.make_all();
+    if (plan.on) {
+        std::vector<std::string> words = plan.words(*verb);
+        if (!dem.values.has("--memory"))
+            words.insert(words.begin() + 2,
+                         fmt::format("--memory={}", ground.options.memory.mib()));
+        tell_raster_plan(plan, run, options, ground.posts, std::move(words));
+    } else if (dry_run && !run.is_done()) {
+        print(run.estimate());
     }
-    began_ = Progress::Clock::now();
-    if (!is_done()) return;
-    if (arguments.plan.on)
-        tell_plan({});
-    else
-        log::info(fmt::format("no tile is to be made; {} are there already", folder_->there()));
-}
-
-std::vector<std::string> RasterRun::options_of_file() const {
-    constexpr std::int64_t kThread_mib = 128;  // a quarter is what one of GDAL's threads takes
-    const std::int64_t most = std::max<std::int64_t>(1, ground_.options.memory.mib() / kThread_mib);
-    std::vector<std::string> options{
-        fmt::format("NUM_THREADS={}", std::min<std::int64_t>(most, thread_count()))};
-    std::ranges::copy(arguments_.creation_options, std::back_inserter(options));
-    return options;
-}
-
-void RasterRun::choose_tiles() {
-    const dem::Posts& posts = ground_.posts;
-    const Verb& verb = *arguments_.verb;
-    std::vector<output::PlannedTile> tiles =
-        arguments_.tiles.of(posts.grid(), ground_.window, crs_of_tiles(arguments_));
-    if (arguments_.tiles.halo_km) {
-        for (const output::PlannedTile& tile : tiles)
-            FarGround::require_room(posts.grid(), *arguments_.tiles.halo_km * 1000, tile.window,
-                                    ground_.options.memory);
-        far_.emplace(arguments_.dem.paths, ground_.options, posts, *arguments_.tiles.halo_km * 1000,
-                     arguments_.output.path, ground_.is_planned);
-        metadata_.emplace_back("FAR_GROUND", far_->description());
-        halo_m_ = *arguments_.tiles.halo_km * 1000;
-    }
-    output::RasterMetadata meaning = metadata_;
-    for (const output::RasterBand& band : bands_) {
-        meaning.emplace_back("band", band.name);
-        meaning.insert(meaning.end(), band.metadata.begin(), band.metadata.end());
-    }
-    folder_.emplace(arguments_.output.path,
-                    output::TilePlan{.command = command_text(verb.command(), verb.given()),
-                                     .digest = meaning_of(verb.command(), verb.given(), meaning),
-                                     .dems = arguments_.dem.paths,
-                                     .grid = posts.grid(),
-                                     .statistics = posts.about().statistics,
-                                     .content = posts.content(),
-                                     .dem_tiles = posts.about().tiles,
-                                     .stamp = ground_.stamp,
-                                     .tiles = std::move(tiles)},
-                    arguments_.tiles, arguments_.output.overwrite, arguments_.plan.on);
-    todo_ = folder_->todo();
-    if (!arguments_.dry_run) folder_->write_plan(posts, far_ ? &*far_ : nullptr);
-    // The middle of a DEM says more of how long it takes than its corner, and ground than voids.
-    if (is_dry()) {
-        std::rotate(todo_.begin(), todo_.begin() + static_cast<std::ptrdiff_t>(todo_.size() / 2),
-                    todo_.end());
-        std::stable_partition(todo_.begin(), todo_.end(), [&](const output::PlannedTile& tile) {
-            return has_ground(posts, tile.window);
-        });
-    }
-}
-
-void RasterRun::count(double of_call) {
-    const double step = of_call * part_share_ / static_cast<double>(figure_.calls());
-    share_ += step;
-    passed_s_ = seconds_since(began_);
-    sampled_.end_step(step, passed_s_);
-    if (bar_) bar_->show(share_);
-    if (!writer_ && passed_s_ - ready_s_ - sites_s_ > kEnough_s && share_ < 1 &&
-        sampled_.suffices())
-        throw Enough();
-}
-
-void RasterRun::put(std::size_t band, const dem::Window& part, const Array2d<float>& values) {
-    if (!writer_) return;
-    const int column = part.column - raster_.column, row = part.row - raster_.row;
-    if (figure_.type() == output::RasterType::Byte)
-        writer_->put(band, column, row, figure::mask_of(values));
-    else
-        writer_->put(band, column, row, values);
-}
-
-figure::PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Posts* around,
-                                      const dem::Window& window) {
-    return figure_.maker({.posts = posts,
-                          .around = around,
-                          .window = window,
-                          .middle = ground_.posts.grid().center(),
-                          .put = [this](std::size_t band, const dem::Window& part,
-                                        const Array2d<float>& values) { put(band, part, values); },
-                          .done = [this](double of_call) { count(of_call); },
-                          .is_estimate = is_dry()});
-}
-
-bool RasterRun::make_all() {
-    if (is_done()) return false;
-    try {
-        figure::PartMaker make_part;
-        if (!far_) make_part = maker_of(ground_.posts, nullptr, window_);
-        ready_s_ = passed_s_ = seconds_since(began_);
-        for (const output::PlannedTile& tile : todo_)
-            if (far_)
-                make_far(tile);
-            else
-                make(tile, tile.window, make_part, ground_.posts);
-    } catch (const Enough&) {
-    }
-    bar_.reset();
-    if (arguments_.plan.on)
-        tell_plan(estimate());
-    else if (arguments_.dry_run)
-        estimate().print();
-    else
-        say_what_was_made();
-    return !is_dry();
-}
-
-/// A tile with its halo is in memory, and made at once.
-std::vector<dem::Window> RasterRun::parts_of(const dem::Window& raster) const {
-    return far_ ? std::vector{raster} : ground_.parts_of(raster);
-}
-
-void RasterRun::make_far(const output::PlannedTile& tile) {
-    const Progress::Clock::time_point began = Progress::Clock::now();
-    const FarGround::Site site = far_->site_of(tile.window);
-    const figure::PartMaker make_part = maker_of(*site.posts, site.around, site.tile);
-    sites_s_ += seconds_since(began);
-    ++sites_;
-    make(tile, site.tile, make_part, *site.posts);
-}
-
-/// @param raster  the tile's window of `posts`, from which it is made
-void RasterRun::make(const output::PlannedTile& tile, const dem::Window& raster,
-                     const figure::PartMaker& make_part, const dem::Posts& posts) {
-    raster_ = raster;
-    std::optional<OutputFile> own;
-    if (folder_ && !is_dry()) {
-        try {
-            own.emplace(folder_->open(tile, files_));
-        } catch (const Error&) {
-            if (has_been_made(tile)) return;
-            throw;
-        }
-        writer_.emplace(*own, ground_.grid_of(tile.window), figure_.type(), bands_,
-                        options_of_file());
-    }
-    output::RasterMetadata metadata = metadata_;
-    if (writer_) look_beyond(tile.window, metadata);
-    figure::PartMade sum;
-    for (const dem::Window& part : parts_of(raster)) {
-        part_share_ = posts_of(part) / posts_;
-        sampled_.begin_part(part_share_, seconds_since(began_));
-        figure::PartMade made = make_part(part);
-        sum = {sum.holes + made.holes, std::move(made.definition)};
-    }
-    if (!writer_) return;
-    inner_voids_ += inner_voids_of(tile.window, posts, raster);
-    if (folder_) {
-        metadata.emplace_back(output::kCommandKey, folder_->plan().command);
-        metadata.emplace_back(output::kDigestKey, folder_->plan().digest);
-    }
-    try {
-        output::RasterMetadata about =
-            figure::metadata_of(figure_, ground_.posts, RELEVO_VERSION, sum, tile.window);
-        about.insert(about.end(), metadata.begin(), metadata.end());
-        writer_->finish(about);
-    } catch (const Error&) {
-        if (!has_been_made(tile)) throw;
-    }
-    writer_.reset();
-}
-
-/// By another process, since this one looked: a task that was requeued while it still runs.
-bool RasterRun::has_been_made(const output::PlannedTile& tile) const {
-    if (!folder_ || !arguments_.tiles.resume || !folder_->is_whole(tile)) return false;
-    log::info(fmt::format("{}: another process has made it meanwhile", printable(tile.name)));
-    return true;
-}
-
-/// @param raster    of the DEM
-/// @param of_posts  the same of `posts`
-std::int64_t RasterRun::inner_voids_of(const dem::Window& raster, const dem::Posts& posts,
-                                       const dem::Window& of_posts) const {
-    const int right = raster.column - of_posts.column, down = raster.row - of_posts.row;
-    std::vector<float> buffer;
-    std::int64_t count = 0;
-    for (const dem::Window& part : parts_of(of_posts)) {
-        const dem::Posts::View view = posts.view(part, buffer);
-        for (int row = part.row; row < part.end_row(); ++row)
-            for (int column = part.column; column < part.end_column(); ++column)
-                count += std::isnan(*view.at(column, row)) &&
-                         !ground_.posts.is_outside(column + right, row + down);
-    }
-    return count;
-}
-
-void RasterRun::look_beyond(const dem::Window& raster, output::RasterMetadata& metadata) {
-    const std::optional<light::Beyond> beyond = figure_.beyond(ground_.posts, raster);
-    if (!beyond) return;
-    metadata.emplace_back("BEYOND_DEM", beyond->text(figure_.would()));
-    if (!std::exchange(warned_, true)) log::warning(beyond->advice());
-    log::debug(beyond->text(figure_.would()));
-}
-
-void RasterRun::say_what_was_made() const {
-    if (inner_voids_ > 0)
-        log::warning(fmt::format("the DEM has {} voids: they get no value and cast no shadow",
-                                 inner_voids_));
-    if (!folder_) return;
-    log::info(fmt::format(
-        "{} tiles in {}{}", todo_.size(), duration_text(passed_s_),
-        folder_->there() > 0 ? fmt::format("; {} were there already", folder_->there()) : ""));
-}
-
-RasterEstimate RasterRun::estimate() const {
-    RasterEstimate found;
-    double most = 0;  // posts of a part
-    dem::Window largest;
-    for (const output::PlannedTile& tile : todo_) {
-        if (posts_of(tile.window) > posts_of(largest)) largest = tile.window;
-        for (const dem::Window& part : parts_of(tile.window)) {
-            most = std::max(most, posts_of(part));
-            ++found.parts;
-        }
-    }
-    const int bytes_a_value = figure_.type() == output::RasterType::Float ? 4 : 1;
-    MemoryBudget memory_of_posts = ground_.options.memory;
-    double far_bytes = 0;
-    if (far_) {
-        memory_of_posts.posts /= FarGround::kShareOfOthers;
-        for (const output::PlannedTile& tile : todo_)
-            far_bytes = std::max(far_bytes, far_->kept_bytes(tile.window));
-    }
-    const RasterMemory memory =
-        raster_memory(ground_.posts, most, largest, figure_.bytes_a_post(), bytes_a_value,
-                      bands_.size(), memory_of_posts, far_bytes);
-    found.posts = posts_;
-    found.memory_mib = memory.all_mib;
-    found.heights_mib = memory.heights_mib;
-    found.ready_s = ready_s_;
-    const double sites_s = sites_s_ / static_cast<double>(std::max<std::size_t>(1, sites_)) *
-                           static_cast<double>(todo_.size());
-    found.computing_s = ready_s_ + sites_s + sampled_.all_s();
-    found.sampled_share = share_;
-    found.sampled_s = passed_s_;
-    found.threads = thread_count();
-    found.bands = bands_.size();
-    found.result_bytes = posts_ * bytes_a_value * static_cast<double>(bands_.size());
-    return found;
-}
-
-void RasterRun::tell_plan(const RasterEstimate& estimate) const {
-    RasterPlan plan{.estimate = estimate,
-                    .tiles = folder_->plan().tiles.size(),
-                    .there = folder_->there(),
-                    .bands = bands_.size(),
-                    .kind = arguments_.tiles.description(),
-                    .halo_m = halo_m_,
-                    .is_far = far_.has_value(),
-                    .folder = arguments_.output.path,
-                    .words = arguments_.plan.words(*arguments_.verb),
-                    .overwrite = arguments_.output.overwrite};
-    if (!arguments_.dem.values.has("--memory"))
-        plan.words.insert(plan.words.begin() + 2,
-                          fmt::format("--memory={}", ground_.options.memory.mib()));
-    tell_raster_plan(arguments_.plan, plan, ground_.posts, todo_);
+    return options.purpose == Purpose::Make && !run.is_done();
 }
 
 }  // namespace relevo::cli

@@ -26,13 +26,12 @@ struct ShadowArguments {
     std::string times;
     RefractionArguments refraction;
     std::string sun;
-    bool soft = false;
+    figure::Shadow figure;
 };
 
 /// A sun, and what is to be said of it.
 struct Asked {
-    light::SunOverDem sun;
-    double apparent_rad = 0;  ///< elevation as seen from the ground in the middle of the DEM
+    figure::SunOverMiddle sun;
     std::optional<sun::ParsedTime> when;
     std::string name;  ///< that the table of times has for it
 };
@@ -66,10 +65,9 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
 }
 
 /// The sun at a time.
-Asked at_time(const ShadowArguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
-    const figure::SunOverMiddle over =
-        figure::sun_over_middle(posts, when.utc, arguments.refraction.name());
-    return {over.sun, over.apparent_rad, std::move(when), {}};
+Asked at_time(const ShadowArguments& arguments, const dem::Posts& posts,
+              const sun::ParsedTime& when) {
+    return {figure::sun_over_middle(posts, when.utc, arguments.refraction.name()), when, {}};
 }
 
 /// The suns of a table of times. What is assumed and what is odd is said once.
@@ -105,7 +103,7 @@ std::vector<Asked> all_suns(const ShadowArguments& arguments,
     if (!times.empty()) return at_times(arguments, times, posts);
     if (!arguments.sun.empty()) {
         const light::SunOverDem sun = parse_sun(arguments.sun, posts.grid());
-        return {{sun, sun.elevation_rad, {}, {}}};
+        return {{{sun, sun.elevation_rad, {}}, {}, {}}};
     }
     const geo::Geodetic middle = posts.grid().center();
     return {at_time(arguments, posts,
@@ -118,11 +116,11 @@ void print_one(const Asked& asked, const Counts& counts, bool soft) {
     if (asked.when)
         fmt::print("time                {}  ({})\n", sun::to_iso(asked.when->utc, asked.when->zone),
                    sun::to_iso(asked.when->utc));
-    const double azimuth_deg = degrees(asked.sun.azimuth_rad);
+    const double azimuth_deg = degrees(asked.sun.sun.azimuth_rad);
     fmt::print(
         "sun                 azimuth {:.3f} deg ({}), elevation {:.3f} deg as seen, in the "
         "middle of the DEM\n",
-        azimuth_deg, compass_point(azimuth_deg), degrees(asked.apparent_rad));
+        azimuth_deg, compass_point(azimuth_deg), degrees(asked.sun.apparent_rad));
     const double posts = std::max(1.0, static_cast<double>(counts.lit + counts.shaded));
     fmt::print("{}            {} posts, {:.2f} %\n", soft ? "some sun" : "lit     ", counts.lit,
                100 * static_cast<double>(counts.lit) / posts);
@@ -137,7 +135,7 @@ void print_many(const std::vector<Asked>& suns, const std::vector<Counts>& count
         const double posts = std::max(1.0, static_cast<double>(counts[k].lit + counts[k].shaded));
         fmt::print("{:4}  {:25}  {:7.2f}  {:9.2f}  {:6.2f} %{}\n", k + 1,
                    sun::to_iso(suns[k].when->utc, suns[k].when->zone),
-                   degrees(suns[k].sun.azimuth_rad), degrees(suns[k].apparent_rad),
+                   degrees(suns[k].sun.sun.azimuth_rad), degrees(suns[k].sun.apparent_rad),
                    100 * static_cast<double>(counts[k].lit) / posts,
                    suns[k].name.empty() ? "" : "  " + printable(suns[k].name));
     }
@@ -158,15 +156,14 @@ void check(const ShadowArguments& arguments) {
 /// @param timed  by a table: each band is named by its time
 void give_suns(figure::Shadow& figure, const std::vector<Asked>& suns, bool timed) {
     for (const Asked& asked : suns) {
-        figure.suns.push_back({asked.sun, asked.apparent_rad, {}});
-        if (asked.when) figure.suns.back().utc = asked.when->utc;
+        figure.suns.push_back(asked.sun);
         if (!timed) continue;
         figure.names.push_back(sun::to_iso(asked.when->utc, asked.when->zone));
         if (!asked.name.empty()) figure.names.back() += " " + asked.name;
     }
 }
 
-void run_shadow(const ShadowArguments& arguments) {
+void run_shadow(ShadowArguments& arguments) {
     check(arguments);
     const bool timed = !arguments.times.empty();
     FilesInUse files;
@@ -174,13 +171,11 @@ void run_shadow(const ShadowArguments& arguments) {
     OutputFile* const file = arguments.raster.open(files);
     std::vector<dem::NamedTime> times;
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
-    const RasterGround ground = arguments.raster.load();
+    const figure::RasterGround ground = arguments.raster.load();
     const std::vector<Asked> suns = all_suns(arguments, times, ground.posts);
-    figure::Shadow figure;
-    arguments.raster.apply_to(figure);
+    figure::Shadow& figure = arguments.figure;
     give_suns(figure, suns, timed);
     figure.refraction = arguments.sun.empty() ? arguments.refraction.name() : "";
-    figure.soft = arguments.soft;
     std::vector<Counts> counts(suns.size());
     std::string definition;
     figure.seen = [&](std::size_t k, const light::Shadows& part) {
@@ -188,11 +183,11 @@ void run_shadow(const ShadowArguments& arguments) {
         counts[k].shaded += part.shaded_posts;
         definition = part.definition;
     };
-    if (!RasterRun(arguments.raster, file, files, ground, figure).make_all()) return;
+    if (!arguments.raster.make(file, files, ground, figure)) return;
     if (timed)
-        print_many(suns, counts, arguments.soft);
+        print_many(suns, counts, figure.soft);
     else
-        print_one(suns.front(), counts.front(), arguments.soft);
+        print_one(suns.front(), counts.front(), figure.soft);
     fmt::print("\n{}\nrefraction of the sun: {}\n", definition, figure.air(ground.posts));
 }
 
@@ -202,7 +197,7 @@ void add_sun_shadow(Verb sun_verb) {
     const auto arguments = std::make_shared<ShadowArguments>();
     const Verb verb =
         sun_verb.add_verb("shadow", "Shadow mask of a DEM at a given time, as a raster");
-    arguments->raster.add_to(verb);
+    arguments->raster.add_to(verb, arguments->figure);
     arguments->time.add_to(verb);
     verb.add_option("--times", arguments->times,
                     "Many times instead of --time: a CSV with a column time and optionally name; "
@@ -211,7 +206,7 @@ void add_sun_shadow(Verb sun_verb) {
                     "Sun direction instead of a time: AZ,EL in degrees from true north at the "
                     "DEM's centre; grid:AZ,EL from grid north");
     arguments->refraction.add_to(verb);
-    verb.add_flag("--soft", arguments->soft,
+    verb.add_flag("--soft", arguments->figure.soft,
                   "Visible fraction of the solar disc, 0 to 1, instead of a mask");
     verb.callback([arguments] { run_shadow(*arguments); });
 }

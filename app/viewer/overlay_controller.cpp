@@ -9,26 +9,6 @@
 #include "viewer/window.h"
 
 namespace relevo::viewer {
-namespace {
-
-/// The verb of the command line that writes such a raster.
-std::string verb_of(session::SunFigure figure) {
-    switch (figure) {
-        case session::SunFigure::Shadow:
-            return "sun shadow";
-        case session::SunFigure::SkyView:
-            return "sun sky-view";
-        case session::SunFigure::FirstLight:
-        case session::SunFigure::LastLight:
-        case session::SunFigure::Irradiation:
-            return fmt::format("sun hours --bands {}", session::hours_word(figure));
-        default:
-            return "sun hours";
-    }
-}
-
-}  // namespace
-
 OverlayController::OverlayController(State& state, Messages& messages, Discard& discard)
     : state_(state), messages_(messages), discard_(discard), work_(&Window::wake) {}
 
@@ -66,8 +46,7 @@ OverlayWanted OverlayController::wanted(const Opened& opened) const {
         wanted.file = document.scene.overlay;
         copy_choice_to(*wanted.file);
     } else {
-        wanted.raster = raster_of(choice, document.utc, document.zone, document.scene.refraction);
-        wanted.title = title_of(choice, wanted.raster);
+        wanted.figure = figure_of(choice, document.utc, document.zone, document.scene.refraction);
     }
     return wanted;
 }
@@ -174,7 +153,7 @@ bool OverlayController::poll_export() {
         exported_.push_back({of, file, name});
         messages_.report(
             tr_format("{}: {}, as written by relevo {}; scenes and commands include it", file,
-                      of.title, verb_of(of.raster.figure)));
+                      title_of(of.figure), overlay_figure(of.figure.kind).command));
     });
     export_.reset();
     return true;
@@ -185,7 +164,7 @@ void OverlayController::add_to(scene::Scene& scene) const {
     if (choice.kind != OverlayKind::File || !choice.visible) scene.overlay.reset();
     if (const ExportedOverlay* const file = exported()) {
         scene.overlay = scene::Overlay{.file = file->file};
-        scene.overlay->title = file->of.title;
+        scene.overlay->title = title_of(file->of.figure);
     }
     if (scene.overlay) copy_choice_to(*scene.overlay);
 }

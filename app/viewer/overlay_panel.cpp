@@ -18,14 +18,6 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr std::array<const char*, 8> kNames = {tr_later("no overlay"),
-                                               tr_later("from the scene"),
-                                               tr_later("sun hours"),
-                                               tr_later("first light of the day"),
-                                               tr_later("last light of the day"),
-                                               tr_later("irradiation"),
-                                               tr_later("direct sun at this time"),
-                                               tr_later("sky view")};
 constexpr std::array<const char*, 4> kPeriods = {tr_later("of the day"), tr_later("of the week"),
                                                  tr_later("of the year"),
                                                  tr_later("from ... to ...")};
@@ -35,14 +27,14 @@ std::string name_of(const State& state, OverlayKind kind) {
     const std::optional<scene::Overlay>& of_scene = state.document.scene.overlay;
     if (kind == OverlayKind::File && of_scene)
         return printable(std::filesystem::path(of_scene->file).filename().string());
-    return tr(kNames[static_cast<std::size_t>(kind)]);
+    return tr(overlay_figure(kind).name);
 }
 
 void choice(State& state) {
     OverlayChoice& chosen = state.document.overlay;
     ImGui::SetNextItemWidth(-1);
     if (!ImGui::BeginCombo("##overlay", name_of(state, chosen.kind).c_str())) return;
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
+    for (int i = 0; i <= static_cast<int>(OverlayKind::SkyView); ++i) {
         const auto kind = static_cast<OverlayKind>(i);
         if (kind == OverlayKind::File && !state.document.scene.overlay) continue;
         if (!ImGui::Selectable(name_of(state, kind).c_str(), kind == chosen.kind)) continue;
@@ -146,23 +138,23 @@ void overlay_panel(State& state) {
 
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place) {
     const double value = overlay.value_at(place);
-    const session::SunRasterWanted& of = overlay.of.raster;
-    const bool is_first = of.figure == session::SunFigure::FirstLight;
-    if (is_first || of.figure == session::SunFigure::LastLight) {
+    const FigureWanted& of = overlay.of.figure;
+    const bool is_first = of.kind == OverlayKind::FirstLight;
+    if (is_first || of.kind == OverlayKind::LastLight) {
         if (!overlay.raster) return "";
         if (std::isnan(value)) return tr("no direct sun here");
         constexpr double kMinute_s = 60;
-        const sun::CivilTime at = of.zone.local(of.begin + kMinute_s * value).wall;
+        const sun::CivilTime at = of.zone.local(of.time.begin + kMinute_s * value).wall;
         return is_first ? tr_format("first light {:02}:{:02}", at.hour, at.minute)
                         : tr_format("last light {:02}:{:02}", at.hour, at.minute);
     }
     if (std::isnan(value)) return overlay.raster ? tr("no overlay value here") : "";
-    switch (of.figure) {
-        case session::SunFigure::Shadow:
+    switch (of.kind) {
+        case OverlayKind::Mask:
             return value > 0 ? tr("in the sun") : tr("in shade");
-        case session::SunFigure::SkyView:
+        case OverlayKind::SkyView:
             return tr_format("sky view {:.3f}", value);
-        case session::SunFigure::Irradiation:
+        case OverlayKind::Irradiation:
             return tr_format("irradiation {:.2f} kWh/m2", value);
         default:
             return tr_format("sun hours {:.2f} h", value);

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "figure/horizons.h"
+#include "figure/hours.h"
+#include "figure/shadow.h"
 #include "viewer/export.h"
 #include "viewer/sun_model.h"
 #include "viewer/translation.h"
@@ -101,23 +104,6 @@ std::pair<sun::Date, sun::Date> days_of(const OverlayChoice& choice, const sun::
     return {monday, sun::add_days(monday, 6)};
 }
 
-session::SunFigure figure_of(OverlayKind kind) {
-    switch (kind) {
-        case OverlayKind::FirstLight:
-            return session::SunFigure::FirstLight;
-        case OverlayKind::LastLight:
-            return session::SunFigure::LastLight;
-        case OverlayKind::Irradiation:
-            return session::SunFigure::Irradiation;
-        case OverlayKind::Mask:
-            return session::SunFigure::Shadow;
-        case OverlayKind::SkyView:
-            return session::SunFigure::SkyView;
-        default:
-            return session::SunFigure::Hours;
-    }
-}
-
 /// "21 Dec 2026", "21 Dec to 27 Dec 2026", "2026".
 std::string words_of(const sun::Date& first, const sun::Date& last) {
     if (first == last) return fmt::format("{} {}", english_day(first), first.year);
@@ -131,34 +117,55 @@ std::string words_of(const sun::Date& first, const sun::Date& last) {
 
 }  // namespace
 
-session::SunRasterWanted raster_of(const OverlayChoice& choice, sun::Instant utc,
-                                   const sun::Zone& zone, const std::string& refraction) {
-    session::SunRasterWanted raster;
-    raster.zone = zone;
-    raster.refraction = refraction;
-    raster.figure = figure_of(choice.kind);
-    if (session::is_of_period(raster.figure)) {
-        const auto [first, last] = days_of(choice, zone.local(utc).wall.date);
-        raster.begin = zone.day(first).begin;
-        raster.end = zone.day(last).end;
-    } else if (raster.figure == session::SunFigure::Shadow) {
-        raster.begin = utc;
-    }
-    return raster;
+const OverlayFigure& overlay_figure(OverlayKind kind) {
+    static constexpr OverlayFigure kFigures[] = {
+        {tr_later("no overlay"), "", "", ""},
+        {tr_later("from the scene"), "", "", ""},
+        {tr_later("sun hours"), "Sun hours", "sun hours", "hours"},
+        {tr_later("first light of the day"), "First light", "sun hours --bands first", "first"},
+        {tr_later("last light of the day"), "Last light", "sun hours --bands last", "last"},
+        {tr_later("irradiation"), "Irradiation", "sun hours --bands global", "global"},
+        {tr_later("direct sun at this time"), "Direct sun", "sun shadow", ""},
+        {tr_later("sky view"), "Sky-view factor", "sun sky-view", ""},
+    };
+    return kFigures[static_cast<std::size_t>(kind)];
 }
 
-std::string title_of(const OverlayChoice& choice, const session::SunRasterWanted& raster) {
-    if (choice.kind == OverlayKind::SkyView) return "Sky-view factor";
-    const sun::CivilTime from = raster.zone.local(raster.begin).wall;
-    if (choice.kind == OverlayKind::Mask)
-        return fmt::format("Direct sun, {}, {:02}:{:02}", words_of(from.date, from.date), from.hour,
+std::unique_ptr<const figure::Figure> FigureWanted::of(const dem::Posts& posts) const {
+    if (kind == OverlayKind::SkyView) return std::make_unique<figure::SkyView>();
+    if (kind == OverlayKind::Mask) {
+        auto shadow = std::make_unique<figure::Shadow>();
+        shadow->suns = {figure::sun_over_middle(posts, time.begin, refraction)};
+        shadow->refraction = refraction;
+        return shadow;
+    }
+    auto hours = std::make_unique<figure::Hours>();
+    hours->time = time;
+    hours->zone = zone;
+    hours->words = {overlay_figure(kind).band};
+    hours->refraction = refraction;
+    return hours;
+}
+
+FigureWanted figure_of(const OverlayChoice& choice, sun::Instant utc, const sun::Zone& zone,
+                       const std::string& refraction) {
+    if (choice.kind == OverlayKind::SkyView) return {.kind = choice.kind};
+    FigureWanted figure{choice.kind, {utc, utc}, zone, refraction};
+    if (choice.kind == OverlayKind::Mask) return figure;
+    const auto [first, last] = days_of(choice, zone.local(utc).wall.date);
+    figure.time = {zone.day(first).begin, zone.day(last).end};
+    return figure;
+}
+
+std::string title_of(const FigureWanted& figure) {
+    const std::string what = overlay_figure(figure.kind).title;
+    if (figure.kind == OverlayKind::SkyView) return what;
+    const sun::CivilTime from = figure.zone.local(figure.time.begin).wall;
+    if (figure.kind == OverlayKind::Mask)
+        return fmt::format("{}, {}, {:02}:{:02}", what, words_of(from.date, from.date), from.hour,
                            from.minute);
     constexpr double kWithin_s = 1;  // the end is the midnight after the last day
-    const sun::Date last = raster.zone.local(raster.end + -kWithin_s).wall.date;
-    const char* const what = choice.kind == OverlayKind::FirstLight    ? "First light"
-                             : choice.kind == OverlayKind::LastLight   ? "Last light"
-                             : choice.kind == OverlayKind::Irradiation ? "Irradiation"
-                                                                       : "Sun hours";
+    const sun::Date last = figure.zone.local(figure.time.end + -kWithin_s).wall.date;
     return fmt::format("{}, {}", what, words_of(from.date, last));
 }
 
@@ -168,7 +175,10 @@ bool same_figures(const OverlayWanted& a, const OverlayWanted& b) {
         return a.file->file == b.file->file && a.file->band == b.file->band &&
                a.file->colours == b.file->colours && a.file->range == b.file->range &&
                a.file->lit == b.file->lit;
-    return session::same_figures(a.raster, b.raster);
+    const FigureWanted &x = a.figure, &y = b.figure;
+    return x.kind == y.kind && x.time.begin == y.time.begin && x.time.end == y.time.end &&
+           x.refraction == y.refraction &&
+           (x.kind == OverlayKind::Mask || x.zone.name() == y.zone.name());
 }
 
 double OverlayShown::value_at(const geo::Geodetic& place) const {
@@ -198,9 +208,9 @@ void OverlayWork::publish(OverlayShown shown, bool done) {
 namespace {
 
 void colour(OverlayShown& shown) {
-    const output::RasterBand band = session::band_of(shown.of.raster.figure);
     const Array2d<float>& values = shown.raster->values;
-    chart::Legend legend{shown.of.title, band.unit,
+    const output::RasterBand& band = shown.band;
+    chart::Legend legend{title_of(shown.of.figure), band.unit,
                          session::usual_ramp(values, band.name, band.unit)};
     const std::optional<session::OverlayTime> time = shown.overlay.time;
     if (time) session::show_as_clock(*time, legend);
@@ -229,6 +239,7 @@ void OverlayWork::work_out(const OverlayWanted* wanted) {
             shown.raster = last_->raster;
             shown.grid = last_->grid;
             shown.every = last_->every;
+            shown.band = last_->band;
             shown.overlay.time = last_->overlay.time;
             colour(shown);
             publish(std::move(shown), true);
@@ -251,8 +262,7 @@ bool OverlayWork::is_final() const {
 void OverlayWork::measure(const OverlayWanted& now) {
     if (!levels_ || levels_->dem() != now.dem.get()) levels_ = std::make_unique<Levels>(now.dem);
     constexpr double kLong_s = 2 * 86400;
-    const bool is_long =
-        session::is_of_period(now.raster.figure) && now.raster.end - now.raster.begin > kLong_s;
+    const bool is_long = now.figure.time.length_s() > kLong_s;
     for (const Levels::Level& level : levels_->all()) {
         const bool is_last = &level == &levels_->all().back();
         const auto is_cancelled = [&] {
@@ -261,8 +271,9 @@ void OverlayWork::measure(const OverlayWanted& now) {
         double share = 0;
         OverlayShown shown;
         shown.of = now;
-        shown.raster = std::make_shared<const session::SunRaster>(
-            session::sun_raster(level.posts, now.raster, {}, [&](double more) {
+        const std::unique_ptr<const figure::Figure> figure = now.figure.of(level.posts);
+        shown.raster = std::make_shared<const figure::Raster>(
+            figure::raster_of(*figure, level.posts, [&](double more) {
                 share += more;
                 if (is_cancelled()) throw OverlayCancelled();
                 if (is_last) tell(share);
@@ -270,7 +281,9 @@ void OverlayWork::measure(const OverlayWanted& now) {
         if (is_cancelled()) return;
         shown.grid = level.posts.grid();
         shown.every = level.every;
-        shown.overlay.time = session::time_of(level.posts, now.raster);
+        shown.band = figure->bands().front();
+        const output::RasterMetadata about = figure->metadata(level.posts);
+        shown.overlay.time = session::overlay_time({about.begin(), about.end()});
         colour(shown);
         publish(std::move(shown), is_last);
         if (is_given_up()) return;
@@ -285,7 +298,7 @@ void OverlayWork::tell(double share) {
     tell_of_change();
 }
 
-OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::SunRaster> whole,
+OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const figure::Raster> whole,
                          std::function<void()> on_change)
     : wanted_(std::move(wanted)), on_change_(std::move(on_change)) {
     thread_ = std::thread([this, whole = std::move(whole)] { run(whole.get()); });
@@ -301,16 +314,15 @@ std::string OverlaySave::result() const {
     return name_;
 }
 
-void OverlaySave::run(const session::SunRaster* whole) {
+void OverlaySave::run(const figure::Raster* whole) {
     try {
         const dem::Posts posts = wanted_.dem->field.reduction == 1
                                      ? dem::Posts(wanted_.dem->field)
                                      : dem::Posts::load(wanted_.dems, wanted_.options);
         name_ = write_under_free_name("tif", [&](OutputFile& file) {
             double share = 0;
-            session::write_sun_raster(file, posts, wanted_.raster, whole,
-                                      wanted_.options.memory.posts / figure::kPostsAPart,
-                                      RELEVO_VERSION, [&](double more) { tell(share += more); });
+            figure::write_raster(file, *wanted_.figure.of(posts), posts, wanted_.options.memory,
+                                 RELEVO_VERSION, whole, [&](double more) { tell(share += more); });
         });
     } catch (const OverlayCancelled&) {
         return;

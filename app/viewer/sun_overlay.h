@@ -10,45 +10,64 @@
 #include <thread>
 #include <vector>
 
+#include "figure/run.h"
 #include "session/overlay.h"
 #include "session/session.h"
-#include "session/sun_raster.h"
 #include "viewer/document.h"
 #include "viewer/latest_work.h"
 
 /// Sun rasters as overlays, computed in the background.
 namespace relevo::viewer {
 
+/// A figure of the sun that the window shows.
+struct OverlayFigure {
+    const char* name;     ///< for tr()
+    const char* title;    ///< in scenes and pictures
+    const char* command;  ///< that writes it
+    const char* band;     ///< of figure::Hours; empty: another figure
+};
+const OverlayFigure& overlay_figure(OverlayKind kind);
+
+/// A figure of the sun with its time and air.
+struct FigureWanted {
+    OverlayKind kind = OverlayKind::Hours;
+    sun::TimeSpan time{};  ///< a mask is of its beginning
+    sun::Zone zone{};
+    std::string refraction = "standard";
+
+    std::unique_ptr<const figure::Figure> of(const dem::Posts& posts) const;
+};
+
 /// A requested overlay.
 struct OverlayWanted {
     std::shared_ptr<const session::LoadedDem> dem;
     std::vector<std::string> dems;  ///< its files
     dem::LoadOptions options;       ///< options of reading them
-    session::SunRasterWanted raster;
-    std::optional<scene::Overlay> file;  ///< instead of `raster`
-    std::string title;                   ///< of the legend
+    FigureWanted figure;
+    std::optional<scene::Overlay> file;  ///< instead of `figure`
     double opacity = 1;
     bool lit = false;  ///< as scene::Overlay
 };
 
-/// The raster of a figure of the sun for the displayed time. A range whose last day is before its
-/// first is that of the first.
+/// The figure for the displayed time. Members that it does not depend on have their defaults. A
+/// range whose last day is before its first is that of the first.
 /// @param utc, zone  as Document
-session::SunRasterWanted raster_of(const OverlayChoice& choice, sun::Instant utc,
-                                   const sun::Zone& zone, const std::string& refraction);
+FigureWanted figure_of(const OverlayChoice& choice, sun::Instant utc, const sun::Zone& zone,
+                       const std::string& refraction);
 /// "Sun hours, 21 Dec 2026".
-std::string title_of(const OverlayChoice& choice, const session::SunRasterWanted& raster);
+std::string title_of(const FigureWanted& figure);
 /// Whether both request the same values of the same DEM. Opacity and light may differ.
 bool same_figures(const OverlayWanted& a, const OverlayWanted& b);
 
 /// A displayed overlay.
 struct OverlayShown {
     OverlayWanted of;
-    session::Overlay overlay;                          ///< without colours if there is an error
-    std::shared_ptr<const session::SunRaster> raster;  ///< null: of a file
-    std::optional<dem::Grid> grid;                     ///< of the raster's values
-    double every = 1;                                  ///< posts between values
-    std::string error;                                 ///< why there is no overlay
+    session::Overlay overlay;                      ///< without colours if there is an error
+    std::shared_ptr<const figure::Raster> raster;  ///< null: of a file
+    output::RasterBand band;                       ///< of the raster
+    std::optional<dem::Grid> grid;                 ///< of the raster's values
+    double every = 1;                              ///< posts between values
+    std::string error;                             ///< why there is no overlay
 
     /// Whether every post of the DEM has a value.
     bool is_whole() const { return raster && every == 1; }
@@ -89,7 +108,7 @@ class OverlaySave {
   public:
     /// @param whole      the raster of all posts; null: it is computed in parts
     /// @param on_change  called on its thread, also at the end
-    OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::SunRaster> whole,
+    OverlaySave(OverlayWanted wanted, std::shared_ptr<const figure::Raster> whole,
                 std::function<void()> on_change);
     OverlaySave(const OverlaySave&) = delete;
     OverlaySave& operator=(const OverlaySave&) = delete;
@@ -103,7 +122,7 @@ class OverlaySave {
     std::string result() const;
 
   private:
-    void run(const session::SunRaster* whole);
+    void run(const figure::Raster* whole);
     void tell(double share);
 
     OverlayWanted wanted_;

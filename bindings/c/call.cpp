@@ -104,8 +104,8 @@ void check_count(const char* name, std::size_t count, std::size_t needed) {
         throw BadCall{fmt::format("{}: expected {} elements but got {}", name, needed, count)};
 }
 
-void Progress::add(double of_part) {
-    done_ = std::min(1.0, done_ + of_part * part_);
+void Progress::add(double share) {
+    done_ = std::min(1.0, done_ + share);
     if (!given_.done) return;
     bool cancelled = false;
     try {

@@ -103,15 +103,13 @@ class Progress {
     explicit Progress(const relevo_progress* progress) {
         if (progress) given_ = read_struct(progress, "progress");
     }
-    /// The part of all work that comes next, 0 to 1.
-    void begin_part(double share) { part_ = share; }
-    /// @param of_part  done since the last call
+    /// @param share  of all work, done since the last call
     /// @throws Cancelled, CallbackThrew
-    void add(double of_part);
+    void add(double share);
 
   private:
     relevo_progress given_{};
-    double part_ = 1, done_ = 0;
+    double done_ = 0;
 };
 
 }  // namespace relevo::c

@@ -28,9 +28,8 @@ class Options {
 };
 
 /// A number that figures are asked for with.
-inline double number(json::ObjectReader& reader, const char* key, const figure::Option& option,
-                     bool whole = false) {
-    return reader.number(key, option.value, option.min, option.max, whole);
+inline double number(json::ObjectReader& reader, const figure::Option& option, bool whole = false) {
+    return reader.number(option.key, option.value, option.min, option.max, whole);
 }
 
 /// Changes a scene by a JSON text, as a shot of a job does. "format" may be there.

@@ -2,7 +2,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,10 +12,10 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "dem.h"
+#include "figure/horizons.h"
 #include "figure/hours.h"
-#include "figure/hours_bands.h"
+#include "figure/run.h"
 #include "figure/shadow.h"
-#include "figure/sky_view.h"
 #include "options.h"
 #include "session/words.h"
 
@@ -24,9 +23,8 @@ namespace relevo::c {
 namespace {
 
 void take_terrestrial(json::ObjectReader& reader, figure::Figure& figure) {
-    figure.terrestrial_refraction =
-        number(reader, "terrestrial_refraction", figure::kTerrestrialRefraction);
-    if (reader.has("highest")) figure.highest_m = number(reader, "highest", figure::kHighest_m);
+    figure.terrestrial_refraction = number(reader, figure::kTerrestrialRefraction);
+    if (reader.has("highest")) figure.highest_m = number(reader, figure::kHighest_m);
 }
 
 std::string refraction_of(json::ObjectReader& reader) {
@@ -37,78 +35,64 @@ std::string refraction_of(json::ObjectReader& reader) {
 class RasterCall {
   public:
     /// @throws BadCall
-    RasterCall(relevo_dem* dem, float* values, std::size_t count, std::size_t bands,
-               const relevo_progress* progress, const char** about)
+    RasterCall(relevo_dem* dem, float* values, std::size_t count, const relevo_progress* progress,
+               const char** about)
         : dem_(dems().get(dem, "dem")),
           values_(&need(values, "values")),
-          columns_(static_cast<std::size_t>(dem_->grid().columns())),
-          rows_(static_cast<std::size_t>(dem_->grid().rows())),
+          count_(count),
           progress_(progress),
           about_(about) {
-        check_count("count", count, columns_ * rows_ * bands);
         if (about_) *about_ = nullptr;
     }
 
     const dem::Posts& posts() { return dem_->posts(); }
-    dem::Window all() const { return {0, 0, dem_->grid().columns(), dem_->grid().rows()}; }
     light::TerrainAccess terrain() {
         return {.middle = [this] { return dem_->grid().center(); },
                 .posts = [this]() -> const dem::Posts& { return posts(); }};
     }
 
-    /// Makes all values, and says what came of them.
+    /// Makes all values, and says what came of them. @throws BadCall
     void run(const figure::Figure& figure) {
-        const std::optional<light::Beyond> beyond = figure.beyond(posts(), all());
+        const std::vector<output::RasterBand> bands = figure.bands();
+        check_count("count", count_, band_size() * bands.size());
+        const std::optional<light::Beyond> beyond =
+            figure.beyond(posts(), figure::whole_window(dem_->grid()));
         if (beyond) log::warning(beyond->advice());
-        const figure::PartMaker make =
-            figure.maker({.posts = posts(),
-                          .window = all(),
-                          .middle = dem_->grid().center(),
-                          .put = [this](std::size_t band, const dem::Window& part,
-                                        const Array2d<float>& values) { put(band, part, values); },
-                          .done = [this](double share) { progress_.add(share / calls_); }});
-        calls_ = static_cast<double>(figure.calls());
-        const double all_posts = static_cast<double>(columns_ * rows_);
-        std::vector<dem::Window> parts{all()};
-        if (!posts().in_memory())
-            parts =
-                figure::raster_parts(all(), dem_->named().dem.memory.posts / figure::kPostsAPart);
-        figure::PartMade sum;
-        for (const dem::Window& part : parts) {
-            progress_.begin_part(static_cast<double>(part.columns) * part.rows / all_posts);
-            figure::PartMade made = make(part);
-            sum = {sum.holes + made.holes, std::move(made.definition)};
-        }
+        const figure::PartMade made = figure::make_all(
+            figure, posts(), dem_->named().dem.memory,
+            [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
+                put(band, part, values);
+            },
+            [this](double share) { progress_.add(share); });
         if (!about_) return;
-        nlohmann::ordered_json json{{"definition", sum.definition}, {"holes", sum.holes}};
-        for (const output::RasterBand& band : figure.bands())
+        nlohmann::ordered_json json{{"definition", made.definition}, {"holes", made.holes}};
+        for (const output::RasterBand& band : bands)
             json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (beyond) json["beyond"] = beyond->text(figure.would());
         *about_ = returned_text(json.dump());
     }
 
   private:
+    std::size_t band_size() const {
+        return static_cast<std::size_t>(dem_->grid().columns()) *
+               static_cast<std::size_t>(dem_->grid().rows());
+    }
     void put(std::size_t band, const dem::Window& part, const Array2d<float>& values) {
-        for (int row = 0; row < part.rows; ++row) {
-            const auto from = values.row(row);
-            const std::size_t to_row = band * rows_ + static_cast<std::size_t>(part.row + row);
-            std::ranges::copy(from,
-                              values_ + to_row * columns_ + static_cast<std::size_t>(part.column));
-        }
+        float* const to = values_ + band * band_size();
+        for (int row = 0; row < part.rows; ++row)
+            std::ranges::copy(
+                values.row(row),
+                to + part.column + std::ptrdiff_t{part.row + row} * dem_->grid().columns());
     }
 
-  private:
     std::shared_ptr<Dem> dem_;
     float* values_;
-    std::size_t columns_, rows_;
+    std::size_t count_;
     Progress progress_;
     const char** about_;
-    double calls_ = 1;
 };
 
-void shadow(RasterCall& call, const char* text) {
-    Options options(text, "relevo_shadow");
-    json::ObjectReader& reader = options.reader();
+void shadow(RasterCall& call, json::ObjectReader& reader) {
     scene::TimeSpec spec;
     spec.at = reader.string("time");
     spec.date = reader.string("date", "");
@@ -123,83 +107,85 @@ void shadow(RasterCall& call, const char* text) {
     call.run(figure);
 }
 
-/// What relevo_sun_hours() is asked for.
-struct HoursWanted {
-    std::string from, to, zone;
-    figure::Hours figure;
+struct Days {
+    std::string from, to;  ///< both included
 };
 
 /// "date", or "from" and "to", or "year".
-void take_days(json::ObjectReader& reader, HoursWanted& wanted) {
+Days days_of(json::ObjectReader& reader) {
     const std::string date = reader.string("date", "");
-    wanted.from = reader.string("from", "");
-    wanted.to = reader.string("to", "");
+    const Days days{reader.string("from", ""), reader.string("to", "")};
     const int year =
         static_cast<int>(reader.number("year", 0, sun::kFirstYear, sun::kLastYear, true));
-    const int given = !date.empty() + (!wanted.from.empty() || !wanted.to.empty()) + (year != 0);
-    if (given != 1 || wanted.from.empty() != wanted.to.empty())
+    const int given = !date.empty() + (!days.from.empty() || !days.to.empty()) + (year != 0);
+    if (given != 1 || days.from.empty() != days.to.empty())
         reader.fail(reader.line(), "", "expected one of date, from and to, or year");
-    if (!date.empty()) wanted.from = wanted.to = date;
-    if (year != 0) {
-        wanted.from = fmt::format("{}-01-01", year);
-        wanted.to = fmt::format("{}-12-31", year);
-    }
-    wanted.zone = reader.string("zone", "");
-}
-
-/// @throws Error (BadInput) for unknown bands, and for two of one name
-void take_bands(json::ObjectReader& reader, HoursWanted& wanted) {
-    const std::vector<std::string> bands = reader.strings("bands");
-    for (auto band = bands.begin(); band != bands.end(); ++band) {
-        if (!contains(figure::hours_words(), *band))
-            reader.fail(reader.line_of("bands"), "bands",
-                        fmt::format("expected some of {} but got {}",
-                                    fmt::join(figure::hours_words(), ", "), *band));
-        if (std::find(bands.begin(), band, *band) != band)
-            reader.fail(reader.line_of("bands"), "bands", *band + " is named twice");
-    }
-    if (!bands.empty()) wanted.figure.words = bands;
-}
-
-void take_hours(const char* text, HoursWanted& wanted) {
-    Options options(text, "relevo_sun_hours");
-    json::ObjectReader& reader = options.reader();
-    figure::Hours& figure = wanted.figure;
-    take_days(reader, wanted);
-    take_bands(reader, wanted);
-    figure.step_s = number(reader, "step", figure::kStep_s);
-    const bool has_irradiation = std::ranges::any_of(figure.words, figure::needs_irradiation);
-    for (const char* key : {"linke", "albedo"})
-        if (reader.has(key) && !has_irradiation)
-            reader.fail(reader.line_of(key), key,
-                        "needs one of the bands global, beam, diffuse, reflected");
-    figure.irradiation.linke = number(reader, "linke", figure::kLinke);
-    figure.irradiation.albedo = number(reader, "albedo", figure::kAlbedo);
-    take_terrestrial(reader, figure);
-    figure.refraction = refraction_of(reader);
-    reader.finish();
+    if (!date.empty()) return {date, date};
+    if (year != 0) return {fmt::format("{}-01-01", year), fmt::format("{}-12-31", year)};
+    return days;
 }
 
 /// From the beginning of the first day to the end of the last one.
-void set_time(HoursWanted& wanted, const geo::Geodetic& middle) {
-    const sun::Zone zone = session::zone_of(wanted.zone, middle).zone;
-    const sun::Date first = sun::parse_date(wanted.from), last = sun::parse_date(wanted.to);
+sun::TimeSpan time_of(const Days& days, const sun::Zone& zone) {
+    const sun::Date first = sun::parse_date(days.from), last = sun::parse_date(days.to);
     if (last < first)
-        bad_input(fmt::format("relevo_sun_hours: from: {} is after {}", wanted.from, wanted.to));
-    wanted.figure.time = {zone.day(first).begin, zone.day(last).end};
-    wanted.figure.zone = zone;
+        bad_input(fmt::format("relevo_sun_hours: from: {} is after {}", days.from, days.to));
+    return {zone.day(first).begin, zone.day(last).end};
 }
 
-void sky_view(RasterCall& call, const char* text) {
-    Options options(text, "relevo_sky_view");
-    json::ObjectReader& reader = options.reader();
+/// @throws Error (BadInput) for unknown bands, and for two of one name
+void take_bands(json::ObjectReader& reader, figure::Hours& figure) {
+    const std::vector<std::string> bands = reader.strings("bands");
+    const auto refuse = [&](const std::string& why) {
+        reader.fail(reader.line_of("bands"), "bands", why);
+    };
+    for (const std::string& band : bands)
+        if (!contains(figure::Hours::all_words(), band))
+            refuse(fmt::format("expected some of {} but got {}",
+                               fmt::join(figure::Hours::all_words(), ", "), band));
+    if (!bands.empty()) figure.words = bands;
+    const std::string repeated = figure.repeated_word();
+    if (!repeated.empty()) refuse(repeated + " is named twice");
+}
+
+void sun_hours(RasterCall& call, json::ObjectReader& reader) {
+    figure::Hours figure;
+    const Days days = days_of(reader);
+    const std::string zone = reader.string("zone", "");
+    take_bands(reader, figure);
+    figure.step_s = number(reader, figure::kStep_s);
+    for (const char* key : {"linke", "albedo"})
+        if (reader.has(key) && !figure.has_irradiation())
+            reader.fail(reader.line_of(key), key,
+                        "needs one of the bands global, beam, diffuse, reflected");
+    figure.irradiation.linke = number(reader, figure::kLinke);
+    figure.irradiation.albedo = number(reader, figure::kAlbedo);
+    take_terrestrial(reader, figure);
+    figure.refraction = refraction_of(reader);
+    reader.finish();
+    figure.zone = session::zone_of(zone, call.terrain().middle()).zone;
+    figure.time = time_of(days, figure.zone);
+    call.run(figure);
+}
+
+void sky_view(RasterCall& call, json::ObjectReader& reader) {
     figure::SkyView figure;
-    figure.directions =
-        static_cast<int>(number(reader, "directions", figure::kSkyDirections, true));
+    figure.directions = static_cast<int>(number(reader, figure::kSkyDirections, true));
     figure.level = reader.boolean("level", false);
     take_terrestrial(reader, figure);
     reader.finish();
     call.run(figure);
+}
+
+/// @param function  of the interface
+template <auto make>
+relevo_result raster(const char* function, relevo_dem* dem, const char* text, float* values,
+                     size_t count, const relevo_progress* progress, const char** about) {
+    return guarded(function, [&] {
+        RasterCall call(dem, values, count, progress, about);
+        Options options(text, function);
+        make(call, options.reader());
+    });
 }
 
 }  // namespace
@@ -209,27 +195,16 @@ using namespace relevo;
 
 relevo_result relevo_shadow(relevo_dem* dem, const char* options, float* lit, size_t count,
                             const relevo_progress* progress, const char** about) {
-    return c::guarded("relevo_shadow", [&] {
-        c::RasterCall call(dem, lit, count, 1, progress, about);
-        c::shadow(call, options);
-    });
+    return c::raster<c::shadow>("relevo_shadow", dem, options, lit, count, progress, about);
 }
 
 relevo_result relevo_sun_hours(relevo_dem* dem, const char* options, float* values, size_t count,
                                const relevo_progress* progress, const char** about) {
-    return c::guarded("relevo_sun_hours", [&] {
-        c::HoursWanted wanted;
-        c::take_hours(options, wanted);
-        c::RasterCall call(dem, values, count, wanted.figure.words.size(), progress, about);
-        c::set_time(wanted, call.posts().grid().center());
-        call.run(wanted.figure);
-    });
+    return c::raster<c::sun_hours>("relevo_sun_hours", dem, options, values, count, progress,
+                                   about);
 }
 
 relevo_result relevo_sky_view(relevo_dem* dem, const char* options, float* share, size_t count,
                               const relevo_progress* progress, const char** about) {
-    return c::guarded("relevo_sky_view", [&] {
-        c::RasterCall call(dem, share, count, 1, progress, about);
-        c::sky_view(call, options);
-    });
+    return c::raster<c::sky_view>("relevo_sky_view", dem, options, share, count, progress, about);
 }

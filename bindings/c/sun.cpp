@@ -60,7 +60,7 @@ light::HorizonOptions horizon_options(const char* text, size_t directions) {
     json::ObjectReader& reader = options.reader();
     light::HorizonOptions result;
     result.eye_height_m = reader.number("eye_height", 0, 0, 10'000, false);
-    result.refraction = number(reader, "terrestrial_refraction", figure::kTerrestrialRefraction);
+    result.refraction = number(reader, figure::kTerrestrialRefraction);
     constexpr size_t kFew = 30;  // a direction by itself takes a thirtieth of all of them
     result.few_directions = directions < kFew;
     reader.finish();

@@ -22,6 +22,9 @@ struct PartMade {
     std::string definition;  ///< a sentence, for the file's metadata
 };
 
+/// Takes the values of a part in a band, by its number.
+using Put = std::function<void(std::size_t band, const dem::Window& part, Array2d<float> values)>;
+
 /// What a figure is made from, and where its values go.
 struct Work {
     /// All of a DEM, or a tile with its halo. Outlive the maker.
@@ -30,8 +33,7 @@ struct Work {
     const dem::Posts* around = nullptr;
     dem::Window window{};    ///< posts of which parts will be asked for
     geo::Geodetic middle{};  ///< of the whole DEM
-    /// Takes the values of a part in a band, by its number.
-    std::function<void(std::size_t band, const dem::Window& part, Array2d<float> values)> put;
+    Put put;
     /// Told of each share of a call that is done; an exception from it ends the work.
     std::function<void(double)> done{};
     bool is_estimate = false;  ///< only to measure the time: values may be meaningless
@@ -50,7 +52,7 @@ class Figure {
     Figure(const Figure&) = delete;
     Figure& operator=(const Figure&) = delete;
 
-    /// Bytes are masks, as mask_of() makes them of the values.
+    /// Bytes are masks: 0 in the shade, 1 lit, 255 without data.
     virtual output::RasterType type() const { return output::RasterType::Float; }
     /// Names and units. Band k of Work::put is the k-th.
     virtual std::vector<output::RasterBand> bands() const = 0;
@@ -71,16 +73,5 @@ class Figure {
     /// @throws Error (BadInput) as light::SunPlan and light::SunHoursPlan
     virtual PartMaker maker(Work work) const = 0;
 };
-
-/// 0 in the shade, 1 lit, 255 without data. @param lit  as light::Shadows
-Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
-
-/// Splits a window into squares of at most `most_posts` posts and of whole 512-post blocks. Small
-/// parts would sweep the same ground repeatedly.
-std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts);
-
-/// Divisor of the memory limit in posts for a part of the result: a result post takes several times
-/// the memory of a height.
-inline constexpr std::int64_t kPostsAPart = 8;
 
 }  // namespace relevo::figure

@@ -1,7 +1,6 @@
 #include "figure/horizons.h"
 
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +8,48 @@
 #include "base/units.h"
 
 namespace relevo::figure {
+
+std::vector<double> Directions::azimuths() const {
+    std::vector<double> azimuth_rad;
+    for (int i = 0; i < directions; ++i)
+        azimuth_rad.push_back(2 * kPi * i / directions);
+    return azimuth_rad;
+}
+
+double Directions::halo_m(const dem::Posts& posts) const {
+    return light::horizon_reach_m(posts, terrestrial_refraction);
+}
+
+std::optional<light::Beyond> Directions::beyond(const dem::Posts& posts,
+                                                const dem::Window& window) const {
+    return light::terrain_beyond(posts, window, azimuths(), terrestrial_refraction, highest_m);
+}
+
+std::shared_ptr<light::SunPlan> Directions::plan(const Work& work) const {
+    return std::make_shared<light::SunPlan>(
+        work.posts, light::LightPath{terrestrial_refraction, {}}, work.window, false, work.around);
+}
+
+output::RasterMetadata SkyView::metadata(const dem::Posts&) const {
+    return {{"DIRECTIONS", fmt::format("{}", directions)}};
+}
+
+PartMaker SkyView::maker(Work work) const {
+    const auto plan = this->plan(work);
+    light::add_sky_view_directions(*plan, directions);
+    light::SkyViewOptions options{.directions = directions,
+                                  .refraction = terrestrial_refraction,
+                                  .level = level,
+                                  .part = {},
+                                  .done = work.done};
+    return [this, plan, options, put = std::move(work.put)](const dem::Window& part) mutable {
+        options.part = part;
+        light::SkyView view = light::sky_view(*plan, options);
+        if (seen) seen(view);
+        put(0, part, std::move(view.share));
+        return PartMade{view.holes, std::move(view.definition)};
+    };
+}
 
 std::vector<output::RasterBand> Horizons::bands() const {
     std::vector<output::RasterBand> bands;

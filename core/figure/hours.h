@@ -10,7 +10,7 @@ namespace relevo::figure {
 struct Hours : Figure {
     sun::TimeSpan time;
     sun::Zone zone;                           ///< of the period, for the metadata
-    std::vector<std::string> words{"hours"};  ///< bands, of hours_words()
+    std::vector<std::string> words{"hours"};  ///< bands, of all_words()
     std::string refraction = "standard";      ///< as light::refraction_at()
     double step_s = kStep_s.value;            ///< as light::SunHoursOptions
     light::SunHoursOptions::Irradiation irradiation{kLinke.value,
@@ -28,6 +28,14 @@ struct Hours : Figure {
 
     /// First and last instant as texts of the metadata.
     std::string from() const, to() const;
+
+    /// "hours", "first", "last", "spells", "global", "beam", "diffuse", "reflected".
+    static const std::vector<std::string>& all_words();
+    /// Whether a band is of first and last light and sunshine periods.
+    bool has_spells() const;
+    bool has_irradiation() const;
+    /// The word of a second band of one word; empty: there is none.
+    std::string repeated_word() const;
 
   private:
     light::SunHoursOptions options() const;

@@ -8,12 +8,9 @@
 
 namespace relevo::figure {
 
-output::RasterBand shadow_band(bool soft) {
-    return {soft ? "visible fraction of the solar disc" : "direct sun", "1"};
-}
-
 std::vector<output::RasterBand> Shadow::bands() const {
-    std::vector<output::RasterBand> bands(suns.size(), shadow_band(soft));
+    const output::RasterBand band{soft ? "visible fraction of the solar disc" : "direct sun", "1"};
+    std::vector<output::RasterBand> bands(suns.size(), band);
     for (std::size_t k = 0; k < names.size(); ++k) {
         bands[k].name = names[k];
         bands[k].metadata = metadata_of(suns[k]);

@@ -5,9 +5,6 @@
 
 namespace relevo::figure {
 
-/// Of one sun.
-output::RasterBand shadow_band(bool soft);
-
 /// What lies in the shadow of the terrain, a band for each sun: `relevo sun shadow`.
 struct Shadow : Figure {
     std::vector<SunOverMiddle> suns;

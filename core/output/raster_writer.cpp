@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -181,13 +180,13 @@ RasterWriter::~RasterWriter() {
 }
 
 void RasterWriter::put(std::size_t band, int column, int row, const Array2d<float>& values) {
-    assert(impl_->type == RasterType::Float);
-    impl_->put(band, {column, row, values.width(), values.height()}, values.data());
-}
-
-void RasterWriter::put(std::size_t band, int column, int row, const Array2d<std::uint8_t>& values) {
-    assert(impl_->type == RasterType::Byte);
-    impl_->put(band, {column, row, values.width(), values.height()}, values.data());
+    const dem::Window window{column, row, values.width(), values.height()};
+    if (impl_->type == RasterType::Float) return impl_->put(band, window, values.data());
+    std::vector<std::uint8_t> mask(values.size());
+    std::ranges::transform(values, mask.begin(), [](float value) -> std::uint8_t {
+        return std::isnan(value) ? 255 : value > 0;
+    });
+    impl_->put(band, window, mask.data());
 }
 
 void RasterWriter::finish(const RasterMetadata& metadata) {

@@ -42,10 +42,10 @@ class RasterWriter {
     RasterWriter(const RasterWriter&) = delete;
     RasterWriter& operator=(const RasterWriter&) = delete;
 
-    /// Values of a part of a band, whose upper left post is at (column, row) of the result.
+    /// Values of a part of a band, whose upper left post is at (column, row) of the result. Bytes
+    /// are 1 where they are above 0.
     /// @param band  from 0
     void put(std::size_t band, int column, int row, const Array2d<float>& values);
-    void put(std::size_t band, int column, int row, const Array2d<std::uint8_t>& values);
 
     /// Gives the file its name, once all has been put.
     void finish(const RasterMetadata& metadata);

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "cli/raster_estimate.h"
+#include "figure/estimate.h"
 
 namespace relevo::cli::test_raster_estimate {
 namespace {
+
+using figure::SampledTime;
 
 TEST(SampledTime, WhatGetsReadyIsNotMultipliedByTheSteps) {
     // As sun hours of a day report: 6 s until the work begins, then 200 suns of 3 s each.

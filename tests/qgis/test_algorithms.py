@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import sys
 import tempfile
@@ -127,6 +128,21 @@ class Provider(unittest.TestCase):
     def test_presets_are_those_of_the_program(self):
         names = [path.stem for path in (ROOT / "data" / "presets").glob("*.json")]
         self.assertEqual(PictureAlgorithm.PRESETS, ["none", *sorted(names)])
+
+    def test_numbers_and_bands_are_those_of_core(self):
+        core = ROOT / "core" / "figure"
+        options = re.findall(r"Option k(\w+)\{\s*\{([^}]*)\}", (core / "options.h").read_text())
+        numbers = {name: [float(number) for number in three.split(",")] for name, three in options}
+        registry = QgsApplication.processingRegistry()
+        for word, parameter, option, unit in (
+            ("sunhours", "STEP", "Step_s", 60), ("sunhours", "LINKE", "Linke", 1), ("sunhours", "ALBEDO", "Albedo", 1),
+            ("skyview", "DIRECTIONS", "SkyDirections", 1),
+        ):  # fmt: skip
+            one = registry.algorithmById("relevo:" + word).parameterDefinition(parameter)
+            ours = [unit * number for number in (one.defaultValue(), one.minimum(), one.maximum())]
+            self.assertEqual(ours, numbers[option], option)
+        bands = registry.algorithmById("relevo:sunhours").parameterDefinition("BANDS").options()
+        self.assertEqual(bands, re.findall(r'^    \{"(\w+)", "', (core / "hours.cpp").read_text(), re.MULTILINE))
 
     def test_says_where_relevo_is_missing(self):
         path = os.environ["PATH"]
@@ -279,14 +295,14 @@ class Inputs(Case):
 
     def test_times(self):
         time = QDateTime(QDate(2026, 6, 21), QTime(18, 30))
-        self.assertEqual(when_of(time, "", "").at, "2026-06-21T18:30:00")
-        self.assertEqual(when_of(time, "", "Asia/Tokyo").zone, "Asia/Tokyo")
-        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.UTC), "", "").at, "2026-06-21T18:30:00Z")
-        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.OffsetFromUTC, 7200), "", "").at,
+        self.assertEqual(when_of(time, "", "")["time"], "2026-06-21T18:30:00")
+        self.assertEqual(when_of(time, "", "Asia/Tokyo")["zone"], "Asia/Tokyo")
+        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.UTC), "", "")["time"], "2026-06-21T18:30:00Z")
+        self.assertEqual(when_of(QDateTime(time.date(), time.time(), Qt.OffsetFromUTC, 7200), "", "")["time"],
                          "2026-06-21T16:30:00Z")  # fmt: skip
-        self.assertEqual((when_of(time, "noon", "").at, when_of(time, "noon", "").date), ("noon", "2026-06-21"))
-        self.assertEqual(when_of("2026-03-08 02:30", "", "").at, "2026-03-08T02:30")
-        self.assertEqual(when_of("2026-06-21T12:00+02:00", "noon", "").date, "2026-06-21")
+        self.assertEqual((when_of(time, "noon", "")["time"], when_of(time, "noon", "")["date"]), ("noon", "2026-06-21"))
+        self.assertEqual(when_of("2026-03-08 02:30", "", "")["time"], "2026-03-08T02:30")
+        self.assertEqual(when_of("2026-06-21T12:00+02:00", "noon", "")["date"], "2026-06-21")
         self.assertIsNone(when_of(None, "", ""))
         with self.assertRaisesRegex(RelevoError, "expected also a time"):
             when_of(None, "noon", "")

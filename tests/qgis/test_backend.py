@@ -13,7 +13,7 @@ from support import DEM, PLUGINS, PROGRAM, ROOT, relevo
 
 sys.path.insert(0, str(PLUGINS))
 from relevo_provider import program, ramps  # noqa: E402
-from relevo_provider.backend import Cancelled, Days, Dem, Hours, Picture, RelevoError, Watch, When  # noqa: E402
+from relevo_provider.backend import Cancelled, Dem, Picture, RelevoError, Watch  # noqa: E402
 
 
 class Listener(Watch):
@@ -59,6 +59,9 @@ class Backend(unittest.TestCase):
     def path(self, name):
         return str(self.folder / name)
 
+    def raster(self, figure, options, dem=Dem(DEM), bounds=None):
+        self.backend.raster(figure, dem, options, bounds, self.path("a.tif"), self.watch)
+
     def script(self, text):
         """A program of the shell in the place of Relevo."""
         path = self.folder / "relevo"
@@ -72,39 +75,38 @@ class Backend(unittest.TestCase):
         self.assertEqual(pathlib.Path(made).read_bytes(), pathlib.Path(self.path("expected.tif")).read_bytes())
 
     def test_shadows_are_those_of_the_program(self):
-        self.backend.shadow(Dem(DEM), When("2026-12-21T09:00:00"), False, None, self.path("a.tif"), self.watch)
+        self.raster("shadow", {"time": "2026-12-21T09:00:00", "soft": False})
         self.expect_same(self.path("a.tif"), "sun", "shadow", DEM, "--time", "2026-12-21T09:00:00")
         self.assertIn("time zone America/New_York of the place; --tz sets another", self.watch.infos)
         self.assertTrue(any(text.startswith("mountains outside this DEM") for text in self.watch.warnings))
 
     def test_shadows_of_a_part_at_an_event(self):
-        when, bounds = When("sunset-30min", "2026-12-21", "+01:00"), (-84.3, 36.2, -84.2, 36.3)
-        self.backend.shadow(Dem(DEM, unit="ft"), when, True, bounds, self.path("a.tif"), self.watch)
+        options = {"time": "sunset-30min", "date": "2026-12-21", "zone": "+01:00", "soft": True}
+        self.raster("shadow", options, Dem(DEM, unit="ft"), (-84.3, 36.2, -84.2, 36.3))
         self.expect_same(self.path("a.tif"), "sun", "shadow", DEM, "--unit", "ft", "--soft", "--time", "sunset-30min",
                          "--date", "2026-12-21", "--tz", "+01:00", "--clip=-84.3,36.2,-84.2,36.3")  # fmt: skip
 
     def test_hours_are_those_of_the_program(self):
-        what = Hours(["first", "global"], 10, 4, 0.5)
-        self.backend.hours(Dem(DEM), Days("2026-03-01", "2026-03-02"), what, None, self.path("a.tif"), self.watch)
+        what = {"bands": ["first", "global"], "step": 600, "linke": 4, "albedo": 0.5}
+        self.raster("hours", {"start": "2026-03-01", "end": "2026-03-02", **what})
         self.expect_same(self.path("a.tif"), "sun", "hours", DEM, "--from", "2026-03-01", "--to", "2026-03-02", "--bands",
                          "first,global", "--step", "10min", "--linke", 4, "--albedo", 0.5)  # fmt: skip
 
     def test_sky_views_are_those_of_the_program(self):
-        self.backend.sky_view(Dem(DEM), 8, True, None, self.path("a.tif"), self.watch)
+        self.raster("sky_view", {"directions": 8, "level": True})
         self.expect_same(self.path("a.tif"), "sun", "sky-view", DEM, "--directions", 8, "--level")
 
     def test_progress_rises(self):
-        self.backend.hours(Dem(DEM), Days("2026-06-21"), Hours(["hours"], 0.5), None, self.path("a.tif"), self.watch)
+        self.raster("hours", {"date": "2026-06-21", "bands": ["hours"], "step": 30})
         self.assertGreater(len(self.watch.shares), 1)
         self.assertEqual(self.watch.shares, sorted(self.watch.shares))
         self.assertTrue(all(0 < share < 1 for share in self.watch.shares))
 
     def test_errors_are_the_sentences_of_the_program(self):
         with self.assertRaisesRegex(RelevoError, "^/no/such.tif: no such file; there is no folder /no$"):
-            self.backend.sky_view(Dem("/no/such.tif"), 36, False, None, self.path("a.tif"), self.watch)
+            self.raster("sky_view", {"directions": 36}, Dem("/no/such.tif"))
         with self.assertRaisesRegex(RelevoError, "^time zone: Nowhere/X: no such time zone, expected "):
-            when = When("2026-06-21T12:00", None, "Nowhere/X")
-            self.backend.shadow(Dem(DEM), when, False, None, self.path("a.tif"), self.watch)
+            self.raster("shadow", {"time": "2026-06-21T12:00", "zone": "Nowhere/X"})
         with self.assertRaisesRegex(RelevoError, "^/no/relevo: cannot be run: No such file or directory$"):
             program.Program("/no/relevo").description()
         self.assertEqual(os.listdir(self.folder), [])
@@ -119,7 +121,8 @@ class Backend(unittest.TestCase):
         output = self.path("year.tif")
         began = time.monotonic()
         with self.assertRaises(Cancelled):
-            self.backend.hours(Dem(DEM), Days(year=2026), Hours(["hours", "global"]), None, output, watch)
+            options = {"year": 2026, "bands": ["hours", "global"]}
+            self.backend.raster("hours", Dem(DEM), options, None, output, watch)
         self.assertLess(time.monotonic() - began, 10)
         self.assertEqual(processes_of(output), [])
         self.assertEqual(os.listdir(self.folder), [])
@@ -130,7 +133,7 @@ class Backend(unittest.TestCase):
         patience, program._PATIENCE_S = program._PATIENCE_S, 0.3
         self.addCleanup(setattr, program, "_PATIENCE_S", patience)
         with self.assertRaises(Cancelled):
-            backend.sky_view(Dem(DEM), 36, False, None, self.path("a.tif"), Listener(cancels=True))
+            backend.raster("sky_view", Dem(DEM), {}, None, self.path("a.tif"), Listener(cancels=True))
         self.assertEqual(processes_of(mark), [])
 
     def test_horizons_of_points_and_why_there_is_none(self):
@@ -144,7 +147,7 @@ class Backend(unittest.TestCase):
 
     def test_pictures(self):
         picture = Picture(
-            When("2026-06-21T18:30:00"), (320, 200), side="north", elevation_deg=45, zoom=1.5, exaggeration=2,
+            {"time": "2026-06-21T18:30:00"}, (320, 200), side="north", elevation_deg=45, zoom=1.5, exaggeration=2,
             preset="relief", enable=["contours"], disable=["haze"], values={"contours.interval_m": "50"}, stamps=["date"],
         )  # fmt: skip
         self.backend.capture(Dem(DEM), picture, self.path("a.png"), self.watch)

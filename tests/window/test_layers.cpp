@@ -1,9 +1,11 @@
 // The list of what lies on the ground: its order, light, files, and the sun's figures as files.
+#include <algorithm>
 #include <fstream>
 
 #include <gmock/gmock.h>
 
 #include "dem/load.h"
+#include "light/fields.h"
 #include "viewer/layers.h"
 #include "viewer/sun_overlay.h"
 #include "window/viewer_fixture.h"
@@ -138,23 +140,21 @@ TEST(Layers, AreLitByAWordOrASwitch) {
 
 const sun::Zone kNewYork = sun::Zone::named("America/New_York");
 
-session::SunRasterWanted raster_with(const OverlayChoice& choice) {
-    return raster_of(choice, sun::parse_time("2026-12-24T16:00:00Z").utc, kNewYork, "standard");
+FigureWanted figure_with(const OverlayChoice& choice) {
+    return figure_of(choice, sun::parse_time("2026-12-24T16:00:00Z").utc, kNewYork, "standard");
 }
 
 TEST(SunFigures, HaveTheDaysOfTheirPeriod) {
-    const auto title = [](const OverlayChoice& choice) {
-        return title_of(choice, raster_with(choice));
-    };
+    const auto title = [](const OverlayChoice& choice) { return title_of(figure_with(choice)); };
     OverlayChoice range{.kind = OverlayKind::Irradiation, .period = OverlayPeriod::Range};
     range.first = {2026, 10, 20};
     range.last = {2026, 10, 28};  // with a change of the clocks
     EXPECT_EQ(title(range), "Irradiation, 20 Oct to 28 Oct 2026");
-    EXPECT_EQ(sun::to_iso(raster_with(range).begin, kNewYork), "2026-10-20T00:00:00-04:00");
-    EXPECT_EQ(sun::to_iso(raster_with(range).end, kNewYork), "2026-10-29T00:00:00-04:00");
+    EXPECT_EQ(sun::to_iso(figure_with(range).time.begin, kNewYork), "2026-10-20T00:00:00-04:00");
+    EXPECT_EQ(sun::to_iso(figure_with(range).time.end, kNewYork), "2026-10-29T00:00:00-04:00");
     range.last = {2027, 1, 2};
     EXPECT_EQ(title(range), "Irradiation, 20 Oct 2026 to 2 Jan 2027");
-    EXPECT_EQ(sun::to_iso(raster_with(range).end, kNewYork), "2027-01-03T00:00:00-05:00");
+    EXPECT_EQ(sun::to_iso(figure_with(range).time.end, kNewYork), "2027-01-03T00:00:00-05:00");
     range.last = {2026, 10, 1};
     EXPECT_EQ(title(range), "Irradiation, 20 Oct 2026");
     range.period = OverlayPeriod::Year;
@@ -164,6 +164,70 @@ TEST(SunFigures, HaveTheDaysOfTheirPeriod) {
     EXPECT_EQ(title(range), "First light, 24 Dec 2026");
     range.kind = OverlayKind::LastLight;
     EXPECT_EQ(title(range), "Last light, 24 Dec 2026");
+}
+
+/// A wall in the west of a plain at 46 N, 40 m high: at sunset its shadow grows by posts a minute.
+const dem::Posts& walled() {
+    static const dem::Heightfield field =
+        test::field_of(40, 24, {500000, 30, 0, 5100000, 0, -30}, "EPSG:32632",
+                       [](int x, int) { return x == 4 ? 140.0 : 100.0; });
+    static const dem::Posts posts(field);
+    return posts;
+}
+
+OverlayWanted evening(OverlayKind kind) {
+    OverlayWanted wanted;
+    wanted.figure.kind = kind;
+    wanted.figure.time.begin = sun::parse_time("2026-03-20T17:15:00Z").utc;
+    wanted.figure.time.end = wanted.figure.time.begin + 3600.0;
+    return wanted;
+}
+
+bool same_values(const OverlayWanted& a, const OverlayWanted& b) {
+    const figure::Raster first = figure::raster_of(*a.figure.of(walled()), walled());
+    const figure::Raster second = figure::raster_of(*b.figure.of(walled()), walled());
+    return std::ranges::equal(first.values, second.values);
+}
+
+TEST(SunFigures, OfOtherAirOrTimeAreNotTheSame) {
+    for (const OverlayKind kind : {OverlayKind::Hours, OverlayKind::Mask}) {
+        const OverlayWanted wanted = evening(kind);
+        EXPECT_TRUE(same_figures(wanted, evening(kind)));
+        OverlayWanted airless = wanted;
+        airless.figure.refraction = "none";
+        EXPECT_FALSE(same_values(wanted, airless));
+        EXPECT_FALSE(same_figures(wanted, airless));
+        OverlayWanted earlier = wanted;
+        earlier.figure.time.begin = wanted.figure.time.begin + -1800.0;
+        EXPECT_FALSE(same_values(wanted, earlier));
+        EXPECT_FALSE(same_figures(wanted, earlier));
+        OverlayWanted other = wanted;
+        other.figure.kind = OverlayKind::SkyView;
+        EXPECT_FALSE(same_figures(wanted, other));
+    }
+    OverlayWanted shorter = evening(OverlayKind::Hours);
+    shorter.figure.time.end = shorter.figure.time.begin + 600.0;
+    EXPECT_FALSE(same_values(shorter, evening(OverlayKind::Hours)));
+    EXPECT_FALSE(same_figures(shorter, evening(OverlayKind::Hours)));
+}
+
+TEST(SunFigures, OfWhatTheyDoNotDependOnAreTheSame) {
+    const auto later = [](OverlayKind kind, OverlayPeriod period, const char* refraction) {
+        OverlayWanted wanted;
+        wanted.figure =
+            figure_of({.kind = kind, .period = period}, sun::parse_time("2026-12-24T17:00:00Z").utc,
+                      kNewYork, refraction);
+        return wanted;
+    };
+    using enum OverlayPeriod;
+    EXPECT_TRUE(same_figures(later(OverlayKind::Mask, Day, "none"),
+                             later(OverlayKind::Mask, Year, "none")));
+    OverlayWanted mask = later(OverlayKind::Mask, Day, "none");
+    mask.figure.zone = sun::Zone();
+    EXPECT_TRUE(same_figures(mask, later(OverlayKind::Mask, Day, "none")));
+    OverlayWanted sky;
+    sky.figure = figure_with({.kind = OverlayKind::SkyView});
+    EXPECT_TRUE(same_figures(sky, later(OverlayKind::SkyView, Week, "none")));
 }
 
 TEST(SunFigures, AreWrittenAsByTheCommandLine) {
@@ -190,8 +254,7 @@ TEST(SunFigures, AreWrittenAsByTheCommandLine) {
     };
     int number = 0;
     for (const auto& [choice, options] : cases) {
-        wanted.raster = raster_with(choice);
-        wanted.title = title_of(choice, wanted.raster);
+        wanted.figure = figure_with(choice);
         const OverlaySave save(wanted, nullptr, [] {});
         ASSERT_TRUE(test::WindowedProgram::wait([&] { return save.is_done(); }));
         ASSERT_EQ(save.result(), fmt::format("relevo-{}.tif", ++number));
@@ -203,7 +266,9 @@ TEST(SunFigures, AreWrittenAsByTheCommandLine) {
                   read_text(folder / "command.tif", "test"))
             << options;
         // The time that stamps have is that of the file.
-        const auto computed = session::time_of(dem::Posts(wanted.dem->field), wanted.raster);
+        const dem::Posts posts(wanted.dem->field);
+        const output::RasterMetadata about = wanted.figure.of(posts)->metadata(posts);
+        const auto computed = session::overlay_time({about.begin(), about.end()});
         const auto read = session::time_of(scene::Overlay{.file = save.result()});
         const geo::Geodetic place = wanted.dem->field.grid.center();
         EXPECT_EQ(session::clock_text(*computed, "", place), session::clock_text(*read, "", place));

@@ -38,9 +38,8 @@ OverlayWanted of(const std::string& file, const OverlayChoice& choice,
         std::make_shared<const dem::Source>(std::move(source)), std::move(field)});
     wanted.dems = {file};
     wanted.options.memory = memory;
-    wanted.raster = raster_of(choice, sun::parse_time("2026-12-24T16:00:00Z").utc,
+    wanted.figure = figure_of(choice, sun::parse_time("2026-12-24T16:00:00Z").utc,
                               sun::Zone::named("America/New_York"), "standard");
-    wanted.title = title_of(choice, wanted.raster);
     return wanted;
 }
 
@@ -134,8 +133,8 @@ std::string larger_dem() {
 TEST(SunOverlay, IsCoarseFirstAndGivenUpForWhatIsWantedThen) {
     const OverlayWanted day = of(larger_dem(), kDay);
     OverlayWanted year = day;
-    year.raster = raster_of({.kind = OverlayKind::Hours, .period = OverlayPeriod::Year},
-                            day.raster.begin, day.raster.zone, "standard");
+    year.figure = figure_of({.kind = OverlayKind::Hours, .period = OverlayPeriod::Year},
+                            day.figure.time.begin, day.figure.zone, "standard");
     OverlayWork* of_answers = nullptr;
     std::mutex mutex;
     std::vector<std::shared_ptr<const OverlayShown>> answers;

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 Progress = Callable[[float], object]
 """Is called with the share that is done, 0 to 1, on the thread that has called. False from it cancels."""
 
-_Fill = Callable[[str, NDArray[Any], Optional[Progress]], str]
-
 
 class Horizon(NamedTuple):
     """The horizon that the ground makes around a place; float64, an element for each direction."""
@@ -84,21 +82,11 @@ class SunOverDem:
         names, alone = band_list(bands)
         if isinstance(step, datetime.timedelta):
             step = step.total_seconds()
-        days = {"date": date, "from": start, "to": end}
-        options = options_text(
-            "hours",
-            **{key: date_text(day) for key, day in days.items() if day is not None},
-            year=year,
-            zone=None if zone is None else zone_text(zone),
-            bands=names,
-            step=step,
-            linke=linke,
-            albedo=albedo,
-            terrestrial_refraction=terrestrial_refraction,
-            refraction=refraction,
-            highest=highest,
+        return self._raster(
+            "sun_hours", names, alone, progress, **{"date": date, "from": start, "to": end}, year=year, zone=zone,
+            bands=names, step=step, linke=linke, albedo=albedo, terrestrial_refraction=terrestrial_refraction,
+            refraction=refraction, highest=highest,
         )
-        return self._raster(self._dem._handle.sun_hours, options, tuple(names), alone, progress)
 
     def shadow(
         self,
@@ -117,17 +105,10 @@ class SunOverDem:
         time, date, zone: as in `Dem.view()`
         soft: the visible fraction of the solar disc instead
         """
-        options = options_text(
-            "shadow",
-            time=time_text(time, zone),
-            date=None if date is None else date_text(date),
-            zone=None if zone is None else zone_text(zone),
-            soft=soft,
-            terrestrial_refraction=terrestrial_refraction,
-            refraction=refraction,
-            highest=highest,
+        return self._raster(
+            "shadow", ["shadow"], True, progress, time=time_text(time, zone), date=date, zone=zone, soft=soft,
+            terrestrial_refraction=terrestrial_refraction, refraction=refraction, highest=highest,
         )
-        return self._raster(self._dem._handle.shadow, options, ("shadow",), True, progress)
 
     def sky_view(
         self,
@@ -143,14 +124,10 @@ class SunOverDem:
         directions: in which horizons are computed (36)
         level: of a level plane instead of the ground as it is inclined
         """
-        options = options_text(
-            "sky_view",
-            directions=directions,
-            level=level,
-            terrestrial_refraction=terrestrial_refraction,
-            highest=highest,
+        return self._raster(
+            "sky_view", ["sky_view"], True, progress, directions=directions, level=level,
+            terrestrial_refraction=terrestrial_refraction, highest=highest,
         )
-        return self._raster(self._dem._handle.sky_view, options, ("sky_view",), True, progress)
 
     def horizon(
         self,
@@ -183,15 +160,20 @@ class SunOverDem:
         return Horizon(azimuths, elevation, distance)
 
     def _raster(
-        self, fill: _Fill, options: str, bands: tuple[str, ...], alone: bool, progress: Optional[Progress]
+        self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], **options: Any
     ) -> Raster:
-        values = empty(None if alone else len(bands), *self._dem.shape)
+        """A figure by its function of the library."""
+        for key, text in (("date", date_text), ("from", date_text), ("to", date_text), ("zone", zone_text)):
+            if options.get(key) is not None:
+                options[key] = text(options[key])
+        values = empty(None if alone else len(names), *self._dem.shape)
+        fill = getattr(self._dem._handle, figure)
         with messages():
-            about = json.loads(fill(options, values, progress))
+            about = json.loads(fill(options_text(figure.removeprefix("sun_"), **options), values, progress))
         described = about.pop("bands")
-        names = tuple(band["name"] for band in described)
+        titles = tuple(band["name"] for band in described)
         units = tuple(band["unit"] for band in described)
-        return self._dem._raster(values, bands, names, units, about)
+        return self._dem._raster(values, tuple(names), titles, units, about)
 
     def __repr__(self) -> str:
         return f"<sun over {self._dem!r}>"

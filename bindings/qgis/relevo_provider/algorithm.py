@@ -20,7 +20,7 @@ from qgis.core import (
 from qgis.PyQt.QtGui import QIcon
 
 from . import library, program
-from .backend import Backend, Cancelled, Dem, RelevoError, Watch, When
+from .backend import Backend, Cancelled, Dem, Options, RelevoError, Watch
 from .inputs import dem_of, when_of
 
 PROGRAM_SETTING = "RELEVO_PROGRAM"
@@ -151,7 +151,7 @@ class RelevoAlgorithm(QgsProcessingAlgorithm):
     def add_zone(self) -> None:
         self.add_text(self.ZONE, "Time zone (Europe/Zurich, +01:00, solar; empty: that of the place)")
 
-    def when(self, parameters, context) -> Optional[When]:
+    def when(self, parameters, context) -> Optional[Options]:
         time = parameters.get(self.TIME)
         if not isinstance(time, str):
             time = self.parameterAsDateTime(parameters, self.TIME, context)

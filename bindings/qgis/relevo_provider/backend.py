@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 
 class RelevoError(Exception):
@@ -13,6 +13,9 @@ class RelevoError(Exception):
 
 class Cancelled(Exception):
     """The user has cancelled."""
+
+
+Options = Dict[str, Any]  # arguments of the package relevo by their names; None is its default
 
 
 @dataclass(frozen=True)
@@ -27,39 +30,10 @@ class Dem:
 
 
 @dataclass(frozen=True)
-class When:
-    """A time: local time of the zone, a time with an offset, or an event of the sun with its day."""
-
-    at: str  # "2026-06-21T18:30:00", "2026-06-21T16:30:00Z", "sunset-30min"
-    date: Optional[str] = None  # of an event
-    zone: Optional[str] = None  # "Europe/Zurich", "+02:00", "solar"; None: that of the place
-
-
-@dataclass(frozen=True)
-class Days:
-    """Days from midnight to midnight: a range, both ends included, or a year."""
-
-    first: Optional[str] = None
-    last: Optional[str] = None
-    year: Optional[int] = None
-    zone: Optional[str] = None
-
-
-@dataclass(frozen=True)
-class Hours:
-    """What is computed for days."""
-
-    bands: Sequence[str] = ("hours",)
-    step_min: Optional[float] = None
-    linke: Optional[float] = None
-    albedo: Optional[float] = None
-
-
-@dataclass(frozen=True)
 class Picture:
     """A view to draw. Members that are None or empty are left to Relevo."""
 
-    when: Optional[When] = None
+    when: Optional[Options] = None  # time, date and zone
     size: Tuple[int, int] = (1280, 720)  # [px]
     is_map: bool = False  # seen from straight above, with a georeference
     resolution: Optional[float] = None  # of a map: the side of a pixel in the DEM's units, instead of the size
@@ -111,18 +85,10 @@ class Backend(ABC):
         """What runs, and its version."""
 
     @abstractmethod
-    def shadow(self, dem: Dem, when: When, soft: bool, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        """A GeoTIFF of light and shade: a mask, or the visible fraction of the solar disc (`soft`)."""
-
-    @abstractmethod
-    def hours(self, dem: Dem, days: Days, what: Hours, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        """A GeoTIFF with a band for each of `what.bands`."""
-
-    @abstractmethod
-    def sky_view(
-        self, dem: Dem, directions: int, level: bool, bounds: Optional[Bounds], output: str, watch: Watch
+    def raster(
+        self, figure: str, dem: Dem, options: Options, bounds: Optional[Bounds], output: str, watch: Watch
     ) -> None:
-        """A GeoTIFF of sky-view factors."""
+        """A GeoTIFF of a figure, which is a function of `relevo.SunOverDem`."""
 
     @abstractmethod
     def horizons(

@@ -9,7 +9,7 @@ from typing import Optional, Union
 from qgis.core import QgsCoordinateReferenceSystem, QgsRasterLayer
 from qgis.PyQt.QtCore import QDateTime, Qt
 
-from .backend import Dem, RelevoError, When
+from .backend import Dem, Options, RelevoError
 
 _FORMAT = "yyyy-MM-ddTHH:mm:ss"
 
@@ -47,8 +47,8 @@ def dem_of(layer: QgsRasterLayer, band: Optional[int] = None, unit: Optional[str
         raise RelevoError(f"options: {options}: {error}") from error
 
 
-def when_of(time: Union[QDateTime, str, None], event: str, zone: str) -> Optional[When]:
-    """A time as Relevo takes it.
+def when_of(time: Union[QDateTime, str, None], event: str, zone: str) -> Optional[Options]:
+    """A time as Relevo takes it: time, the date of an event, zone.
 
     time: a text is used as it is: Qt would move times that the clocks of this computer skip
     event: of the sun instead of the time of day, "sunset-30min"; may be empty
@@ -61,7 +61,7 @@ def when_of(time: Union[QDateTime, str, None], event: str, zone: str) -> Optiona
         if event:
             raise RelevoError(f"event {event}: expected also a time, which names its day")
         return None
-    return When(event, text[:10], zone or None) if event else When(text, None, zone or None)
+    return {"time": event or text, "date": text[:10] if event else None, "zone": zone or None}
 
 
 def _text_of(time: Optional[QDateTime]) -> str:

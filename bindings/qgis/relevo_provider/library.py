@@ -11,7 +11,7 @@ import threading
 import warnings
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Union
 
-from .backend import Backend, Bounds, Cancelled, Days, Dem, Direction, Hours, Picture, RelevoError, Watch, When
+from .backend import Backend, Bounds, Cancelled, Dem, Direction, Options, Picture, RelevoError, Watch
 
 # The camera's azimuth as seen from the ground (core/scene/view.cpp).
 _SIDES = {"north": 0, "north-east": 45, "east": 90, "south-east": 135, "south": 180, "south-west": 225, "west": 270,
@@ -40,34 +40,17 @@ class Library(Backend):
     def description(self) -> str:
         return f"Python package relevo {self._relevo.__version__}"
 
-    def shadow(self, dem: Dem, when: When, soft: bool, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        _refuse_bounds(bounds)
-        with self._opened(dem, watch) as opened:
-            raster = opened.sun.shadow(
-                when.at, date=when.date, zone=when.zone or "auto", soft=soft, progress=_progress(watch)
-            )
-        _write_raster(raster, dem, not soft, self._relevo.__version__, output)
-
-    def hours(self, dem: Dem, days: Days, what: Hours, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        _refuse_bounds(bounds)
-        one_day = days.year is None and days.last in (None, days.first)
-        period: Dict[str, Any] = {"year": days.year} if days.year is not None else {"start": days.first, "end": days.last}
-        if one_day:
-            period = {"date": days.first}
-        options = {"step": None if what.step_min is None else 60 * what.step_min, "linke": what.linke}
-        with self._opened(dem, watch) as opened:
-            raster = opened.sun.hours(
-                **period, zone=days.zone, bands=list(what.bands), albedo=what.albedo, progress=_progress(watch), **options
-            )
-        _write_raster(raster, dem, False, self._relevo.__version__, output)
-
-    def sky_view(
-        self, dem: Dem, directions: int, level: bool, bounds: Optional[Bounds], output: str, watch: Watch
+    def raster(
+        self, figure: str, dem: Dem, options: Options, bounds: Optional[Bounds], output: str, watch: Watch
     ) -> None:
-        _refuse_bounds(bounds)
+        if bounds is not None:
+            raise RelevoError("extent: needs the program relevo, which is not installed; leave it empty")
+        if "zone" in options:
+            options = {**options, "zone": options["zone"] or "auto"}
         with self._opened(dem, watch) as opened:
-            raster = opened.sun.sky_view(directions, level=level, progress=_progress(watch))
-        _write_raster(raster, dem, False, self._relevo.__version__, output)
+            raster = getattr(opened.sun, figure)(**options, progress=_progress(watch))
+        is_mask = figure == "shadow" and not options["soft"]
+        _write_raster(raster, dem, is_mask, self._relevo.__version__, output)
 
     def horizons(
         self, dem: Dem, places: Sequence[Tuple[float, float]], eye_height_m: float, step_deg: float, watch: Watch
@@ -167,11 +150,6 @@ def _progress(watch: Watch) -> Any:
     return done
 
 
-def _refuse_bounds(bounds: Optional[Bounds]) -> None:
-    if bounds is not None:
-        raise RelevoError("extent: needs the program relevo, which is not installed; leave it empty")
-
-
 def _scene_of(picture: Picture) -> Dict[str, Any]:
     """A part of a scene (docs/scene.md)."""
     scene: Dict[str, Any] = {"picture": {"ortho": True} if picture.is_map else {}}
@@ -180,8 +158,7 @@ def _scene_of(picture: Picture) -> Dict[str, Any]:
     else:
         scene["picture"]["size"] = list(picture.size)
     if picture.when:
-        when = {"at": picture.when.at, "date": picture.when.date, "zone": picture.when.zone}
-        scene["time"] = {key: value for key, value in when.items() if value}
+        scene["time"] = {key.replace("time", "at"): value for key, value in picture.when.items() if value}
     if picture.side or picture.elevation_deg is not None or picture.zoom is not None:
         scene["camera"] = _camera_of(picture)
     if picture.exaggeration is not None:

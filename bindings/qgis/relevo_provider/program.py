@@ -12,9 +12,9 @@ import signal
 import subprocess
 import tempfile
 import threading
-from typing import IO, Collection, List, Optional, Sequence, Tuple, Union
+from typing import Collection, List, Optional, Sequence, Tuple, Union
 
-from .backend import Backend, Bounds, Cancelled, Days, Dem, Direction, Hours, Picture, RelevoError, Watch, When
+from .backend import Backend, Bounds, Cancelled, Dem, Direction, Options, Picture, RelevoError, Watch
 
 _POLL_S = 0.1  # how soon a cancelled run ends
 _PATIENCE_S = 5.0  # for a run that was asked to end
@@ -33,23 +33,13 @@ class Program(Backend):
     def description(self) -> str:
         return f"{self._run(['--version'], Watch()).strip()} ({self._path})"
 
-    def shadow(self, dem: Dem, when: When, soft: bool, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        words = ["sun", "shadow", *_dem_words(dem), *_when_words(when), *_bounds_words(bounds)]
-        self._say(self._run([*words, *(["--soft"] if soft else []), *_output_words(output)], watch), watch)
-
-    def hours(self, dem: Dem, days: Days, what: Hours, bounds: Optional[Bounds], output: str, watch: Watch) -> None:
-        words = ["sun", "hours", *_dem_words(dem), *_days_words(days), *_bounds_words(bounds)]
-        words += ["--bands", ",".join(what.bands)]
-        if what.step_min is not None:
-            words += ["--step", f"{what.step_min * 60:.12g}s"]
-        words += _number("--linke", what.linke) + _number("--albedo", what.albedo)
-        self._say(self._run([*words, *_output_words(output)], watch), watch)
-
-    def sky_view(
-        self, dem: Dem, directions: int, level: bool, bounds: Optional[Bounds], output: str, watch: Watch
+    def raster(
+        self, figure: str, dem: Dem, options: Options, bounds: Optional[Bounds], output: str, watch: Watch
     ) -> None:
-        words = ["sun", "sky-view", *_dem_words(dem), *_bounds_words(bounds), "--directions", str(directions)]
-        self._say(self._run([*words, *(["--level"] if level else []), *_output_words(output)], watch), watch)
+        words = ["sun", figure.replace("_", "-"), *_dem_words(dem), *_option_words(options)]
+        words += [] if bounds is None else ["--clip=" + ",".join(repr(edge) for edge in bounds)]
+        for line in self._run([*words, *_output_words(output)], watch).splitlines():
+            watch.info(line)
 
     def horizons(
         self, dem: Dem, places: Sequence[Tuple[float, float]], eye_height_m: float, step_deg: float, watch: Watch
@@ -92,11 +82,6 @@ class Program(Backend):
             raise RelevoError(f"{self._path}: cannot be run: {error.strerror}") from error
         with process:
             return _Run(process, watch).finish(accepted)
-
-    @staticmethod
-    def _say(summary: str, watch: Watch) -> None:
-        for line in summary.splitlines():
-            watch.info(line)
 
 
 class _Run:
@@ -192,25 +177,17 @@ def _dem_words(dem: Dem) -> List[str]:
     return words + (["--unit", dem.unit] if dem.unit else []) + list(dem.options)
 
 
-def _when_words(when: When) -> List[str]:
-    words = ["--time", when.at]
-    if when.date:
-        words += ["--date", when.date]
-    return words + (["--tz", when.zone] if when.zone else [])
-
-
-def _days_words(days: Days) -> List[str]:
-    if days.year is not None:
-        words = ["--year", str(days.year)]
-    elif days.last in (None, days.first):
-        words = ["--date", str(days.first)]
-    else:
-        words = ["--from", str(days.first), "--to", str(days.last)]
-    return words + (["--tz", days.zone] if days.zone else [])
-
-
-def _bounds_words(bounds: Optional[Bounds]) -> List[str]:
-    return [] if bounds is None else ["--clip=" + ",".join(repr(edge) for edge in bounds)]
+def _option_words(options: Options) -> List[str]:
+    """Those that are not None or False. A step is in seconds, which the program needs a unit for."""
+    words: List[str] = []
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        words.append("--" + {"zone": "tz", "start": "from", "end": "to"}.get(name, name))
+        if value is not True:
+            text = f"{value:.12g}s" if name == "step" else str(value)
+            words.append(",".join(value) if isinstance(value, list) else text)
+    return words
 
 
 def _output_words(output: str) -> List[str]:
@@ -218,7 +195,7 @@ def _output_words(output: str) -> List[str]:
 
 
 def _picture_words(picture: Picture) -> List[str]:
-    words = _when_words(picture.when) if picture.when else []
+    words = _option_words(picture.when) if picture.when else []
     if picture.is_map:
         words.append("--ortho")
     if picture.resolution is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Optional, Tuple
 
 from qgis.core import (
     QgsProcessingParameterBoolean,
@@ -15,15 +15,16 @@ from qgis.core import (
 from qgis.PyQt.QtCore import Qt
 
 from .algorithm import RelevoAlgorithm
-from .backend import Bounds, Days, Hours, RelevoError
+from .backend import Bounds, Options, RelevoError
 from .styles import load_as, style_result
 
 
 class RasterAlgorithm(RelevoAlgorithm):
-    """An algorithm whose result is a GeoTIFF with a style."""
+    """An algorithm whose result is a GeoTIFF with a style. Subclasses have `figure`, as Backend.raster(), and options()."""
 
     EXTENT = "EXTENT"
     group_title = "Sunlight"
+    figure = ""
 
     def add_raster(self, description: str) -> None:
         self.add_advanced(
@@ -41,17 +42,24 @@ class RasterAlgorithm(RelevoAlgorithm):
             return None
         return extent.xMinimum(), extent.yMinimum(), extent.xMaximum(), extent.yMaximum()
 
-    def output(self, parameters, context) -> str:
-        return self.parameterAsOutputLayer(parameters, self.OUTPUT, context)
+    def options(self, parameters, context) -> Tuple[Options, str]:
+        """Options of the figure, and a title."""
+        raise NotImplementedError
 
-    def finish(self, output: str, title: str, context):
+    def compute(self, backend, parameters, context, feedback, watch):
+        options, title = self.options(parameters, context)
+        if options.get("zone"):
+            watch.info(f"time zone {options['zone']}")
+        output = self.parameterAsOutputLayer(parameters, self.OUTPUT, context)
+        dem, bounds = self.dem(parameters, context), self.bounds(parameters, context)
+        backend.raster(self.figure, dem, options, bounds, output, watch)
         style_result(output, title)
         load_as(context, output, title)
         return {self.OUTPUT: output}
 
 
 class Shadow(RasterAlgorithm):
-    word = "shadow"
+    word = figure = "shadow"
     title = "Shadow mask"
     help = (
         "Which cells of an elevation raster the sun reaches at a time: 1 in the sun, 0 in the shadow of the terrain. "
@@ -69,25 +77,18 @@ class Shadow(RasterAlgorithm):
         )
         self.add_raster("Shadow")
 
-    def compute(self, backend, parameters, context, feedback, watch):
-        soft = self.parameterAsBoolean(parameters, self.SOFT, context)
+    def options(self, parameters, context):
         when = self.when(parameters, context)
         if when is None:
             raise RelevoError("time: expected a date and a time such as 2026-06-21T18:30:00")
-        self.zone(parameters, context, watch)
-        output = self.output(parameters, context)
-        backend.shadow(self.dem(parameters, context), when, soft, self.bounds(parameters, context), output, watch)
+        soft = self.parameterAsBoolean(parameters, self.SOFT, context)
         what = "Visible fraction of the solar disc" if soft else "Direct sun"
-        day = f" {when.date}" if when.date else ""
-        return self.finish(output, f"{what}, {when.at.replace('T', ' ')}{day}{self._zone_text(when.zone)}", context)
-
-    @staticmethod
-    def _zone_text(zone: Optional[str]) -> str:
-        return f" {zone}" if zone else ""
+        words = (when["time"].replace("T", " "), when["date"], when["zone"])
+        return {**when, "soft": soft}, f"{what}, {' '.join(word for word in words if word)}"
 
 
 class SunHours(RasterAlgorithm):
-    word = "sunhours"
+    word, figure = "sunhours", "hours"
     title = "Hours of direct sun"
     help = (
         "Hours of direct sun on each cell of an elevation raster on a day, over several days or a year, behind the "
@@ -98,17 +99,8 @@ class SunHours(RasterAlgorithm):
     )
     FROM, TO, YEAR, BANDS = "FROM", "TO", "YEAR", "BANDS"
     STEP, LINKE, ALBEDO = "STEP", "LINKE", "ALBEDO"
-    _BANDS = ["hours", "first", "last", "spells", "global", "beam", "diffuse", "reflected"]
-    _TITLES = {
-        "hours": "Hours of direct sun",
-        "first": "First sun",
-        "last": "Last sun",
-        "spells": "Sunshine periods",
-        "global": "Global irradiation",
-        "beam": "Beam irradiation",
-        "diffuse": "Diffuse irradiation",
-        "reflected": "Reflected irradiation",
-    }
+    _TITLES = {"hours": "Hours of direct sun", "first": "First sun", "last": "Last sun", "spells": "Sunshine periods"}
+    _IRRADIATION = ["global", "beam", "diffuse", "reflected"]
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
@@ -118,11 +110,8 @@ class SunHours(RasterAlgorithm):
         whole, real = QgsProcessingParameterNumber.Integer, QgsProcessingParameterNumber.Double
         self.addParameter(QgsProcessingParameterNumber(self.YEAR, "Year instead of days", whole, None, True, 1900, 2100))
         self.add_zone()
-        self.addParameter(
-            QgsProcessingParameterEnum(
-                self.BANDS, "Bands", self._BANDS, allowMultiple=True, defaultValue=["hours"], usesStaticStrings=True
-            )
-        )
+        bands = [*self._TITLES, *self._IRRADIATION]
+        self.addParameter(QgsProcessingParameterEnum(self.BANDS, "Bands", bands, True, ["hours"], False, True))
         self.add_advanced(
             QgsProcessingParameterNumber(self.STEP, "Time step of at most four days [min]", real, 3, False, 1 / 60, 60)
         )
@@ -141,35 +130,31 @@ class SunHours(RasterAlgorithm):
             return False, str(error)
         return super().checkParameterValues(parameters, context)
 
-    def compute(self, backend, parameters, context, feedback, watch):
+    def options(self, parameters, context):
         days = self._days(parameters, context)
-        self.zone(parameters, context, watch)
         bands = self.parameterAsEnumStrings(parameters, self.BANDS, context)
-        what = Hours(bands, *self._options(parameters, context, bands, days))
-        output = self.output(parameters, context)
-        backend.hours(self.dem(parameters, context), days, what, self.bounds(parameters, context), output, watch)
-        return self.finish(output, f"{self._TITLES[bands[0]]}, {self._days_text(days)}", context)
-
-    def _options(self, parameters, context, bands, days):
-        """Step, turbidity and albedo, those that count: Relevo refuses others."""
-        def value(name: str) -> float:
-            return self.parameterAsDouble(parameters, name, context)
-
-        irradiates = any(band in self._BANDS[4:] for band in bands)
-        return (
-            value(self.STEP) if days.year is None and value(self.STEP) != 3 else None,
-            value(self.LINKE) if irradiates else None,
-            value(self.ALBEDO) if irradiates else None,
+        step, linke, albedo = (
+            self.parameterAsDouble(parameters, name, context) for name in (self.STEP, self.LINKE, self.ALBEDO)
         )
+        # Those that count: Relevo refuses others.
+        numbers = {"step": 60 * step} if "year" not in days and step != 3 else {}
+        if any(band in self._IRRADIATION for band in bands):
+            numbers.update(linke=linke, albedo=albedo)
+        zone = self.text(parameters, self.ZONE, context) or None
+        what = self._TITLES.get(bands[0], f"{bands[0].capitalize()} irradiation")
+        options = {**days, "zone": zone, "bands": bands, **numbers}
+        return options, f"{what}, {' to '.join(map(str, days.values()))}"
 
-    def _days(self, parameters, context) -> Days:
+    def _days(self, parameters, context) -> Options:
         first, last = (self._date(parameters, name, context) for name in (self.FROM, self.TO))
         year = None if parameters.get(self.YEAR) is None else self.parameterAsInt(parameters, self.YEAR, context)
         if (first is None) == (year is None):
             raise RelevoError("days: expected either a first day or a year")
-        if year is not None and last is not None:
-            raise RelevoError("days: expected either a last day or a year")
-        return Days(first, last, year, self.text(parameters, self.ZONE, context) or None)
+        if year is not None:
+            if last is not None:
+                raise RelevoError("days: expected either a last day or a year")
+            return {"year": year}
+        return {"date": first} if last in (None, first) else {"start": first, "end": last}
 
     def _date(self, parameters, name, context) -> Optional[str]:
         if parameters.get(name) is None:
@@ -179,15 +164,9 @@ class SunHours(RasterAlgorithm):
             raise RelevoError(f"{name}: expected a date such as 2026-06-21 but got {parameters[name]}")
         return time.date().toString(Qt.ISODate)
 
-    @staticmethod
-    def _days_text(days: Days) -> str:
-        if days.year is not None:
-            return str(days.year)
-        return str(days.first) if days.last in (None, days.first) else f"{days.first} to {days.last}"
-
 
 class SkyView(RasterAlgorithm):
-    word = "skyview"
+    word, figure = "skyview", "sky_view"
     title = "Sky-view factor"
     help = (
         "The fraction of a uniform sky's light that reaches the inclined ground of each cell of an elevation raster, "
@@ -206,14 +185,6 @@ class SkyView(RasterAlgorithm):
         )
         self.add_raster("Sky-view factor")
 
-    def compute(self, backend, parameters, context, feedback, watch):
-        output = self.output(parameters, context)
-        backend.sky_view(
-            self.dem(parameters, context),
-            self.parameterAsInt(parameters, self.DIRECTIONS, context),
-            self.parameterAsBoolean(parameters, self.LEVEL, context),
-            self.bounds(parameters, context),
-            output,
-            watch,
-        )
-        return self.finish(output, "Sky-view factor", context)
+    def options(self, parameters, context):
+        directions = self.parameterAsInt(parameters, self.DIRECTIONS, context)
+        return {"directions": directions, "level": self.parameterAsBoolean(parameters, self.LEVEL, context)}, self.title

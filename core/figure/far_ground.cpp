@@ -1,4 +1,4 @@
-#include "cli/far_ground.h"
+#include "figure/far_ground.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "light/sweep/sweep.h"
 #include "output/tile_plan.h"
 
-namespace relevo::cli {
+namespace relevo::figure {
 namespace {
 
 /// Cells of means between a tile and its far ground. With 60 horizons are within 0.1 degrees, but
@@ -141,4 +141,4 @@ double FarGround::kept_bytes(const dem::Window& tile) const {
                static_cast<double>(field_->height_m.size());
 }
 
-}  // namespace relevo::cli
+}  // namespace relevo::figure

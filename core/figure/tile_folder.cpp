@@ -1,49 +1,22 @@
-#include "cli/tile_folder.h"
+#include "figure/tile_folder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "base/allocation.h"
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/sha256.h"
 #include "base/text.h"
-#include "cli/shard.h"
-#include "cli/shared.h"
 #include "output/tile_check.h"
 
-namespace relevo::cli {
+namespace relevo::figure {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Options that change no figure, and those of `relevo plan`.
-bool is_of_this_run(const GivenOption& option) {
-    constexpr std::array<std::string_view, 12> kOfThisRun{
-        "DEM",      "--output", "--overwrite", "--shard", "--resume",       "--dry-run",
-        "--memory", "--slurm",  "--parallel",  "--cpus",  "--task-minutes", "--most-tasks"};
-    return contains(kOfThisRun, option.name);
-}
-
-std::string text_of(const GivenOption& option) {
-    if (option.is_flag) return option.name;
-    std::string text = option.name + "=";
-    for (std::size_t i = 0; i < option.values.size(); ++i)
-        text += (i > 0 ? "," : "") + option.values[i];
-    return text;
-}
-
-/// That of a verb of `plan` is that of the verb itself.
-std::string without_plan(std::string command) {
-    constexpr std::string_view kPlan = "plan ";
-    return command.starts_with(kPlan) ? command.substr(kPlan.size()) : command;
-}
 
 /// With what is known of the DEM.
 std::string digest_of(const output::TilePlan& plan) {
@@ -63,32 +36,8 @@ std::string name_in(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-void TileArguments::add_to(Verb verb) {
-    verb.add_option("--tiles", tiles,
-                    "Write tiles into the folder that -o names, a GeoTIFF each: of N x N posts, or "
-                    "those of an index, as gdaltindex and STAC have it")
-        .type_name("N|INDEX")
-        .group("Tiles");
-    verb.add_option("--halo", halo_km,
-                    "Posts only so many km around a tile, ground beyond as means, exact to 0.1 "
-                    "degrees (all posts)")
-        .check(in_range(0.1, 1000.0))
-        .group("Tiles");
-    verb.add_option("--shard", shard,
-                    "Make one part of the tiles: I/N, or array in an array task of a scheduler")
-        .group("Tiles");
-    verb.add_flag("--resume", resume, "Keep tiles that are there, complete and of this command")
-        .group("Tiles");
-}
-
-void TileArguments::check() const {
-    if (!given() && !shard.empty()) bad_usage("--shard: needs --tiles");
-    if (!given() && resume) bad_usage("--resume: needs --tiles");
-    if (!given() && halo_km) bad_usage("--halo: needs --tiles");
-}
-
-std::vector<output::PlannedTile> TileArguments::of(const dem::Grid& grid, const dem::Window& window,
-                                                   const std::string& crs) const {
+std::vector<output::PlannedTile> TileOptions::of(const dem::Grid& grid,
+                                                 const dem::Window& window) const {
     const auto side = parse_number(tiles);
     if (!side) return output::tiles_of_index(grid, window, tiles, crs);
     constexpr double kLeast = 64, kMost = 1 << 20;
@@ -98,26 +47,9 @@ std::vector<output::PlannedTile> TileArguments::of(const dem::Grid& grid, const 
     return output::tiles_of(grid, window, static_cast<int>(*side));
 }
 
-std::string TileArguments::description() const {
+std::string TileOptions::description() const {
     return parse_number(tiles) ? fmt::format("of {0} x {0} posts", tiles)
                                : "of " + printable(tiles);
-}
-
-std::string meaning_of(const std::string& command, const std::vector<GivenOption>& given,
-                       const output::RasterMetadata& metadata) {
-    std::string text = "relevo " RELEVO_VERSION "\n" + without_plan(command) + "\n";
-    for (const GivenOption& option : given)
-        if (!is_of_this_run(option)) text += text_of(option) + "\n";
-    for (const auto& [key, value] : metadata)
-        text += key + "=" + value + "\n";
-    return text;
-}
-
-std::string command_text(const std::string& command, const std::vector<GivenOption>& given) {
-    std::string text = without_plan(command);
-    for (const GivenOption& option : given)
-        if (!is_of_this_run(option)) text += " " + text_of(option);
-    return text;
 }
 
 std::optional<output::TilePlan> plan_of(const fs::path& folder, bool overwrite) {
@@ -135,7 +67,7 @@ void check_plan_files(const fs::path& folder) {
                         printable(foreign.front().string())));
 }
 
-TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileArguments& arguments,
+TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileOptions& options,
                        bool overwrite, bool is_plan)
     : folder_(std::move(folder)), plan_(std::move(plan)), overwrite_(overwrite) {
     plan_.digest = digest_of(plan_);
@@ -148,13 +80,10 @@ TileFolder::TileFolder(fs::path folder, output::TilePlan plan, const TileArgumen
     has_plan_ = found && found->digest == plan_.digest && found->tiles == plan_.tiles &&
                 found->stamp == plan_.stamp;
     std::vector<output::PlannedTile> wanted = plan_.tiles;
-    if (!arguments.shard.empty()) {
-        const Shard shard = parse_shard(arguments.shard, environment_variable);
-        const auto [first, end] = output::share_of(wanted.size(), shard.number, shard.count);
-        wanted = {wanted.begin() + static_cast<std::ptrdiff_t>(first),
-                  wanted.begin() + static_cast<std::ptrdiff_t>(end)};
-    }
-    take(wanted, arguments.resume || is_plan, is_plan);
+    const auto [first, end] = output::share_of(wanted.size(), options.shard, options.shards);
+    wanted = {wanted.begin() + static_cast<std::ptrdiff_t>(first),
+              wanted.begin() + static_cast<std::ptrdiff_t>(end)};
+    take(wanted, options.resume || is_plan, is_plan);
 }
 
 void TileFolder::check_plan(const std::optional<output::TilePlan>& found) const {
@@ -216,4 +145,4 @@ OutputFile TileFolder::open(const output::PlannedTile& tile, FilesInUse& files) 
                             "-o");
 }
 
-}  // namespace relevo::cli
+}  // namespace relevo::figure

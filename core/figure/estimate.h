@@ -1,11 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
-#include "dem/posts.h"
-
-namespace relevo::cli {
+namespace relevo::figure {
 
 /// Measures how long rasters take while parts of them are made. Each part gets ready, and then
 /// goes on in steps: what it takes to get ready is not multiplied by the steps.
@@ -39,28 +36,6 @@ struct RasterEstimate {
     int threads = 1;  ///< on which
     std::size_t bands = 1;
     double result_bytes = 0;  ///< before compression
-
-    /// In lines, on standard output.
-    void print() const;
 };
 
-/// Memory of a run [MiB]; all of it, and that of heights.
-struct RasterMemory {
-    double all_mib = 0, heights_mib = 0;
-};
-/// @param part_posts    the most posts of a part
-/// @param raster        a result file
-/// @param bytes_a_post  RasterWanted::bytes_a_post
-/// @param bytes_a_value, bands  of the result
-/// @param memory        dem::LoadOptions::memory of `posts`
-/// @param far_bytes     FarGround::kept_bytes(); 0: all ground is posts
-RasterMemory raster_memory(const dem::Posts& posts, double part_posts, const dem::Window& raster,
-                           int bytes_a_post, int bytes_a_value, std::size_t bands,
-                           const MemoryBudget& memory, double far_bytes);
-
-/// Memory of a task, which may have less than the machine; the program itself takes some of it.
-MemoryBudget memory_of_allocation(const MemoryBudget& memory);
-/// Says how many threads and how much memory a task has, and what limits them.
-void say_allocation(const MemoryBudget& memory);
-
-}  // namespace relevo::cli
+}  // namespace relevo::figure

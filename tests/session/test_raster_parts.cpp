@@ -1,4 +1,4 @@
-// Whether figures that have been made are those that are wanted.
+// Figures that are made part by part.
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -7,69 +7,14 @@
 
 #include "base/output_file.h"
 #include "dem/fixture.h"
-#include "light/fields.h"
+#include "figure/run.h"
+#include "figure/shadow.h"
 #include "overlay/band_over.h"
-#include "session/sun_raster.h"
-#include "sun/time.h"
+#include "sun/zone.h"
 #include "support/support.h"
 
-namespace relevo::session::test_sun_raster {
+namespace relevo::session::test_raster_parts {
 namespace {
-
-/// A wall in the west of a plain at 46 N, 40 m high: at sunset its shadow grows by posts a minute.
-const dem::Posts& walled() {
-    static const dem::Heightfield field =
-        test::field_of(40, 24, {500000, 30, 0, 5100000, 0, -30}, "EPSG:32632",
-                       [](int x, int) { return x == 4 ? 140.0 : 100.0; });
-    static const dem::Posts posts(field);
-    return posts;
-}
-
-SunRasterWanted day(SunFigure figure) {
-    SunRasterWanted wanted;
-    wanted.figure = figure;
-    wanted.begin = sun::parse_time("2026-03-20T17:15:00Z").utc;
-    wanted.end = wanted.begin + 3600.0;
-    return wanted;
-}
-
-bool same_values(const SunRasterWanted& a, const SunRasterWanted& b) {
-    const SunRaster first = sun_raster(walled(), a), second = sun_raster(walled(), b);
-    for (std::size_t i = 0; i < first.values.size(); ++i)
-        if (first.values.data()[i] != second.values.data()[i]) return false;
-    return true;
-}
-
-TEST(SunRasterWanted, FiguresOfOtherAirOrTimeAreNotTheSame) {
-    for (const SunFigure figure : {SunFigure::Hours, SunFigure::Shadow}) {
-        const SunRasterWanted wanted = day(figure);
-        EXPECT_TRUE(same_figures(wanted, day(figure)));
-        SunRasterWanted airless = wanted;
-        airless.refraction = "none";
-        EXPECT_FALSE(same_values(wanted, airless));
-        EXPECT_FALSE(same_figures(wanted, airless));
-        SunRasterWanted earlier = wanted;
-        earlier.begin = wanted.begin + -1800.0;
-        EXPECT_FALSE(same_values(wanted, earlier));
-        EXPECT_FALSE(same_figures(wanted, earlier));
-        SunRasterWanted other = wanted;
-        other.figure = SunFigure::SkyView;
-        EXPECT_FALSE(same_figures(wanted, other));
-    }
-    SunRasterWanted shorter = day(SunFigure::Hours);
-    shorter.end = shorter.begin + 600.0;
-    EXPECT_FALSE(same_values(shorter, day(SunFigure::Hours)));
-    EXPECT_FALSE(same_figures(shorter, day(SunFigure::Hours)));
-}
-
-TEST(SunRasterWanted, WhatAFigureDoesNotDependOnLeavesItTheSame) {
-    SunRasterWanted mask = day(SunFigure::Shadow), sky = day(SunFigure::SkyView);
-    mask.end = mask.end + 7200.0;
-    sky.begin = sky.begin + 7200.0;
-    sky.refraction = "none";
-    EXPECT_TRUE(same_figures(mask, day(SunFigure::Shadow)));
-    EXPECT_TRUE(same_figures(sky, day(SunFigure::SkyView)));
-}
 
 TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
     const auto is_void = [](int column, int row) {
@@ -90,7 +35,10 @@ TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
     ASSERT_FALSE(posts.in_memory());
     const std::filesystem::path written = folder / "mask.tif";
     OutputFile file(written, /*overwrite=*/true, "test");
-    write_sun_raster(file, posts, day(SunFigure::Shadow), nullptr, 20000, "test");
+    figure::Shadow mask;
+    mask.suns = {figure::sun_over_middle(posts, sun::parse_time("2026-03-20T17:15:00Z").utc,
+                                         mask.refraction)};
+    figure::write_raster(file, mask, posts, MemoryBudget::of_posts(std::int64_t{1} << 16), "test");
     file.finish();
     EXPECT_EQ(overlay::band_metadata(written.string(), 1).at("HOLES"), "75");
 }
@@ -121,4 +69,4 @@ TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
 }
 
 }  // namespace
-}  // namespace relevo::session::test_sun_raster
+}  // namespace relevo::session::test_raster_parts

@@ -9,7 +9,7 @@
 #include "dem/load.h"
 #include "dem/posts.h"
 
-namespace relevo::cli {
+namespace relevo::figure {
 
 /// A DEM of which a tile needs only its own surroundings as posts: ground beyond is means of posts.
 class FarGround {
@@ -66,4 +66,4 @@ class FarGround {
     dem::Window last_site_;
 };
 
-}  // namespace relevo::cli
+}  // namespace relevo::figure

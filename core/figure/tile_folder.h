@@ -7,44 +7,29 @@
 #include <vector>
 
 #include "base/files_in_use.h"
-#include "cli/far_ground.h"
-#include "cli/verb.h"
+#include "figure/far_ground.h"
 #include "output/raster_writer.h"
 #include "output/tile_plan.h"
 
 /// Rasters as tiles in a folder: which there are, and which a run makes.
-namespace relevo::cli {
+namespace relevo::figure {
 
-/// --tiles, --halo, --shard, --resume.
-struct TileArguments {
-    std::string tiles, shard;
+/// Tiles in which rasters are made.
+struct TileOptions {
+    std::string tiles;                  ///< posts a side, or an index; empty: none
+    std::string crs;                    ///< of an index, as `--crs` takes it; empty: its own
+    std::optional<double> halo_km;      ///< means beyond
+    std::size_t shard = 1, shards = 1;  ///< this one of so many
     bool resume = false;
-    std::optional<double> halo_km;
 
-    void add_to(Verb verb);
     bool given() const { return !tiles.empty(); }
-    /// @throws Error (Usage) for --shard or --resume without --tiles
-    void check() const;
     /// The tiles of a window.
-    /// @param crs  of an index, as `--crs` takes it; empty: what the index says
     /// @throws Error (Usage) for a number that no tile has, (BadInput) as output::tiles_of() and
     ///     output::tiles_of_index()
-    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window,
-                                        const std::string& crs) const;
+    std::vector<output::PlannedTile> of(const dem::Grid& grid, const dem::Window& window) const;
     /// What the tiles are, for people: "of 512 x 512 posts".
     std::string description() const;
 };
-
-/// What a command means for figures, in lines: options that change them, and what they were found
-/// to mean, such as times. Names of DEMs are not in it.
-/// @param given     of the verb
-/// @param metadata  of the results
-std::string meaning_of(const std::string& command, const std::vector<GivenOption>& given,
-                       const output::RasterMetadata& metadata);
-
-/// The command without inputs, outputs and what concerns this run alone, for people:
-/// "sun hours --date=2026-06-21".
-std::string command_text(const std::string& command, const std::vector<GivenOption>& given);
 
 /// The plan of a folder, if it has one. With --overwrite a file of another kind is none.
 /// @throws Error (BadInput) as output::read_plan()
@@ -60,9 +45,9 @@ class TileFolder {
     /// Reads the folder's plan, or takes this one, and looks for tiles that are there already.
     /// @param plan      of this run, its digest of the meaning alone; gets that of the DEM, too
     /// @param is_plan   tiles are counted and not made, those that are there stay
-    /// @throws Error (Usage) for a --shard that is none, (BadInput) where the folder has a plan or
-    ///     tiles of something else, and tiles without --resume or --overwrite
-    TileFolder(std::filesystem::path folder, output::TilePlan plan, const TileArguments& arguments,
+    /// @throws Error (BadInput) where the folder has a plan or tiles of something else, and tiles
+    ///     without `resume` or `overwrite`
+    TileFolder(std::filesystem::path folder, output::TilePlan plan, const TileOptions& options,
                bool overwrite, bool is_plan);
 
     /// Writes the plan unless the folder has it.
@@ -75,7 +60,6 @@ class TileFolder {
     /// Whether a tile is there and whole by now, made by another process.
     bool is_whole(const output::PlannedTile& tile) const;
 
-    const std::filesystem::path& path() const { return folder_; }
     const output::TilePlan& plan() const { return plan_; }
     /// That are to be made, of this shard.
     const std::vector<output::PlannedTile>& todo() const { return todo_; }
@@ -95,4 +79,4 @@ class TileFolder {
     std::size_t there_ = 0;
 };
 
-}  // namespace relevo::cli
+}  // namespace relevo::figure
