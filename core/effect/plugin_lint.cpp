@@ -186,8 +186,8 @@ class Linter {
     void check_derivatives(const shader::Snippet& snippet, const shader::Item& item) {
         const shader::Source& source = snippet.source;
         for (std::size_t i = item.first; i + 1 < item.last; ++i) {
-            const std::string_view word = source.str(source.tokens[i]);
-            if (!contains(kDerivatives, word) || source.str(source.tokens[i + 1]) != "(") continue;
+            const std::string_view word = source.str(i);
+            if (!contains(kDerivatives, word) || !source.is(i + 1, "(")) continue;
             add(false, snippet.file, source.tokens[i].line,
                 fmt::format("{}: the next pixel may be other ground, so derivatives are wrong; {}",
                             word,
@@ -206,17 +206,13 @@ class Linter {
         std::vector<std::pair<std::string, int>> found;
         for (const shader::Snippet& snippet : effect_.snippets) {
             const shader::Source& source = snippet.source;
-            const auto word = [&](std::size_t i) {
-                return i < source.tokens.size() ? source.str(source.tokens[i]) : "";
-            };
             for (const shader::Item& item : source.items) {
                 if (item.kind != shader::Item::Kind::Function || !within.contains(item.names[0]))
                     continue;
-                for (std::size_t i = item.first; i + 2 < item.last; ++i) {
-                    if (word(i) != "." || word(i + 1) != member) continue;
-                    const std::size_t after = word(i + 2) == "." ? i + 4 : i + 2;
-                    if (word(after) == "=") found.emplace_back(snippet.file, source.tokens[i].line);
-                }
+                for (std::size_t i = item.first; i < item.last; ++i)
+                    if (source.is(i, ".") && source.is(i + 1, member) &&
+                        source.writes(i + 1) == "=")
+                        found.emplace_back(snippet.file, source.tokens[i].line);
             }
         }
         return found;

@@ -1,6 +1,5 @@
 // Which hook and which value of it is NaN or infinite: the picture is drawn without each in turn.
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
@@ -19,11 +18,7 @@ struct HookPlace {
     const Snippet* snippet;
     const HookFunction* hook;
 
-    const shader::Item& item() const {
-        return *std::ranges::find_if(snippet->source.items, [&](const shader::Item& item) {
-            return item.kind == shader::Item::Kind::Function && item.names[0] == hook->name;
-        });
-    }
+    const shader::Item& item() const { return *snippet->source.function(hook->name); }
 };
 
 /// Number of such pixels with another file in the place of one.
@@ -43,17 +38,12 @@ int pixels_without(const FaultyPicture& picture, const HookPlace& place) {
     return pixels_with(picture, place.snippet, without);
 }
 
-/// The name of the hook's argument of type Surface that it may write; else empty.
-std::string surface_of(const HookPlace& place) {
+/// The name of the first argument of a hook that it may write; empty without one.
+/// @param type  of the argument; empty: any
+std::string output_of(const HookPlace& place, std::string_view type) {
     for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
-        if (argument.type == "Surface" && argument.qualifier == "inout") return argument.name;
-    return {};
-}
-
-/// The value that a hook without a Surface to write makes; empty: what it returns.
-std::string output_of(const HookPlace& place) {
-    for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
-        if (argument.qualifier == "inout") return argument.name;
+        if (argument.qualifier == "inout" && (type.empty() || argument.type == type))
+            return argument.name;
     return {};
 }
 
@@ -61,9 +51,8 @@ std::string output_of(const HookPlace& place) {
 std::vector<std::string> members_in(const shader::Source& source) {
     std::vector<std::string> members;
     for (std::size_t i = 1; i < source.tokens.size(); ++i) {
-        const std::string member(source.str(source.tokens[i]));
-        if (source.tokens[i].kind == shader::TokenKind::Word &&
-            source.str(source.tokens[i - 1]) == "." && member.size() > 1 &&
+        const std::string member(source.str(i));
+        if (source.is_word(i) && source.is(i - 1, ".") && member.size() > 1 &&
             !contains(members, member))
             members.push_back(member);
     }
@@ -77,7 +66,7 @@ Snippet keeping(const HookPlace& place, const std::string& surface, const std::s
     std::string text = source.text;
     const std::string inner = place.snippet->id + "_kept_" + std::string(place.hook->hook->name);
     for (std::size_t i = item.first; i < item.last; ++i)
-        if (source.str(source.tokens[i]) == place.hook->name) {
+        if (source.is(i, place.hook->name)) {
             text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
             break;
         }
@@ -90,21 +79,12 @@ Snippet keeping(const HookPlace& place, const std::string& surface, const std::s
 
 /// The first line of a hook that writes a value, such as `s.diffuse`; 0: none.
 int line_of_write(const HookPlace& place, const std::string& variable, const std::string& member) {
-    constexpr std::array<std::string_view, 5> kWriting = {"=", "+=", "-=", "*=", "/="};
     const shader::Source& source = place.snippet->source;
     const shader::Item& item = place.item();
-    const auto str = [&](std::size_t i) {
-        return i < item.last ? source.str(source.tokens[i]) : std::string_view();
-    };
     for (std::size_t i = item.first; i < item.last; ++i) {
-        if (str(i) != variable) continue;
-        std::size_t next = i + 1;
-        if (!member.empty()) {
-            if (str(next) != "." || str(next + 1) != member) continue;
-            next += 2;
-        }
-        if (str(next) == ".") next += 2;  // a swizzle
-        if (contains(kWriting, str(next))) return source.tokens[i].line;
+        if (!source.is(i, variable)) continue;
+        if (!member.empty() && !(source.is(i + 1, ".") && source.is(i + 2, member))) continue;
+        if (!source.writes(member.empty() ? i : i + 2).empty()) return source.tokens[i].line;
     }
     return 0;
 }
@@ -116,7 +96,7 @@ Snippet cleaned(const Snippet& snippet, const shader::PassFunction& pass) {
     const std::string inner = fmt::format("{}_cleaned_{}", snippet.id, pass.name);
     std::string text = source.text;
     for (std::size_t i = source.tokens.size(); i-- > 0;)
-        if (source.str(source.tokens[i]) == function)
+        if (source.is(i, function))
             text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
     // By bits: compilers may fold comparisons with NaN.
     text += fmt::format(
@@ -143,8 +123,8 @@ std::optional<NonFiniteCause> pass_at_fault(const FaultyPicture& picture, const 
 
 NonFiniteCause cause_at(const FaultyPicture& picture, const HookPlace& place, int without) {
     NonFiniteCause cause{place.snippet->file, place.hook->line, place.hook->name, {}};
-    const std::string surface = surface_of(place);
-    std::string variable = output_of(place), member;
+    const std::string surface = output_of(place, "Surface");
+    std::string variable = output_of(place, ""), member;
     if (!surface.empty()) {
         for (const std::string& candidate : members_in(place.snippet->source)) {
             try {

@@ -24,10 +24,6 @@ const std::vector<std::string>& annotation_names() {
     return names;
 }
 
-bool is_name(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 /// "Noise scale" for haze_noise_scale.
 std::string label_of(std::string_view name) {
     std::string label(name.substr(name.find('_') + 1));
@@ -169,7 +165,7 @@ class ParamReader {
         if (param_.type != ParamType::Int)
             fail(fmt::format("enum is for int, not for a {}", glsl_name(param_.type)));
         for (const std::string& value : word.arguments) {
-            if (value.empty() || !std::ranges::all_of(value, is_name) ||
+            if (value.empty() || !std::ranges::all_of(value, is_word_byte) ||
                 (value[0] >= '0' && value[0] <= '9') ||
                 std::ranges::count(word.arguments, value) > 1)
                 fail(fmt::format("expected enum(word, word, ...), all different, but got {}",
@@ -250,7 +246,7 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
     if (plain != printable(plain)) fail("expected UTF-8 without control characters");
     for (skip_blanks(); at < text.size(); skip_blanks()) {
         AnnotationWord word;
-        while (at < text.size() && is_name(text[at]))
+        while (at < text.size() && is_word_byte(text[at]))
             word.name += text[at++];
         if (word.name.empty()) fail(fmt::format("expected a word but got {}", text.substr(at)));
         skip_blanks();

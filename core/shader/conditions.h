@@ -15,8 +15,9 @@ namespace relevo::shader {
 using Macros = std::map<std::string, std::optional<std::string>, std::less<>>;
 
 struct Conditions {
-    std::vector<bool> active;     ///< per token: may be compiled
-    std::vector<bool> undecided;  ///< per token: an #if, #elif, #else or #endif that must stay
+    std::vector<bool> active;  ///< per token: may be compiled
+    /// The directives of each #if that must stay, tokens from the #if to the #endif.
+    std::vector<std::vector<std::size_t>> undecided;
 };
 
 /// Evaluates a file's directives in order.

@@ -11,32 +11,19 @@
 namespace relevo::shader {
 
 /// A GLSL file and the token at which parsing is, with what every kind of declaration needs.
-class SourceCursor {
+class SourceCursor : public Source {
   public:
     /// @throws Error (BadInput), as below
-    SourceCursor(SourceKind kind, std::string_view owner, std::string_view file,
-                 std::string_view text);
+    SourceCursor(SourceKind of, std::string_view by, std::string_view name, std::string_view raw);
 
-    Source source;
     std::size_t at = 0;  ///< the next token
 
-    bool is_snippet() const { return source.kind == SourceKind::Snippet; }
-    bool at_end() const { return at >= source.tokens.size(); }
-    const Token& token(std::size_t i) const { return source.tokens[i]; }
-    std::string_view str(std::size_t i) const { return source.str(token(i)); }
-    bool is(std::size_t i, std::string_view text) const {
-        return i < source.tokens.size() && str(i) == text;
-    }
-    bool is_word(std::size_t i) const {
-        return i < source.tokens.size() && token(i).kind == TokenKind::Word;
-    }
+    bool at_end() const { return at >= tokens.size(); }
     /// A token for messages.
     std::string written(std::size_t i) const;
     int end_line(std::size_t i) const;
     /// The text between two tokens, without them.
     std::string_view between(std::size_t begin, std::size_t end) const;
-    /// The token after the bracket that closes the one at `i`.
-    std::size_t after_brackets(std::size_t i) const;
 
     [[noreturn]] void fail(int line, std::string_view message) const;
     /// A global of a plugin begins with its id.
@@ -56,6 +43,9 @@ class SourceCursor {
     std::vector<int> conditional_lines;  ///< of the #ifs that are open
 
   private:
+    /// The text of a comment after `//@`; none of another comment.
+    std::optional<std::string_view> annotation(std::size_t comment) const;
+
     std::vector<Comment> comments_;
     std::vector<bool> used_;  // comments that are annotations
 };

@@ -357,29 +357,16 @@ void Stage::keep(const Place& place) {
 
 // Keeps the undecided directives around kept items: the driver evaluates them.
 void Stage::keep_conditionals(const Place& place) {
-    Unit& unit = units_[place.unit];
+    const Unit& unit = unit_of(place);
     const std::vector<Item>& items = unit.source->items;
-    std::vector<std::vector<std::size_t>> open;  // directives of the groups around items[i]
-    std::vector<std::vector<std::size_t>> around;
-    std::size_t still_open = 0;  // of the groups around the item
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i == place.item) still_open = open.size();
-        if (items[i].kind != Item::Kind::Conditional) continue;
-        const Token& token = unit.source->tokens[items[i].first];
-        const std::string_view name =
-            unit.source->str(directive_tokens(unit.source->text, token, unit.source->file)[0]);
-        if (name.substr(0, 2) == "if") open.emplace_back();
-        open.back().push_back(i);
-        if (name != "endif") continue;
-        if (i > place.item && open.size() == still_open) {
-            around.push_back(open.back());
-            --still_open;
+    const std::size_t at = items[place.item].first;
+    for (const std::vector<std::size_t>& group : unit.conditions.undecided) {
+        if (at < group.front() || at > group.back()) continue;
+        for (const std::size_t directive : group) {
+            const auto found = std::ranges::find(items, directive, &Item::first);
+            keep({place.unit, static_cast<std::size_t>(found - items.begin())});
         }
-        open.pop_back();
     }
-    for (const std::vector<std::size_t>& group : around)
-        for (const std::size_t directive : group)
-            if (unit.conditions.undecided[items[directive].first]) keep({place.unit, directive});
 }
 
 void Stage::read(const Place& place) {

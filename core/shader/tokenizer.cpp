@@ -13,10 +13,6 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-bool is_word(char c) {
-    return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
 // Longest first: GLSL reads the longest that matches.
 constexpr std::array<std::string_view, 21> kLongMarks = {
     "<<=", ">>=", "<<", ">>", "<=", ">=", "==", "!=", "&&", "||", "^^",
@@ -27,12 +23,11 @@ class Scanner {
   public:
     Scanner(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
-    /// Reads `text[offset_, end)`. Inside a directive a `#` is an operator, not a directive.
-    Tokens run(std::size_t begin, std::size_t end, int line, int column, bool in_directive) {
+    /// Reads `text[begin, end)`. Inside a directive a `#` is an operator, not a directive.
+    Tokens run(std::size_t begin, std::size_t end, int line, bool in_directive) {
         at_ = begin;
         end_ = end;
         line_ = line;
-        column_ = column;
         bool first_on_line = true;
         while (at_ < end_) {
             const char c = text_[at_];
@@ -76,19 +71,14 @@ class Scanner {
     }
 
     void advance(std::size_t count) {
-        for (; count > 0; --count, ++at_) {
-            ++column_;
-            if (text_[at_] == '\n') {
-                ++line_;
-                column_ = 1;
-            }
-        }
+        for (; count > 0; --count, ++at_)
+            line_ += text_[at_] == '\n';
     }
 
     [[noreturn]] void fail(std::string_view message) const { source_error(file_, line_, message); }
 
     void comment() {
-        Comment result{at_, 0, line_, line_, column_};
+        Comment result{at_, 0, line_, line_};
         if (starts("//")) {
             while (at_ < end_ && text_[at_] != '\n')
                 advance(continues() ? 2 : 1);
@@ -110,7 +100,7 @@ class Scanner {
     }
 
     void directive() {
-        Token token{TokenKind::Directive, at_, 0, line_, column_};
+        Token token{TokenKind::Directive, at_, 0, line_};
         while (at_ < end_ && text_[at_] != '\n') {
             if (continues()) {
                 check_continuation();
@@ -127,11 +117,14 @@ class Scanner {
                 if (!blank) token.length = at_ - token.offset;
             }
         }
-        tokens_.code.push_back(token);
+        const std::size_t end = token.offset + token.length;
+        token.words =
+            std::move(Scanner(text_, file_).run(token.offset + 1, end, token.line, true).code);
+        tokens_.code.push_back(std::move(token));
     }
 
     void code(char c, bool in_directive) {
-        Token token{TokenKind::Mark, at_, 0, line_, column_};
+        Token token{TokenKind::Mark, at_, 0, line_};
         std::size_t length = 0;
         const bool number = is_digit(c) || (c == '.' && at_ + 1 < end_ && is_digit(text_[at_ + 1]));
         if (number) {
@@ -142,12 +135,12 @@ class Scanner {
                 const char last = length > 0 ? text_[at_ + length - 1] : '\0';
                 const bool exponent_sign =
                     (next == '+' || next == '-') && !hexadecimal && (last == 'e' || last == 'E');
-                if (!is_word(next) && next != '.' && !exponent_sign) break;
+                if (!is_word_byte(next) && next != '.' && !exponent_sign) break;
                 ++length;
             }
-        } else if (is_word(c)) {
+        } else if (is_word_byte(c)) {
             token.kind = TokenKind::Word;
-            while (at_ + length < end_ && is_word(text_[at_ + length]))
+            while (at_ + length < end_ && is_word_byte(text_[at_ + length]))
                 ++length;
         } else {
             for (const std::string_view mark : kLongMarks) {
@@ -176,22 +169,13 @@ class Scanner {
     std::size_t at_ = 0;
     std::size_t end_ = 0;
     int line_ = 1;
-    int column_ = 1;
     Tokens tokens_;
 };
 
 }  // namespace
 
 Tokens tokenize(std::string_view text, std::string_view file) {
-    return Scanner(text, file).run(0, text.size(), 1, 1, false);
-}
-
-std::vector<Token> directive_tokens(std::string_view text, const Token& directive,
-                                    std::string_view file) {
-    return Scanner(text, file)
-        .run(directive.offset + 1, directive.offset + directive.length, directive.line,
-             directive.column + 1, true)
-        .code;
+    return Scanner(text, file).run(0, text.size(), 1, false);
 }
 
 std::string unix_lines(std::string_view text) {
