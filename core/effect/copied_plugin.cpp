@@ -93,12 +93,8 @@ class Renaming {
     void add_globals(const shader::Source& source) {
         for (const shader::Item& item : source.items)
             names_.insert(item.names.begin(), item.names.end());
-        for (const shader::Param& param : source.params)
-            names_.insert(param.name);
-        for (const shader::Sampler& sampler : source.samplers)
-            names_.insert(sampler.name);
-        for (const shader::Varying& varying : source.varyings)
-            names_.insert(varying.name);
+        for (const shader::Lifted& lifted : source.lifted())
+            names_.insert(lifted.name);
     }
 
     std::string from_, to_;

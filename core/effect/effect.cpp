@@ -8,7 +8,7 @@
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "shader/growth.h"
+#include "shader/limits.h"
 
 namespace relevo::effect {
 namespace {

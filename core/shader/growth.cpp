@@ -1,5 +1,3 @@
-#include "shader/growth.h"
-
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -11,7 +9,8 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "shader/constants.h"
+#include "shader/conditions.h"
+#include "shader/limits.h"
 
 namespace relevo::shader {
 namespace {

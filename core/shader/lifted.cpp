@@ -1,5 +1,4 @@
-#include "shader/lifted.h"
-
+// The declarations that are lifted out of a file.
 #include <array>
 #include <optional>
 
@@ -7,6 +6,7 @@
 
 #include "base/contains.h"
 #include "shader/annotation.h"
+#include "shader/source_cursor.h"
 
 namespace relevo::shader {
 namespace {

@@ -1,10 +1,9 @@
-#include "shader/loops.h"
-
 #include <algorithm>
 #include <optional>
 
 #include "base/contains.h"
 #include "base/text.h"
+#include "shader/limits.h"
 
 namespace relevo::shader {
 namespace {

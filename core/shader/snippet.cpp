@@ -1,6 +1,7 @@
 #include "shader/snippet.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -104,20 +105,14 @@ void read_wanted(Snippet& snippet, const Token& word) {
 }
 
 void check_unique(const Snippet& snippet) {
-    std::vector<std::pair<std::string, int>> seen;
-    const auto add = [&](const std::string& name, int line) {
-        for (const auto& [other, other_line] : seen)
-            if (other == name)
-                source_error(snippet.file, line,
-                             fmt::format("{}: declared already in line {}", name, other_line));
-        seen.emplace_back(name, line);
-    };
-    for (const Param& param : snippet.source.params)
-        add(param.name, param.line);
-    for (const Sampler& sampler : snippet.source.samplers)
-        add(sampler.name, sampler.line);
-    for (const Varying& varying : snippet.source.varyings)
-        add(varying.name, varying.line);
+    std::map<std::string, int> seen;
+    for (const Lifted& lifted : snippet.source.lifted()) {
+        const auto [first, is_new] = seen.try_emplace(lifted.name, lifted.line);
+        if (!is_new)
+            source_error(
+                snippet.file, lifted.line,
+                fmt::format("{}: declared already in line {}", lifted.name, first->second));
+    }
 }
 
 }  // namespace
@@ -136,7 +131,9 @@ bool changes_arguments(const Snippet& snippet, const HookFunction& function, std
     if (signature.type != "void") return true;
     Macros macros{{std::string(kHasPrefix).append(word), is_provided ? "1" : "0"}};
     // Other files may define the other words.
-    source.each([&](const Token& token) { macros.try_emplace(std::string(source.str(token))); });
+    for (const Token& token : source.tokens)
+        for (const Token& other : token.words)
+            macros.try_emplace(std::string(source.str(other)));
     const Conditions conditions = evaluate_conditions(source, macros);
     std::vector<std::string_view> words;
     for (std::size_t i = item.first; i < item.last; ++i)

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/contains.h"
-#include "shader/lifted.h"
-#include "shader/source_checks.h"
 #include "shader/source_cursor.h"
 
 namespace relevo::shader {
@@ -231,6 +229,17 @@ class Parser : SourceCursor {
 
 }  // namespace
 
+std::vector<Lifted> Source::lifted() const {
+    std::vector<Lifted> all;
+    for (const Param& param : params)
+        all.push_back({param.name, owner, param.file, param.line});
+    for (const Sampler& sampler : samplers)
+        all.push_back({sampler.name, owner, sampler.file, sampler.line, &sampler});
+    for (const Varying& varying : varyings)
+        all.push_back({varying.name, owner, varying.file, varying.line, nullptr, &varying});
+    return all;
+}
+
 Signature Source::signature(const Item& item) const {
     std::size_t open = item.first;
     while (!is(open, "("))
@@ -247,11 +256,14 @@ std::size_t Source::until(std::size_t i, std::string_view marks) const {
 }
 
 std::size_t Source::after_statement(std::size_t i) const {
-    constexpr std::array<std::string_view, 4> kWithHead = {"for", "if", "while", "switch"};
+    constexpr std::array<std::string_view, 6> kBefore = {"for",    "if",   "while",
+                                                         "switch", "else", "do"};
+    int left = 1000;  // Longer chains take too long to follow.
     do {
-        while (i < tokens.size() && (tokens[i].kind == TokenKind::Directive || is(i, "else") ||
-                                     is(i, "do") || contains(kWithHead, str(i))))
-            i = contains(kWithHead, str(i)) && is(i + 1, "(") ? next(i + 1) : i + 1;
+        for (; i < tokens.size() &&
+               (tokens[i].kind == TokenKind::Directive || contains(kBefore, str(i)));
+             i = is(i + 1, "(") ? next(i + 1) : i + 1)
+            if (--left == 0) return i;
         i = is(i, "{") ? next(i) : until(i, ";") + 1;
     } while (is(i, "else"));
     return i;

@@ -55,6 +55,14 @@ struct Varying {
     int line = 0;
 };
 
+/// A parameter, sampler or varying: the stitcher declares those of all files at once.
+struct Lifted {
+    std::string name, owner, file;
+    int line = 0;
+    const Sampler* sampler = nullptr;
+    const Varying* varying = nullptr;
+};
+
 struct Include {
     std::string name;  ///< "lib/noise.glsl"
     int line = 0;
@@ -109,6 +117,8 @@ struct Source {
             else
                 visit(token);
     }
+    /// The parameters, samplers and varyings.
+    std::vector<Lifted> lifted() const;
     /// The head of a function or prototype.
     Signature signature(const Item& item) const;
     /// The function of that name, not a prototype; null without one.

@@ -1,10 +1,10 @@
-#include "shader/source_checks.h"
-
+// The checks of SourceCursor's header.
 #include <array>
 
 #include <fmt/format.h>
 
 #include "base/contains.h"
+#include "shader/source_cursor.h"
 
 namespace relevo::shader {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,5 +50,29 @@ class SourceCursor : public Source {
     std::vector<Comment> comments_;
     std::vector<bool> used_;  // comments that are annotations
 };
+
+// ---- declarations that are lifted out of a file
+// The cursor is after the name, and then after the semicolon.
+
+using Qualifiers = std::set<std::string, std::less<>>;
+
+/// A parameter or a sampler.
+/// @param first  token of the declaration; its type and name are the tokens `type` and `name`
+void read_uniform(SourceCursor& cursor, std::size_t first, std::size_t type, std::size_t name);
+void read_varying(SourceCursor& cursor, std::size_t first, std::size_t type, std::size_t name,
+                  const Qualifiers& qualifiers);
+/// A ramp of colours, if the declaration of variables that ends before the cursor has an
+/// annotation. It stays in the file.
+/// @param names  that are declared
+void read_ramp(SourceCursor& cursor, std::size_t first, std::size_t name, std::size_t names);
+
+// ---- checks of a whole file before it is parsed
+
+/// A plugin's file has no words that are reserved for GLSL or core.
+void check_words(const Source& source);
+
+/// Every bracket is closed in its file and in its branch of a conditional. Otherwise an error would
+/// name the next plugin. Sets Token::partner.
+void pair_brackets(Source& source);
 
 }  // namespace relevo::shader

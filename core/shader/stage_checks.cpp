@@ -10,7 +10,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
-#include "shader/constants.h"
+#include "shader/conditions.h"
 #include "shader/stage.h"
 
 namespace relevo::shader {
@@ -94,14 +94,8 @@ double shared_bytes(const Source& source, const Item& item) {
 }  // namespace
 
 std::string_view word_of(StageKind kind) {
-    switch (kind) {
-        case StageKind::Vertex:
-            return "vertex";
-        case StageKind::Compute:
-            return "compute";
-        default:
-            return "fragment";
-    }
+    constexpr std::array<std::string_view, 3> kWords = {"vertex", "fragment", "compute"};
+    return kWords[static_cast<std::size_t>(kind)];
 }
 
 void Stage::check_default(const std::string& function, const Hook& hook) const {
@@ -121,49 +115,43 @@ void Stage::check_default(const std::string& function, const Hook& hook) const {
 // A plugin may use its own names, functions of core that it includes, and services.
 void Stage::check_name(const Place& place, const std::string& name, bool called) const {
     const Source& source = *unit_of(place).source;
-    if (source.kind != SourceKind::Snippet) return;
-    if (const auto lifted = lifted_.find(name); lifted != lifted_.end()) {
-        if (lifted->second.owner != "core" && lifted->second.owner != source.owner)
-            fail(place, fmt::format("{} uses {}, which is the plugin {}'s; a plugin uses only "
-                                    "itself, core and services",
-                                    item(place).names[0], name, lifted->second.owner));
-    }
+    if (!source.is_snippet()) return;
+    const auto refuse = [&](const std::string& what) {
+        fail(place, fmt::format("{} uses {}{}", item(place).names[0], name, what));
+    };
+    const auto refuse_plugins = [&](const std::string& owner) {
+        if (owner != source.owner)
+            refuse(
+                fmt::format(", which is the plugin {}'s; a plugin uses only itself, core and "
+                            "services",
+                            owner));
+    };
+    if (const auto lifted = lifted_.find(name); lifted != lifted_.end())
+        if (lifted->second.owner != "core") refuse_plugins(lifted->second.owner);
     const auto places = places_.find(name);
     if (places == places_.end()) {
         check_output(place, name);
-        if (called) check_library(place, name);
+        // GLSL's own functions have no underscore, those of lib/ that plugins call have one.
+        if (!called || name.find('_') == std::string::npos || find_hook(name)) return;
+        if (const std::string library = library_.library_of(name); !library.empty())
+            refuse(fmt::format(" of {}; add //@ include {}", library, library));
         return;
     }
     const Place& target = places->second[0];
     const Unit& owner = unit_of(target);
-    if (owner.role == UnitRole::Snippet) {
-        if (owner.source->owner != source.owner)
-            fail(place, fmt::format("{} uses {}, which is the plugin {}'s; a plugin uses only "
-                                    "itself, core and services",
-                                    item(place).names[0], name, owner.source->owner));
-        return;
-    }
+    if (owner.role == UnitRole::Snippet) return refuse_plugins(owner.source->owner);
     const Item::Kind kind = item(target).kind;
     const bool function = kind == Item::Kind::Function || kind == Item::Kind::Prototype;
     if (function && !called) return;  // a local variable of that name
     if (owner.role == UnitRole::Main)
-        fail(place, fmt::format("{} uses {}, which is {}'s own; a plugin uses only itself, "
-                                "shaders/lib and services",
-                                item(place).names[0], name, owner.title));
+        refuse(
+            fmt::format(", which is {}'s own; a plugin uses only itself, shaders/lib and "
+                        "services",
+                        owner.title));
     const auto asked = includes_.find(source.owner);
-    const bool included = asked != includes_.end() && asked->second.count(owner.title) > 0;
-    if (owner.role == UnitRole::Lib && !included)
-        fail(place, fmt::format("{} uses {} of {}; add //@ include {}", item(place).names[0], name,
-                                owner.title, owner.title));
-}
-
-// GLSL's own functions have no underscore, those of lib/ that plugins call have one.
-void Stage::check_library(const Place& place, const std::string& name) const {
-    if (name.find('_') == std::string::npos || find_hook(name)) return;
-    const std::string library = library_.library_of(name);
-    if (library.empty()) return;
-    fail(place, fmt::format("{} uses {} of {}; add //@ include {}", item(place).names[0], name,
-                            library, library));
+    if (owner.role == UnitRole::Lib &&
+        (asked == includes_.end() || !asked->second.contains(owner.title)))
+        refuse(fmt::format(" of {}; add //@ include {}", owner.title, owner.title));
 }
 
 void Stage::check_stage(const Place& place, const Uses& uses) const {
@@ -244,23 +232,16 @@ void Stage::check_recursion() const {
 void Stage::check_displace() const {
     const Hook& displace = *find_hook("displace");
     if (!calls(displace)) return;
-    for (const std::string& function : called_functions(displace)) {
-        std::vector<std::string> pending = {function};
-        std::set<std::string> seen;
-        while (!pending.empty()) {
-            const std::string name = pending.back();
-            pending.pop_back();
-            const auto found = functions_.find(name);
-            if (found == functions_.end() || !seen.insert(name).second) continue;
-            for (const std::string& used : found->second.names) {
-                const auto lifted = lifted_.find(used);
-                if (lifted != lifted_.end() && lifted->second.varying)
-                    fail(definition(name),
-                         fmt::format("{} uses the varying {}; varyings are filled in "
-                                     "{}_on_vertex, displace runs in depth passes too",
-                                     name, used, lifted->second.owner));
-            }
-            pending.insert(pending.end(), found->second.calls.begin(), found->second.calls.end());
+    for (const std::string& name : reachable(called_functions(displace), functions_)) {
+        const auto function = functions_.find(name);
+        if (function == functions_.end()) continue;
+        for (const std::string& used : function->second.names) {
+            const auto lifted = lifted_.find(used);
+            if (lifted != lifted_.end() && lifted->second.varying)
+                fail(definition(name),
+                     fmt::format("{} uses the varying {}; varyings are filled in "
+                                 "{}_on_vertex, displace runs in depth passes too",
+                                 name, used, lifted->second.owner));
         }
     }
 }

@@ -103,4 +103,17 @@ Uses uses_of(const Source& source, const Item& item, const std::vector<bool>& ac
     return UseReader(source, item).run(active);
 }
 
+std::set<std::string> reachable(std::vector<std::string> names, const UsesOf& uses) {
+    std::set<std::string> reached;
+    while (!names.empty()) {
+        const std::string name = names.back();
+        names.pop_back();
+        const auto found = uses.find(name);
+        if (!reached.insert(name).second || found == uses.end()) continue;
+        for (const auto* needed : {&found->second.names, &found->second.calls})
+            names.insert(names.end(), needed->begin(), needed->end());
+    }
+    return reached;
+}
+
 }  // namespace relevo::shader
