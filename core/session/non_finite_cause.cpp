@@ -59,22 +59,26 @@ std::vector<std::string> members_in(const shader::Source& source) {
     return members;
 }
 
+/// The file with another function in the place of one.
+/// @param inner  the new name of the old one
+Snippet replaced(const Snippet& snippet, const std::string& function, const std::string& inner,
+                 const std::string& by) {
+    const shader::Source& source = snippet.source;
+    std::string text = source.text;
+    for (std::size_t i = source.tokens.size(); i-- > 0;)
+        if (source.is(i, function))
+            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
+    return shader::parse_snippet(snippet.id, snippet.file, text + by);
+}
+
 /// The file with a hook that leaves one member of its Surface unchanged.
 Snippet keeping(const HookPlace& place, const std::string& surface, const std::string& member) {
-    const shader::Source& source = place.snippet->source;
-    const shader::Item& item = place.item();
-    std::string text = source.text;
-    const std::string inner = place.snippet->id + "_kept_" + std::string(place.hook->hook->name);
-    for (std::size_t i = item.first; i < item.last; ++i)
-        if (source.is(i, place.hook->name)) {
-            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
-            break;
-        }
-    text += fmt::format(
-        "\nvoid {}(inout Surface {}) {{\n    Surface before = {};\n    {}({});\n    {}.{} = "
-        "before.{};\n}}\n",
-        place.hook->name, surface, surface, inner, surface, surface, member, member);
-    return shader::parse_snippet(place.snippet->id, place.snippet->file, text);
+    const std::string inner = fmt::format("{}_kept_{}", place.snippet->id, place.hook->hook->name);
+    return replaced(
+        *place.snippet, place.hook->name, inner,
+        fmt::format("\nvoid {0}(inout Surface {1}) {{\n    Surface before = {1};\n    {2}({1});\n"
+                    "    {1}.{3} = before.{3};\n}}\n",
+                    place.hook->name, surface, inner, member));
 }
 
 /// The first line of a hook that writes a value, such as `s.diffuse`; 0: none.
@@ -91,19 +95,15 @@ int line_of_write(const HookPlace& place, const std::string& variable, const std
 
 /// The file with a pass whose texels are 0 where they would be NaN or infinite.
 Snippet cleaned(const Snippet& snippet, const shader::PassFunction& pass) {
-    const shader::Source& source = snippet.source;
     const std::string function = fmt::format("{}_pass_{}", snippet.id, pass.name);
     const std::string inner = fmt::format("{}_cleaned_{}", snippet.id, pass.name);
-    std::string text = source.text;
-    for (std::size_t i = source.tokens.size(); i-- > 0;)
-        if (source.is(i, function))
-            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
     // By bits: compilers may fold comparisons with NaN.
-    text += fmt::format(
-        "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
-        "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
-        function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner);
-    return shader::parse_snippet(snippet.id, snippet.file, text);
+    return replaced(
+        snippet, function, inner,
+        fmt::format(
+            "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
+            "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
+            function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner));
 }
 
 /// A pass of a plugin without whose NaN and infinite texels fewer pixels are so.
