@@ -29,6 +29,8 @@ constexpr std::tuple kLeast{Least<relevo_frame>{488}, Least<relevo_texture_info>
 template <typename Struct>
 constexpr std::uint32_t kLeastSize = std::get<Least<Struct>>(kLeast).size;
 
+using Services = ModuleServices;
+
 /// What a service needs.
 constexpr int kNothing = 0, kDevice = 1, kFrame = 2, kBoth = kDevice | kFrame;
 
@@ -266,17 +268,18 @@ relevo_status ModuleServices::serve(void* self, const char* function, const Body
 }
 
 void ModuleServices::fill_data_tables() {
-    using Host = ModuleServices;
     log_.write = served<kNothing, "relevo.log: write">(
-        [](Host& host, auto level, auto text) { host.log(level, not_null(text, "text")); });
-    params_.get = served<kNothing, "relevo.params: get">([](Host& host, auto address, auto value) {
-        values_out(host.parameter(not_null(address, "address")), value, "value");
-    });
-    params_.set = served<kNothing, "relevo.params: set">([](Host& host, auto address, auto value) {
-        host.set_parameter(not_null(address, "address"), values_in<4>(value, "value"));
-    });
+        [](Services& host, auto level, auto text) { host.log(level, not_null(text, "text")); });
+    params_.get =
+        served<kNothing, "relevo.params: get">([](Services& host, auto address, auto value) {
+            values_out(host.parameter(not_null(address, "address")), value, "value");
+        });
+    params_.set =
+        served<kNothing, "relevo.params: set">([](Services& host, auto address, auto value) {
+            host.set_parameter(not_null(address, "address"), values_in<4>(value, "value"));
+        });
     params_.get_text = served<kNothing, "relevo.params: get_text">(
-        [](Host& host, auto address, auto text, auto capacity, auto length) {
+        [](Services& host, auto address, auto text, auto capacity, auto length) {
             if (!text && !length) refuse("text and length are null");
             const std::string known = host.text(not_null(address, "address"));
             if (length) *length = known.size();
@@ -286,48 +289,49 @@ void ModuleServices::fill_data_tables() {
                 text[fits] = '\0';
             }
         });
-    geo_.to_local = served<kFrame, "relevo.geo: to_local">([](Host& host, auto from, auto to) {
+    geo_.to_local = served<kFrame, "relevo.geo: to_local">([](Services& host, auto from, auto to) {
         values_out(host.to_local(values_in<3>(from, "lat_lon_height")), to, "local_m");
     });
-    geo_.from_local = served<kFrame, "relevo.geo: from_local">([](Host& host, auto from, auto to) {
-        values_out(host.from_local(values_in<3>(from, "local_m")), to, "lat_lon_height");
-    });
-    geo_.to_post = served<kFrame, "relevo.geo: to_post">([](Host& host, auto from, auto to) {
+    geo_.from_local =
+        served<kFrame, "relevo.geo: from_local">([](Services& host, auto from, auto to) {
+            values_out(host.from_local(values_in<3>(from, "local_m")), to, "lat_lon_height");
+        });
+    geo_.to_post = served<kFrame, "relevo.geo: to_post">([](Services& host, auto from, auto to) {
         return post_out(host.to_post(values_in<2>(from, "lat_lon")), to, "column_row");
     });
-    geo_.from_post = served<kFrame, "relevo.geo: from_post">([](Host& host, auto from, auto to) {
-        return post_out(host.from_post(values_in<2>(from, "column_row")), to, "lat_lon");
-    });
-    marks_.set = served<kNothing, "relevo.marks: set">([](Host& host, auto list, auto marks,
+    geo_.from_post =
+        served<kFrame, "relevo.geo: from_post">([](Services& host, auto from, auto to) {
+            return post_out(host.from_post(values_in<2>(from, "column_row")), to, "lat_lon");
+        });
+    marks_.set = served<kNothing, "relevo.marks: set">([](Services& host, auto list, auto marks,
                                                           auto count) {
         host.set_marks(not_null(list, "list"), read_marks(marks, count, kLeastSize<relevo_mark>));
     });
 }
 
 void ModuleServices::fill_texture_table() {
-    using Host = ModuleServices;
     texture_.create =
-        served<kDevice, "relevo.texture: create">([](Host& host, auto info, auto texture) {
+        served<kDevice, "relevo.texture: create">([](Services& host, auto info, auto texture) {
             not_null(texture, "texture");
             *texture = host.add_texture(copy_in(info, "info"));
         });
-    texture_.destroy = served<kDevice, "relevo.texture: destroy">([](Host& host, auto texture) {
+    texture_.destroy = served<kDevice, "relevo.texture: destroy">([](Services& host, auto texture) {
         host.known(texture);
         host.textures_.erase(texture);
         host.destroy_texture(texture);
     });
-    texture_.write = served<kDevice, "relevo.texture: write">([](Host& host, auto given) {
+    texture_.write = served<kDevice, "relevo.texture: write">([](Services& host, auto given) {
         const relevo_texels texels = copy_in(given, "texels");
         host.check(texels);
         host.write_texture(texels);
     });
     texture_.make_mipmaps =
-        served<kDevice, "relevo.texture: make_mipmaps">([](Host& host, auto texture) {
+        served<kDevice, "relevo.texture: make_mipmaps">([](Services& host, auto texture) {
             host.known(texture);
             host.make_mipmaps(texture);
         });
     texture_.read = served<kDevice, "relevo.texture: read">(
-        [](Host& host, auto texture, auto layer, auto values, auto count) {
+        [](Services& host, auto texture, auto layer, auto values, auto count) {
             not_null(values, "values");
             const ModuleTexture& from = host.known(texture);
             const int floats = readable_floats(from.format), layers = std::max(from.layers, 1);
@@ -343,21 +347,20 @@ void ModuleServices::fill_texture_table() {
 }
 
 void ModuleServices::fill_draw_table() {
-    using Host = ModuleServices;
     draw_.program =
-        served<kDevice, "relevo.draw: program">([](Host& host, auto file, auto program) {
+        served<kDevice, "relevo.draw: program">([](Services& host, auto file, auto program) {
             not_null(program, "program");
             host.create_program(host.last_program_ + 1, not_null(file, "file"));
             host.programs_.insert(++host.last_program_);
             *program = host.last_program_;
         });
     draw_.destroy_program =
-        served<kDevice, "relevo.draw: destroy_program">([](Host& host, auto program) {
+        served<kDevice, "relevo.draw: destroy_program">([](Services& host, auto program) {
             host.check_program(program);
             host.programs_.erase(program);
             host.destroy_program(program);
         });
-    draw_.draw = served<kDevice, "relevo.draw: draw">([](Host& host, auto given) {
+    draw_.draw = served<kDevice, "relevo.draw: draw">([](Services& host, auto given) {
         const relevo_draw draw = copy_in(given, "draw");
         host.check(draw);
         host.draw(draw);
@@ -365,36 +368,36 @@ void ModuleServices::fill_draw_table() {
 }
 
 void ModuleServices::fill_ground_tables() {
-    using Host = ModuleServices;
-    frame_.get = served<kFrame, "relevo.frame: get">([](Host& host, auto frame) {
+    frame_.get = served<kFrame, "relevo.frame: get">([](Services& host, auto frame) {
         check_size(frame, "frame");
         copy_out(host.frame(), frame);
     });
-    terrain_.bounds = served<kBoth, "relevo.terrain: bounds">([](Host& host, auto box) {
+    terrain_.bounds = served<kBoth, "relevo.terrain: bounds">([](Services& host, auto box) {
         relevo_box full = copy_in(box, "box");
         host.fill_bounds(full);
         copy_out(full, box);
     });
     terrain_.visible_bounds = served<kBoth, "relevo.terrain: visible_bounds">(
-        [](Host& host, auto nearer_than_m, auto box) {
+        [](Services& host, auto nearer_than_m, auto box) {
             relevo_box full = copy_in(box, "box");
             if (!host.fill_visible_bounds(nearer_than_m, full)) return RELEVO_NOTHING;
             copy_out(full, box);
             return RELEVO_OK;
         });
     terrain_.draw_depth = served<kBoth, "relevo.terrain: draw_depth">(
-        [](Host& host, auto given, auto tolerance_m, auto target, auto level) {
+        [](Services& host, auto given, auto tolerance_m, auto target, auto level) {
             const relevo_box box = copy_in(given, "box");
             host.check_depth(box, tolerance_m, target);
             const int drawn = host.draw_depth(box, tolerance_m, target);
             if (level) *level = drawn;
         });
-    heights_.describe = served<kFrame, "relevo.heights: describe">([](Host& host, auto heights) {
-        check_size(heights, "heights");
-        copy_out(host.heights(), heights);
-    });
+    heights_.describe =
+        served<kFrame, "relevo.heights: describe">([](Services& host, auto heights) {
+            check_size(heights, "heights");
+            copy_out(host.heights(), heights);
+        });
     heights_.read = served<kBoth, "relevo.heights: read">(
-        [](Host& host, auto given, auto heights_m, auto count) {
+        [](Services& host, auto given, auto heights_m, auto count) {
             const relevo_nodes nodes = copy_in(given, "nodes");
             not_null(heights_m, "heights_m");
             const std::int64_t wanted = std::int64_t{nodes.columns} * nodes.rows;
