@@ -10,6 +10,7 @@
 
 #include "base/contains.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "shader/conditions.h"
 #include "shader/stage.h"
 
@@ -85,7 +86,7 @@ double shared_bytes(const Source& source, const Item& item) {
         const std::optional<double> value = constants.value(source, length);
         if (!value || *value < 1)
             refuse(fmt::format("expected a length of numbers and constants of this file but got {}",
-                               joined(source, length)));
+                               trimmed(joined(source, length))));
         total *= *value;
     }
     return total;
