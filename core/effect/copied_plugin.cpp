@@ -31,16 +31,13 @@ class Renaming {
 
     std::string glsl(const shader::Source& source) const {
         std::vector<Edit> edits;
-        for (std::size_t i = 0; i < source.tokens.size(); ++i) {
-            const shader::Token& token = source.tokens[i];
-            if (token.kind == shader::TokenKind::Directive) {
-                for (const shader::Token& word :
-                     shader::directive_tokens(source.text, token, source.file))
-                    add_edit(source, word, edits);
-            } else if (i == 0 || source.str(source.tokens[i - 1]) != ".") {
-                add_edit(source, token, edits);
-            }
-        }
+        std::string_view before;
+        source.each([&](const shader::Token& token) {
+            const std::string_view word = source.str(token);
+            if (before != "." && names_.contains(word))
+                edits.push_back({token.offset, from_.size(), to_});
+            before = word;
+        });
         for (const shader::Comment& comment : shader::tokenize(source.text, source.file).comments)
             edits.push_back({comment.offset, comment.length,
                              prose(std::string(shader::text_of(source.text, comment)))});
@@ -96,18 +93,8 @@ class Renaming {
     void add_globals(const shader::Source& source) {
         for (const shader::Item& item : source.items)
             names_.insert(item.names.begin(), item.names.end());
-        for (const shader::Param& param : source.params)
-            names_.insert(param.name);
-        for (const shader::Sampler& sampler : source.samplers)
-            names_.insert(sampler.name);
-        for (const shader::Varying& varying : source.varyings)
-            names_.insert(varying.name);
-    }
-
-    void add_edit(const shader::Source& source, const shader::Token& token,
-                  std::vector<Edit>& edits) const {
-        if (token.kind == shader::TokenKind::Word && names_.contains(source.str(token)))
-            edits.push_back({token.offset, from_.size(), to_});
+        for (const shader::Lifted& lifted : source.lifted())
+            names_.insert(lifted.name);
     }
 
     std::string from_, to_;

@@ -65,7 +65,6 @@ shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::str
         const double most_px = set.levels.size() > 1 ? set.levels.back().below_px : kMax_px;
         set.levels.push_back(level_of(object.inner("levels", item), set, most_px, file_of));
     }
-    object.finish();
     return set;
 }
 

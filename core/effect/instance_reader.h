@@ -16,7 +16,7 @@ using FileOfKey = std::function<std::filesystem::path(
     const json::ObjectReader& object, const std::string& key, const std::string& name)>;
 
 /// Reads an entry of "instances" in plugin.json.
-/// @param object  the entry, which is finished
+/// @param object  the entry
 /// @param id      of the plugin
 /// @throws Error (BadInput) `plugin: folder/plugin.json:line: ...`
 shader::InstanceSet read_instance_set(json::ObjectReader& object, const std::string& id,

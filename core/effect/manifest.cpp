@@ -136,7 +136,7 @@ class ManifestReader {
         invents(object);
         manifest_.rising = read_rising(object, manifest_.id);
         if (const json::Value* const value = object.take("weather"))
-            manifest_.weather = read_weather_spec(manifest_.file.string(), manifest_.id, *value);
+            manifest_.weather = read_weather_spec(object.inner("weather", *value), manifest_.id);
         object.string("$schema", "");  // which editors look for
         object.finish();
         return std::move(manifest_);
@@ -183,7 +183,7 @@ class ManifestReader {
 
     /// Reads an object whose members have one kind.
     /// @param what  the kind, for messages
-    /// @param read  is called with name and value
+    /// @param read  is called with the name and a reader of the value
     template <typename Read>
     void named(json::ObjectReader& object, const std::string& key, std::string_view what,
                const Read& read) {
@@ -197,58 +197,56 @@ class ManifestReader {
             if (!is_word(name))
                 object.fail(value.line, key,
                             fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", name));
-            read(name, value);
+            json::ObjectReader entry = object.inner(key + "." + name, value);
+            read(name, entry);
+            entry.finish();
         }
     }
 
     void textures(json::ObjectReader& object) {
         named(object, "textures", "texture",
-              [&](const std::string& name, const json::Value& value) { texture(name, value); });
+              [&](const std::string& name, json::ObjectReader& entry) { texture(name, entry); });
     }
 
-    void texture(const std::string& name, const json::Value& value) {
-        json::ObjectReader object(kPluginWho, manifest_.file.string(), "textures." + name, value);
+    void texture(const std::string& name, json::ObjectReader& object) {
+        const std::string& id = manifest_.id;
+        const int line = object.line();
         const std::size_t kind = object.choice(
             "kind", {"2d", "2d-array", "3d", "table", "cube", "raster", "lines", "field"});
         if (kind == 7)
-            manifest_.fields.push_back(read_field_spec(object, manifest_.id, name, value.line));
+            manifest_.fields.push_back(read_field_spec(object, id, name, line));
         else if (kind == 6)
-            manifest_.lines.push_back(read_lines_spec(object, manifest_.id, name, value.line));
+            manifest_.lines.push_back(read_lines_spec(object, id, name, line));
         else if (kind == 5)
-            manifest_.rasters.push_back(read_raster_spec(object, manifest_.id, name, value.line));
-        else if (kind >= 3)
-            manifest_.textures.push_back(
-                table_texture(object, static_cast<TextureSpec::Kind>(kind), name, value.line));
+            manifest_.rasters.push_back(read_raster_spec(object, id, name, line));
         else
-            manifest_.textures.push_back(
-                file_texture(object, static_cast<TextureSpec::Kind>(kind), name, value.line));
-        object.finish();
+            own_texture(object, manifest_.textures.emplace_back(
+                                    TextureSpec{.name = name,
+                                                .resource = id + '.' + name,
+                                                .kind = static_cast<TextureSpec::Kind>(kind),
+                                                .line = line}));
+    }
+
+    void own_texture(json::ObjectReader& object, TextureSpec& spec) const {
+        const bool is_table =
+            spec.kind == TextureSpec::Kind::Table || spec.kind == TextureSpec::Kind::Cube;
+        is_table ? table_texture(object, spec) : file_texture(object, spec);
     }
 
     /// A table in a file of the plugin, or in one that the user chooses.
-    TextureSpec table_texture(json::ObjectReader& object, TextureSpec::Kind kind,
-                              const std::string& name, int line) {
-        TextureSpec spec{.name = name, .resource = manifest_.id + '.' + name, .kind = kind};
-        spec.line = line;
+    void table_texture(json::ObjectReader& object, TextureSpec& spec) const {
         spec.wrap = TextureSpec::Wrap::Clamp;
         spec.mipmaps = false;
         const std::string file = object.string("file", ""), from = object.string("from", "");
         if (file.empty() == from.empty())
-            object.fail(line, "", "expected a \"file\" of the plugin, or a text \"from\"");
+            object.fail(spec.line, "", "expected a \"file\" of the plugin, or a text \"from\"");
         if (from.empty())
             spec.files.push_back(data_file(object, "file", file));
         else
             spec.from = manifest_.id + '.' + from;
-        return spec;
     }
 
-    TextureSpec file_texture(json::ObjectReader& object, TextureSpec::Kind kind,
-                             const std::string& name, int line) {
-        TextureSpec spec;
-        spec.name = name;
-        spec.resource = manifest_.id + '.' + name;
-        spec.line = line;
-        spec.kind = kind;
+    void file_texture(json::ObjectReader& object, TextureSpec& spec) const {
         if (spec.kind == TextureSpec::Kind::D2Array) {
             for (const std::string& file : object.strings("files"))
                 spec.files.push_back(data_file(object, "files", file));
@@ -263,12 +261,10 @@ class ManifestReader {
         spec.srgb = object.choice("encoding", {"linear", "srgb"}) == 1;
         spec.wrap = static_cast<TextureSpec::Wrap>(object.choice("wrap", {"repeat", "clamp"}, 0));
         spec.mipmaps = object.boolean("mipmaps", true);
-        return spec;
     }
 
     void passes(json::ObjectReader& object) {
-        named(object, "passes", "pass", [&](const std::string& name, const json::Value& value) {
-            json::ObjectReader entry(kPluginWho, manifest_.file.string(), "passes." + name, value);
+        named(object, "passes", "pass", [&](const std::string& name, json::ObjectReader& entry) {
             manifest_.passes.push_back(read_pass(entry, manifest_.id, name));
         });
         complete_passes(object, manifest_.passes);
@@ -276,9 +272,7 @@ class ManifestReader {
 
     void instances(json::ObjectReader& object) {
         named(object, "instances", "meshes",
-              [&](const std::string& name, const json::Value& value) {
-                  json::ObjectReader entry(kPluginWho, manifest_.file.string(), "instances." + name,
-                                           value);
+              [&](const std::string& name, json::ObjectReader& entry) {
                   manifest_.instances.push_back(read_instance_set(
                       entry, manifest_.id, name,
                       [&](const json::ObjectReader& level, const std::string& key,
@@ -299,32 +293,31 @@ class ManifestReader {
     }
 
     void marks(json::ObjectReader& object) {
-        named(object, "marks", "marks", [&](const std::string& name, const json::Value& value) {
-            json::ObjectReader entry(kPluginWho, manifest_.file.string(), "marks." + name, value);
+        named(object, "marks", "marks", [&](const std::string& name, json::ObjectReader& entry) {
             manifest_.marks.push_back(read_marks(entry, manifest_.id, name));
         });
     }
 
     void texts(json::ObjectReader& object) {
-        named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
-            manifest_.texts.push_back(text(name, value));
+        named(object, "texts", "text", [&](const std::string& name, json::ObjectReader& entry) {
+            manifest_.texts.push_back(text(name, entry));
         });
-        bool reads_texts = !manifest_.module.empty() || !manifest_.rasters.empty() ||
-                           !manifest_.fields.empty() || !manifest_.lines.empty() ||
-                           !manifest_.marks.empty();
+        bool reads_texts = !manifest_.module.empty() || !manifest_.marks.empty();
+        // Data names a text of the plugin.
+        const auto check = [&](const auto& data, const std::string& address, bool is_file) {
+            if (address.empty()) return;
+            check_text(object, "textures." + data.name, data.line, address, is_file);
+            reads_texts = true;
+        };
         for (const LinesSpec& lines : manifest_.lines)
-            check_text(object, "textures." + lines.name, lines.line, lines.file, true);
+            check(lines, lines.file, true);
         for (const FieldSpec& field : manifest_.fields)
-            check_text(object, "textures." + field.name, field.line, field.file, true);
+            check(field, field.file, true);
         for (const TextureSpec& texture : manifest_.textures)
-            if (!texture.from.empty()) {
-                check_text(object, "textures." + texture.name, texture.line, texture.from, true);
-                reads_texts = true;
-            }
+            check(texture, texture.from, true);
         for (const RasterSpec& raster : manifest_.rasters) {
-            check_text(object, "textures." + raster.name, raster.line, raster.file, true);
-            if (!raster.colours.empty())
-                check_text(object, "textures." + raster.name, raster.line, raster.colours, false);
+            check(raster, raster.file, true);
+            check(raster, raster.colours, false);
         }
         if (!reads_texts && !manifest_.texts.empty())
             object.fail(
@@ -332,7 +325,6 @@ class ManifestReader {
                 "expected a \"module\", \"marks\", or data of \"textures\", that reads them");
     }
 
-    /// Data names a text of the plugin.
     void check_text(const json::ObjectReader& object, const std::string& key, int line,
                     const std::string& address, bool is_file) const {
         const auto text = std::ranges::find(manifest_.texts, address, &shader::TextParam::address);
@@ -344,8 +336,7 @@ class ManifestReader {
                                     is_file ? "\"kind\": \"file\"" : ""));
     }
 
-    shader::TextParam text(const std::string& name, const json::Value& value) {
-        json::ObjectReader object(kPluginWho, manifest_.file.string(), "texts." + name, value);
+    shader::TextParam text(const std::string& name, json::ObjectReader& object) const {
         shader::TextParam text;
         text.address = manifest_.id + '.' + name;
         text.is_file = object.choice("kind", {"text", "file"}, 0) == 1;
@@ -354,14 +345,13 @@ class ManifestReader {
         text.initial = object.string("default", "");
         if (text.is_file && !text.initial.empty())
             text.initial = data_file(object, "default", text.initial).string();
-        object.finish();
         return text;
     }
 
     void displaces(json::ObjectReader& object) {
         const json::Value* const value = object.take("displaces");
         if (!value) return;
-        json::ObjectReader bound(kPluginWho, manifest_.file.string(), "displaces", *value);
+        json::ObjectReader bound = object.inner("displaces", *value);
         DisplaceSpec& spec = manifest_.displaces.emplace();
         spec.line = value->line;
         spec.down = length(bound, "down_m", 0);
@@ -374,7 +364,7 @@ class ManifestReader {
     void invents(json::ObjectReader& object) {
         const json::Value* const value = object.take("invents");
         if (!value) return;
-        json::ObjectReader said(kPluginWho, manifest_.file.string(), "invents", *value);
+        json::ObjectReader said = object.inner("invents", *value);
         Invention& invention = manifest_.invents.emplace();
         invention.line = value->line;
         invention.what = said.string("what");

@@ -1,25 +1,12 @@
 #include "effect/marks_spec.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace relevo::effect {
 namespace {
-
-/// "#rrggbb" as sRGB, 0 to 1.
-std::optional<shader::ParamValue> parse_colour(std::string_view text) {
-    if (text.size() != 7 || text[0] != '#' ||
-        !std::ranges::all_of(text.substr(1), [](unsigned char c) { return std::isxdigit(c); }))
-        return std::nullopt;
-    const unsigned long rgb = std::strtoul(std::string(text.substr(1)).c_str(), nullptr, 16);
-    return shader::ParamValue{static_cast<double>(rgb >> 16) / 255,
-                              static_cast<double>(rgb >> 8 & 255) / 255,
-                              static_cast<double>(rgb & 255) / 255};
-}
 
 std::string describe(const MarkKey& key) {
     switch (key.kind) {
@@ -33,7 +20,7 @@ std::string describe(const MarkKey& key) {
 }
 
 shader::ParamValue initial(const MarkKey& key) {
-    if (key.kind == MarkKey::Kind::Colour) return *parse_colour(key.colour);
+    if (key.kind == MarkKey::Kind::Colour) return *shader::parse_hex_colour(key.colour, 3);
     return {key.initial};
 }
 
@@ -48,7 +35,7 @@ MarkValue read_value(json::ObjectReader& object, const MarkKey& key, const std::
         const auto word = std::ranges::find(key.words, value->text);
         if (word != key.words.end()) return {{static_cast<double>(word - key.words.begin())}, {}};
         if (key.kind == MarkKey::Kind::Colour)
-            if (const auto colour = parse_colour(value->text)) return {*colour, {}};
+            if (const auto colour = shader::parse_hex_colour(value->text, 3)) return {*colour, {}};
         if (value->text.starts_with(id + '.')) return {{}, value->text};
     }
     object.fail(value->line, name,
@@ -105,7 +92,6 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
         marks.from = id + '.' + from;
     for (const MarkKey& key : mark_keys())
         marks.*key.member = read_value(object, key, id);
-    object.finish();
     return marks;
 }
 

@@ -7,8 +7,7 @@
 #include <exception>
 #include <new>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -17,35 +16,23 @@
 namespace relevo::effect {
 namespace {
 
-/// Size of each struct in version 2.0 of the interface [bytes]. Frozen: modules are built with it.
 template <typename Struct>
-constexpr std::uint32_t kLeastSize = 0;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_frame> = 488;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_texture_info> = 40;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_texels> = 48;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_draw> = 48;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_box> = 128;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_heights> = 16;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_nodes> = 24;
-template <>
-constexpr std::uint32_t kLeastSize<relevo_mark> = 64;  // in version 2.1, which brought it
+struct Least {
+    std::uint32_t size;
+};
+/// Size of each struct in version 2.0 of the interface [bytes]; of relevo_mark in 2.1, which
+/// brought it. Frozen: modules are built with it.
+constexpr std::tuple kLeast{Least<relevo_frame>{488}, Least<relevo_texture_info>{40},
+                            Least<relevo_texels>{48}, Least<relevo_draw>{48},
+                            Least<relevo_box>{128},   Least<relevo_heights>{16},
+                            Least<relevo_nodes>{24},  Least<relevo_mark>{64}};
+template <typename Struct>
+constexpr std::uint32_t kLeastSize = std::get<Least<Struct>>(kLeast).size;
+
+using Services = ModuleServices;
 
 /// What a service needs.
 constexpr int kNothing = 0, kDevice = 1, kFrame = 2, kBoth = kDevice | kFrame;
-
-template <typename... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-    std::ostringstream text;
-    (text << ... << parts);
-    throw std::invalid_argument(text.str());
-}
 
 template <typename T>
 T* not_null(T* argument, const char* name) {
@@ -107,10 +94,14 @@ ModuleServices::ModuleServices() {
     host_.fail = [](const relevo_host* host, const char* text) {
         if (host) static_cast<const Host*>(host)->owner->reason_ = text ? text : "no reason given";
     };
+    const auto begin = [this](auto&... tables) {
+        ((tables.size = sizeof tables, tables.self = this), ...);
+    };
+    begin(log_, params_, frame_, texture_, draw_, terrain_, heights_, geo_, marks_);
     fill_data_tables();
-    fill_device_tables();
+    fill_texture_table();
+    fill_draw_table();
     fill_ground_tables();
-    fill_mark_table();
 }
 
 const void* ModuleServices::service(const relevo_host* host, const char* name,
@@ -221,8 +212,35 @@ void ModuleServices::check_depth(const relevo_box& box, double tolerance_m,
 
 // ---- the tables
 
-/// Runs a service's body, which may return a status.
-/// @param function  "relevo.texture: create"; begins the message of a failure
+/// The name of a function as a template argument.
+template <std::size_t N>
+struct FunctionName {
+    char text[N];
+    constexpr FunctionName(const char (&from)[N]) { std::copy_n(from, N, text); }
+};
+
+/// The C function of a service, from its body: a function of the services and the same arguments,
+/// which may return a status.
+/// @param name  "relevo.texture: create"; begins the message of a failure
+template <int needs, FunctionName name, typename Body>
+struct Served {
+    template <typename Result, typename... Args>
+    using Function = Result (*)(void*, Args...);
+
+    template <typename Result, typename... Args>
+    operator Function<Result, Args...>() const {
+        return [](void* self, Args... args) -> Result {
+            const auto call = [&](ModuleServices& host) { return Body{}(host, args...); };
+            return static_cast<Result>(ModuleServices::serve<needs>(self, name.text, call));
+        };
+    }
+};
+template <int needs, FunctionName name, typename Body>
+Served<needs, name, Body> served(Body) {
+    return {};
+}
+
+/// Runs the body of a service.
 template <int needs, typename Body>
 relevo_status ModuleServices::serve(void* self, const char* function, const Body& body) noexcept {
     if (!self) return RELEVO_FAILED;
@@ -250,205 +268,147 @@ relevo_status ModuleServices::serve(void* self, const char* function, const Body
 }
 
 void ModuleServices::fill_data_tables() {
-    log_ = {sizeof log_, 0, this, [](void* self, std::int32_t level, const char* text) {
-                serve<kNothing>(self, "relevo.log: write",
-                                [&](auto& host) { host.log(level, not_null(text, "text")); });
-            }};
-    params_ = {
-        sizeof params_,
-        0,
-        this,
-        [](void* self, const char* address, double value[4]) {
-            return serve<kNothing>(self, "relevo.params: get", [&](auto& host) {
-                values_out(host.parameter(not_null(address, "address")), value, "value");
-            });
-        },
-        [](void* self, const char* address, const double value[4]) {
-            return serve<kNothing>(self, "relevo.params: set", [&](auto& host) {
-                host.set_parameter(not_null(address, "address"), values_in<4>(value, "value"));
-            });
-        },
-        [](void* self, const char* address, char* text, std::uint64_t capacity,
-           std::uint64_t* length) {
-            return serve<kNothing>(self, "relevo.params: get_text", [&](auto& host) {
-                if (!text && !length) refuse("text and length are null");
-                const std::string known = host.text(not_null(address, "address"));
-                if (length) *length = known.size();
-                if (text && capacity > 0) {
-                    const std::size_t fits = std::min<std::size_t>(known.size(), capacity - 1);
-                    std::memcpy(text, known.data(), fits);
-                    text[fits] = '\0';
-                }
-            });
-        }};
-    geo_ = {
-        sizeof geo_,
-        0,
-        this,
-        [](void* self, const double from[3], double to[3]) {
-            return serve<kFrame>(self, "relevo.geo: to_local", [&](auto& host) {
-                values_out(host.to_local(values_in<3>(from, "lat_lon_height")), to, "local_m");
-            });
-        },
-        [](void* self, const double from[3], double to[3]) {
-            return serve<kFrame>(self, "relevo.geo: from_local", [&](auto& host) {
-                values_out(host.from_local(values_in<3>(from, "local_m")), to, "lat_lon_height");
-            });
-        },
-        [](void* self, const double from[2], double to[2]) {
-            return serve<kFrame>(self, "relevo.geo: to_post", [&](auto& host) {
-                return post_out(host.to_post(values_in<2>(from, "lat_lon")), to, "column_row");
-            });
-        },
-        [](void* self, const double from[2], double to[2]) {
-            return serve<kFrame>(self, "relevo.geo: from_post", [&](auto& host) {
-                return post_out(host.from_post(values_in<2>(from, "column_row")), to, "lat_lon");
-            });
-        }};
+    log_.write = served<kNothing, "relevo.log: write">(
+        [](Services& host, auto level, auto text) { host.log(level, not_null(text, "text")); });
+    params_.get =
+        served<kNothing, "relevo.params: get">([](Services& host, auto address, auto value) {
+            values_out(host.parameter(not_null(address, "address")), value, "value");
+        });
+    params_.set =
+        served<kNothing, "relevo.params: set">([](Services& host, auto address, auto value) {
+            host.set_parameter(not_null(address, "address"), values_in<4>(value, "value"));
+        });
+    params_.get_text = served<kNothing, "relevo.params: get_text">(
+        [](Services& host, auto address, auto text, auto capacity, auto length) {
+            if (!text && !length) refuse("text and length are null");
+            const std::string known = host.text(not_null(address, "address"));
+            if (length) *length = known.size();
+            if (text && capacity > 0) {
+                const std::size_t fits = std::min<std::size_t>(known.size(), capacity - 1);
+                std::memcpy(text, known.data(), fits);
+                text[fits] = '\0';
+            }
+        });
+    geo_.to_local = served<kFrame, "relevo.geo: to_local">([](Services& host, auto from, auto to) {
+        values_out(host.to_local(values_in<3>(from, "lat_lon_height")), to, "local_m");
+    });
+    geo_.from_local =
+        served<kFrame, "relevo.geo: from_local">([](Services& host, auto from, auto to) {
+            values_out(host.from_local(values_in<3>(from, "local_m")), to, "lat_lon_height");
+        });
+    geo_.to_post = served<kFrame, "relevo.geo: to_post">([](Services& host, auto from, auto to) {
+        return post_out(host.to_post(values_in<2>(from, "lat_lon")), to, "column_row");
+    });
+    geo_.from_post =
+        served<kFrame, "relevo.geo: from_post">([](Services& host, auto from, auto to) {
+            return post_out(host.from_post(values_in<2>(from, "column_row")), to, "lat_lon");
+        });
+    marks_.set = served<kNothing, "relevo.marks: set">([](Services& host, auto list, auto marks,
+                                                          auto count) {
+        host.set_marks(not_null(list, "list"), read_marks(marks, count, kLeastSize<relevo_mark>));
+    });
 }
 
-// In one piece: a table of short functions, one for each of the interface.
-void ModuleServices::fill_device_tables() {
-    texture_ = {
-        sizeof texture_,
-        0,
-        this,
-        [](void* self, const relevo_texture_info* info, relevo_texture* texture) {
-            return serve<kDevice>(self, "relevo.texture: create", [&](auto& host) {
-                not_null(texture, "texture");
-                *texture = host.add_texture(copy_in(info, "info"));
-            });
-        },
-        [](void* self, relevo_texture texture) {
-            return serve<kDevice>(self, "relevo.texture: destroy", [&](auto& host) {
-                host.known(texture);
-                host.textures_.erase(texture);
-                host.destroy_texture(texture);
-            });
-        },
-        [](void* self, const relevo_texels* given) {
-            return serve<kDevice>(self, "relevo.texture: write", [&](auto& host) {
-                const relevo_texels texels = copy_in(given, "texels");
-                host.check(texels);
-                host.write_texture(texels);
-            });
-        },
-        [](void* self, relevo_texture texture) {
-            return serve<kDevice>(self, "relevo.texture: make_mipmaps", [&](auto& host) {
-                host.known(texture);
-                host.make_mipmaps(texture);
-            });
-        },
-        [](void* self, relevo_texture texture, std::int32_t layer, float* values,
-           std::uint64_t count) {
-            return serve<kDevice>(self, "relevo.texture: read", [&](auto& host) {
-                not_null(values, "values");
-                const ModuleTexture& from = host.known(texture);
-                const int floats = readable_floats(from.format), layers = std::max(from.layers, 1);
-                if (floats == 0) refuse("only textures of 32-bit floats can be read");
-                const std::uint64_t wanted = std::uint64_t{1} * static_cast<unsigned>(floats) *
-                                             static_cast<unsigned>(from.width) *
-                                             static_cast<unsigned>(from.height);
-                if (layer < 0 || layer >= layers || count < wanted)
-                    refuse("expected room for ", wanted, " floats and a layer below ", layers,
-                           " but got ", count, " and ", layer);
-                host.read_texture(texture, layer, {values, static_cast<std::size_t>(wanted)});
-            });
-        }};
-    draw_ = {sizeof draw_,
-             0,
-             this,
-             [](void* self, const char* file, relevo_program* program) {
-                 return serve<kDevice>(self, "relevo.draw: program", [&](auto& host) {
-                     not_null(program, "program");
-                     host.create_program(host.last_program_ + 1, not_null(file, "file"));
-                     host.programs_.insert(++host.last_program_);
-                     *program = host.last_program_;
-                 });
-             },
-             [](void* self, relevo_program program) {
-                 return serve<kDevice>(self, "relevo.draw: destroy_program", [&](auto& host) {
-                     host.check_program(program);
-                     host.programs_.erase(program);
-                     host.destroy_program(program);
-                 });
-             },
-             [](void* self, const relevo_draw* given) {
-                 return serve<kDevice>(self, "relevo.draw: draw", [&](auto& host) {
-                     const relevo_draw draw = copy_in(given, "draw");
-                     host.check(draw);
-                     host.draw(draw);
-                 });
-             }};
+void ModuleServices::fill_texture_table() {
+    texture_.create =
+        served<kDevice, "relevo.texture: create">([](Services& host, auto info, auto texture) {
+            not_null(texture, "texture");
+            *texture = host.add_texture(copy_in(info, "info"));
+        });
+    texture_.destroy = served<kDevice, "relevo.texture: destroy">([](Services& host, auto texture) {
+        host.known(texture);
+        host.textures_.erase(texture);
+        host.destroy_texture(texture);
+    });
+    texture_.write = served<kDevice, "relevo.texture: write">([](Services& host, auto given) {
+        const relevo_texels texels = copy_in(given, "texels");
+        host.check(texels);
+        host.write_texture(texels);
+    });
+    texture_.make_mipmaps =
+        served<kDevice, "relevo.texture: make_mipmaps">([](Services& host, auto texture) {
+            host.known(texture);
+            host.make_mipmaps(texture);
+        });
+    texture_.read = served<kDevice, "relevo.texture: read">(
+        [](Services& host, auto texture, auto layer, auto values, auto count) {
+            not_null(values, "values");
+            const ModuleTexture& from = host.known(texture);
+            const int floats = readable_floats(from.format), layers = std::max(from.layers, 1);
+            if (floats == 0) refuse("only textures of 32-bit floats can be read");
+            const std::uint64_t wanted = std::uint64_t{1} * static_cast<unsigned>(floats) *
+                                         static_cast<unsigned>(from.width) *
+                                         static_cast<unsigned>(from.height);
+            if (layer < 0 || layer >= layers || count < wanted)
+                refuse("expected room for ", wanted, " floats and a layer below ", layers,
+                       " but got ", count, " and ", layer);
+            host.read_texture(texture, layer, {values, static_cast<std::size_t>(wanted)});
+        });
 }
 
-void ModuleServices::fill_mark_table() {
-    marks_ = {sizeof marks_, 0, this,
-              [](void* self, const char* list, const relevo_mark* marks, std::uint64_t count) {
-                  return serve<kNothing>(self, "relevo.marks: set", [&](auto& host) {
-                      host.set_marks(not_null(list, "list"),
-                                     read_marks(marks, count, kLeastSize<relevo_mark>));
-                  });
-              }};
+void ModuleServices::fill_draw_table() {
+    draw_.program =
+        served<kDevice, "relevo.draw: program">([](Services& host, auto file, auto program) {
+            not_null(program, "program");
+            host.create_program(host.last_program_ + 1, not_null(file, "file"));
+            host.programs_.insert(++host.last_program_);
+            *program = host.last_program_;
+        });
+    draw_.destroy_program =
+        served<kDevice, "relevo.draw: destroy_program">([](Services& host, auto program) {
+            host.check_program(program);
+            host.programs_.erase(program);
+            host.destroy_program(program);
+        });
+    draw_.draw = served<kDevice, "relevo.draw: draw">([](Services& host, auto given) {
+        const relevo_draw draw = copy_in(given, "draw");
+        host.check(draw);
+        host.draw(draw);
+    });
 }
 
 void ModuleServices::fill_ground_tables() {
-    frame_ = {sizeof frame_, 0, this, [](void* self, relevo_frame* frame) {
-                  return serve<kFrame>(self, "relevo.frame: get", [&](auto& host) {
-                      check_size(frame, "frame");
-                      copy_out(host.frame(), frame);
-                  });
-              }};
-    terrain_ = {sizeof terrain_,
-                0,
-                this,
-                [](void* self, relevo_box* box) {
-                    return serve<kBoth>(self, "relevo.terrain: bounds", [&](auto& host) {
-                        relevo_box full = copy_in(box, "box");
-                        host.fill_bounds(full);
-                        copy_out(full, box);
-                    });
-                },
-                [](void* self, double nearer_than_m, relevo_box* box) {
-                    return serve<kBoth>(self, "relevo.terrain: visible_bounds", [&](auto& host) {
-                        relevo_box full = copy_in(box, "box");
-                        if (!host.fill_visible_bounds(nearer_than_m, full)) return RELEVO_NOTHING;
-                        copy_out(full, box);
-                        return RELEVO_OK;
-                    });
-                },
-                [](void* self, const relevo_box* given, double tolerance_m, relevo_texture target,
-                   std::int32_t* level) {
-                    return serve<kBoth>(self, "relevo.terrain: draw_depth", [&](auto& host) {
-                        const relevo_box box = copy_in(given, "box");
-                        host.check_depth(box, tolerance_m, target);
-                        const int drawn = host.draw_depth(box, tolerance_m, target);
-                        if (level) *level = drawn;
-                    });
-                }};
-    heights_ = {sizeof heights_, 0, this,
-                [](void* self, relevo_heights* heights) {
-                    return serve<kFrame>(self, "relevo.heights: describe", [&](auto& host) {
-                        check_size(heights, "heights");
-                        copy_out(host.heights(), heights);
-                    });
-                },
-                [](void* self, const relevo_nodes* given, float* heights_m, std::uint64_t count) {
-                    return serve<kBoth>(self, "relevo.heights: read", [&](auto& host) {
-                        const relevo_nodes nodes = copy_in(given, "nodes");
-                        not_null(heights_m, "heights_m");
-                        const std::int64_t wanted = std::int64_t{nodes.columns} * nodes.rows;
-                        if (nodes.columns < 1 || nodes.rows < 1 ||
-                            count < static_cast<std::uint64_t>(wanted))
-                            refuse("expected room for ", nodes.columns, " x ", nodes.rows,
-                                   " heights but got ", count);
-                        const int levels = host.heights().levels;
-                        if (nodes.level < 0 || nodes.level >= levels)
-                            refuse("expected a level of 0 to ", levels - 1, " but got ",
-                                   nodes.level);
-                        host.read_heights(nodes, {heights_m, static_cast<std::size_t>(wanted)});
-                    });
-                }};
+    frame_.get = served<kFrame, "relevo.frame: get">([](Services& host, auto frame) {
+        check_size(frame, "frame");
+        copy_out(host.frame(), frame);
+    });
+    terrain_.bounds = served<kBoth, "relevo.terrain: bounds">([](Services& host, auto box) {
+        relevo_box full = copy_in(box, "box");
+        host.fill_bounds(full);
+        copy_out(full, box);
+    });
+    terrain_.visible_bounds = served<kBoth, "relevo.terrain: visible_bounds">(
+        [](Services& host, auto nearer_than_m, auto box) {
+            relevo_box full = copy_in(box, "box");
+            if (!host.fill_visible_bounds(nearer_than_m, full)) return RELEVO_NOTHING;
+            copy_out(full, box);
+            return RELEVO_OK;
+        });
+    terrain_.draw_depth = served<kBoth, "relevo.terrain: draw_depth">(
+        [](Services& host, auto given, auto tolerance_m, auto target, auto level) {
+            const relevo_box box = copy_in(given, "box");
+            host.check_depth(box, tolerance_m, target);
+            const int drawn = host.draw_depth(box, tolerance_m, target);
+            if (level) *level = drawn;
+        });
+    heights_.describe =
+        served<kFrame, "relevo.heights: describe">([](Services& host, auto heights) {
+            check_size(heights, "heights");
+            copy_out(host.heights(), heights);
+        });
+    heights_.read = served<kBoth, "relevo.heights: read">(
+        [](Services& host, auto given, auto heights_m, auto count) {
+            const relevo_nodes nodes = copy_in(given, "nodes");
+            not_null(heights_m, "heights_m");
+            const std::int64_t wanted = std::int64_t{nodes.columns} * nodes.rows;
+            if (nodes.columns < 1 || nodes.rows < 1 || count < static_cast<std::uint64_t>(wanted))
+                refuse("expected room for ", nodes.columns, " x ", nodes.rows, " heights but got ",
+                       count);
+            const int levels = host.heights().levels;
+            if (nodes.level < 0 || nodes.level >= levels)
+                refuse("expected a level of 0 to ", levels - 1, " but got ", nodes.level);
+            host.read_heights(nodes, {heights_m, static_cast<std::size_t>(wanted)});
+        });
 }
 
 }  // namespace relevo::effect

@@ -41,6 +41,10 @@ class ModuleServices {
     const std::string& reason() const { return reason_; }
     void clear_reason() { reason_.clear(); }
 
+    /// Runs the body of a service's function. @param needs  a frame, a device
+    template <int needs, typename Body>
+    static relevo_status serve(void* self, const char* function, const Body& body) noexcept;
+
     using Value = std::array<double, 4>;
     using Point = std::array<double, 3>;
     using Pair = std::array<double, 2>;
@@ -92,12 +96,10 @@ class ModuleServices {
         ModuleServices* owner = nullptr;
     };
     static const void* service(const relevo_host* host, const char* name, std::uint32_t version);
-    template <int needs, typename Body>
-    static relevo_status serve(void* self, const char* function, const Body& body) noexcept;
     void fill_data_tables();
-    void fill_device_tables();
+    void fill_texture_table();
+    void fill_draw_table();
     void fill_ground_tables();
-    void fill_mark_table();
 
     const ModuleTexture& known(relevo_texture texture) const;
     void check_program(relevo_program program) const;

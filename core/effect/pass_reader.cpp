@@ -58,7 +58,6 @@ class PassReader {
             flat_size();
         texels();
         when(id);
-        object_.finish();
         return std::move(pass_);
     }
 

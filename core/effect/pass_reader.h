@@ -9,7 +9,7 @@
 namespace relevo::effect {
 
 /// Reads an entry of "passes" in plugin.json.
-/// @param object  the entry, which is finished
+/// @param object  the entry
 /// @param id      of the plugin
 /// @throws Error (BadInput) `plugin: folder/plugin.json:line: ...`
 shader::PluginPass read_pass(json::ObjectReader& object, const std::string& id,

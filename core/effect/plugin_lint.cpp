@@ -11,7 +11,7 @@
 
 #include "base/contains.h"
 #include "base/text.h"
-#include "shader/loops.h"
+#include "shader/limits.h"
 #include "shader/uses.h"
 
 namespace relevo::effect {
@@ -26,12 +26,10 @@ class Linter {
     Linter(const Effect& effect, const Registry& registry) : effect_(effect), registry_(registry) {}
 
     std::vector<Finding> run() {
-        check_words();
-        check_loops();
-        check_parameters();
-        check_passes();
-        check_derivatives();
-        check_ambient();
+        for (const auto check :
+             {&Linter::check_words, &Linter::check_loops, &Linter::check_parameters,
+              &Linter::check_passes, &Linter::check_derivatives, &Linter::check_ambient})
+            (this->*check)();
         return std::move(findings_);
     }
 
@@ -88,34 +86,35 @@ class Linter {
     }
 
     /// The names that functions need, their own included.
-    std::set<std::string> reached_from(std::vector<std::string> pending) const {
-        std::map<std::string, std::set<std::string>> uses;
+    std::set<std::string> reached_from(const std::vector<std::string>& functions) const {
+        shader::UsesOf uses;
         for (const shader::Snippet& snippet : effect_.snippets) {
             const std::vector<bool> active(snippet.source.tokens.size(), true);
-            for (const shader::Item& item : snippet.source.items) {
-                const shader::Uses used = shader::uses_of(snippet.source, item, active);
+            for (const shader::Item& item : snippet.source.items)
                 for (const std::string& name : item.names)
-                    uses[name].insert(used.names.begin(), used.names.end());
-            }
+                    uses[name].names.merge(shader::uses_of(snippet.source, item, active).names);
         }
-        std::set<std::string> reached;
-        while (!pending.empty()) {
-            const std::string name = pending.back();
-            pending.pop_back();
-            if (!reached.insert(name).second) continue;
-            if (const auto found = uses.find(name); found != uses.end())
-                pending.insert(pending.end(), found->second.begin(), found->second.end());
-        }
-        return reached;
+        return shader::reachable(functions, uses);
     }
 
-    template <typename Wanted>
-    std::vector<std::string> hook_functions(const Wanted& wanted) const {
+    /// Functions of hooks that have this in their heads.
+    std::vector<std::string> hook_functions(std::string_view head) const {
         std::vector<std::string> functions;
         for (const shader::Snippet& snippet : effect_.snippets)
             for (const shader::HookFunction& function : snippet.hooks)
-                if (wanted(function)) functions.push_back(function.name);
+                if (function.hook->signature.find(head) != std::string_view::npos)
+                    functions.push_back(function.name);
         return functions;
+    }
+
+    /// Calls a function with each token of these functions, and its file.
+    template <typename Visit>
+    void each_token(const std::set<std::string>& within, const Visit& visit) const {
+        for (const shader::Snippet& snippet : effect_.snippets)
+            for (const shader::Item& item : snippet.source.items)
+                if (item.kind == shader::Item::Kind::Function && within.contains(item.names[0]))
+                    for (std::size_t i = item.first; i < item.last; ++i)
+                        visit(snippet.source, i);
     }
 
     /// Parameters that the manifest, a ramp or a directive names are read, too.
@@ -138,7 +137,7 @@ class Linter {
 
     void check_parameters() {
         if (!effect_.manifest.module.empty()) return;  // modules may read any
-        std::vector<std::string> called = hook_functions([](const auto&) { return true; });
+        std::vector<std::string> called = hook_functions("");
         for (const shader::PluginPass& pass : effect_.manifest.passes)
             called.push_back(pass.function);
         for (const shader::InstanceSet& set : effect_.manifest.instances)
@@ -154,17 +153,13 @@ class Linter {
 
     /// What nothing reads is never computed. Other plugins may read it.
     void check_passes() {
-        const std::vector<shader::Sampler> samplers = [&] {
-            std::vector<shader::Sampler> all;
-            for (const effect::Effect& effect : registry_.effects())
-                for (const shader::Snippet& snippet : effect.snippets)
-                    all.insert(all.end(), snippet.source.samplers.begin(),
-                               snippet.source.samplers.end());
-            return all;
-        }();
+        std::set<std::string> read;
+        for (const Effect& effect : registry_.effects())
+            for (const shader::Snippet& snippet : effect.snippets)
+                for (const shader::Sampler& sampler : snippet.source.samplers)
+                    read.insert(sampler.resource);
         for (const shader::PluginPass& pass : effect_.manifest.passes)
-            if (std::ranges::find(samplers, pass.resource, &shader::Sampler::resource) ==
-                samplers.end())
+            if (!read.contains(pass.resource))
                 add(false, effect_.manifest.file.string(), pass.line,
                     fmt::format("passes.{}: nothing reads it, so it is never computed; add uniform "
                                 "{} {}_{}, or remove it",
@@ -173,64 +168,36 @@ class Linter {
     }
 
     void check_derivatives() {
-        const std::set<std::string> reached =
-            reached_from(hook_functions([](const shader::HookFunction& function) {
-                return function.hook->signature.find("Surface") != std::string_view::npos;
-            }));
-        for (const shader::Snippet& snippet : effect_.snippets)
-            for (const shader::Item& item : snippet.source.items)
-                if (item.kind == shader::Item::Kind::Function && reached.contains(item.names[0]))
-                    check_derivatives(snippet, item);
-    }
-
-    void check_derivatives(const shader::Snippet& snippet, const shader::Item& item) {
-        const shader::Source& source = snippet.source;
-        for (std::size_t i = item.first; i + 1 < item.last; ++i) {
-            const std::string_view word = source.str(source.tokens[i]);
-            if (!contains(kDerivatives, word) || source.str(source.tokens[i + 1]) != "(") continue;
-            add(false, snippet.file, source.tokens[i].line,
+        const auto check = [&](const shader::Source& source, std::size_t i) {
+            const std::string_view word = source.str(i);
+            if (!contains(kDerivatives, word) || !source.is(i + 1, "(")) return;
+            add(false, source.file, source.tokens[i].line,
                 fmt::format("{}: the next pixel may be other ground, so derivatives are wrong; {}",
                             word,
                             word.starts_with("texture")
                                 ? "use textureGrad with s.ground_dx_m and s.ground_dy_m"
                                 : "use s.height_dx_m, s.height_dy_m, s.ground_dx_m or "
                                   "s.ground_dy_m"));
-        }
-    }
-
-    /// Where functions assign a member of Surface: "s.diffuse =" or "s.diffuse.r =".
-    /// @param within  names of the functions
-    /// @returns files and lines
-    std::vector<std::pair<std::string, int>> assignments(
-        std::string_view member, const std::set<std::string>& within) const {
-        std::vector<std::pair<std::string, int>> found;
-        for (const shader::Snippet& snippet : effect_.snippets) {
-            const shader::Source& source = snippet.source;
-            const auto word = [&](std::size_t i) {
-                return i < source.tokens.size() ? source.str(source.tokens[i]) : "";
-            };
-            for (const shader::Item& item : source.items) {
-                if (item.kind != shader::Item::Kind::Function || !within.contains(item.names[0]))
-                    continue;
-                for (std::size_t i = item.first; i + 2 < item.last; ++i) {
-                    if (word(i) != "." || word(i + 1) != member) continue;
-                    const std::size_t after = word(i + 2) == "." ? i + 4 : i + 2;
-                    if (word(after) == "=") found.emplace_back(snippet.file, source.tokens[i].line);
-                }
-            }
-        }
-        return found;
+        };
+        each_token(reached_from(hook_functions("Surface")), check);
     }
 
     /// Ground that is painted in direct light alone keeps its earlier colour in shade.
     void check_ambient() {
-        for (const std::string& hook : hook_functions([](const shader::HookFunction& function) {
-                 return function.hook->signature.find("inout Surface") != std::string_view::npos;
-             })) {
-            const std::set<std::string> reached = reached_from({hook});
-            const auto painted = assignments("diffuse", reached);
-            if (painted.empty() || !assignments("ambient", reached).empty()) continue;
-            add(false, painted[0].first, painted[0].second,
+        for (const std::string& hook : hook_functions("inout Surface")) {
+            std::string file;
+            int line = 0;  // that sets diffuse first
+            bool sets_ambient = false;
+            each_token(reached_from({hook}), [&](const shader::Source& source, std::size_t i) {
+                // s.diffuse = or s.diffuse.r =
+                if (!source.is(i - 1, ".") || source.writes(i) != "=") return;
+                sets_ambient = sets_ambient || source.is(i, "ambient");
+                if (!source.is(i, "diffuse") || line > 0) return;
+                file = source.file;
+                line = source.tokens[i].line;
+            });
+            if (line == 0 || sets_ambient) continue;
+            add(false, file, line,
                 fmt::format("{} sets diffuse without ambient, so the ground keeps its earlier "
                             "colour in the sky's light and in shade; set s.ambient, too",
                             hook));

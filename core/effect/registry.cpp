@@ -82,8 +82,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
             }
         }
     }
-    std::ranges::sort(registry.effects_,
-                      [](const Effect& a, const Effect& b) { return a.id() < b.id(); });
+    std::ranges::sort(registry.effects_, {}, &Effect::id);
     return registry;
 }
 
@@ -92,22 +91,20 @@ Registry Registry::load_installed(const std::vector<std::filesystem::path>& extr
 }
 
 const Effect* Registry::find(std::string_view id) const {
-    const auto found =
-        std::ranges::find_if(effects_, [&](const Effect& effect) { return effect.id() == id; });
+    const auto found = std::ranges::find(effects_, id, &Effect::id);
     return found == effects_.end() ? nullptr : &*found;
 }
 
 bool Registry::is_broken(std::string_view id) const {
-    return !find(id) && std::ranges::any_of(
-                            broken_, [&](const BrokenEffect& broken) { return broken.id == id; });
+    return !find(id) && std::ranges::find(broken_, id, &BrokenEffect::id) != broken_.end();
 }
 
 const Effect& Registry::effect(std::string_view id, std::string_view who) const {
     if (const Effect* found = find(id)) return *found;
-    for (const BrokenEffect& broken : broken_)
-        if (broken.id == id)
-            bad_input(
-                fmt::format("{}: {}: this plugin could not be loaded: {}", who, id, broken.error));
+    if (const auto broken = std::ranges::find(broken_, id, &BrokenEffect::id);
+        broken != broken_.end())
+        bad_input(
+            fmt::format("{}: {}: this plugin could not be loaded: {}", who, id, broken->error));
     std::vector<std::string> ids;
     for (const Effect& effect : effects_)
         ids.push_back(effect.id());

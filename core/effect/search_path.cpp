@@ -17,16 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kVariable = "RELEVO_PLUGIN_PATH";
 
-std::string variable(const char* name) {
-    const char* const value = std::getenv(name);
-    return value ? value : "";
-}
-
-/// Empty if the user has no home.
-fs::path data_home() {
-    return user_folder("XDG_DATA_HOME", ".local/share");
-}
-
 bool is_folder(const fs::path& path) {
     std::error_code ignored;
     return fs::is_directory(path, ignored);
@@ -36,9 +26,11 @@ bool is_folder(const fs::path& path) {
 
 std::vector<fs::path> user_plugin_folders() {
     std::vector<fs::path> folders;
-    if (const fs::path home = data_home(); !home.empty() && is_folder(home / "relevo/plugins"))
+    const fs::path home = user_folder("XDG_DATA_HOME", ".local/share");  // empty: no home
+    if (!home.empty() && is_folder(home / "relevo/plugins"))
         folders.push_back(home / "relevo/plugins");
-    for (const std::string& name : split(variable(kVariable), ':')) {
+    const char* const names = std::getenv(kVariable);
+    for (const std::string& name : split(names ? names : "", ':')) {
         if (name.empty()) continue;
         const fs::path folder = name;
         // A relative path would load modules of whichever folder the program is started in.

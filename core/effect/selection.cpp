@@ -410,7 +410,7 @@ class Selector {
 }  // namespace
 
 bool Selection::has(std::string_view id) const {
-    return std::ranges::any_of(effects, [&](const Effect* effect) { return effect->id() == id; });
+    return std::ranges::find(effects, id, &Effect::id) != effects.end();
 }
 
 std::vector<const shader::Snippet*> Selection::snippets() const {
@@ -428,12 +428,15 @@ std::vector<shader::PluginPass> Selection::passes() const {
     return result;
 }
 
-std::vector<shader::InstanceSet> Selection::instances() const {
-    std::vector<shader::InstanceSet> result;
+shader::StitchInput Selection::stitch_input() const {
+    shader::StitchInput input{.snippets = snippets(), .capabilities = capabilities};
+    input.passes = passes();
     for (const Effect* effect : effects)
-        result.insert(result.end(), effect->manifest.instances.begin(),
-                      effect->manifest.instances.end());
-    return result;
+        input.instances.insert(input.instances.end(), effect->manifest.instances.begin(),
+                               effect->manifest.instances.end());
+    input.over_overlay = over_overlay;
+    input.lit_overlay_is_over_all = lit_overlay_is_over_all;
+    return input;
 }
 
 Selection select(const Registry& registry, const std::vector<Preset>& presets,

@@ -8,6 +8,7 @@
 #include "effect/preset.h"
 #include "effect/registry.h"
 #include "shader/param_store.h"
+#include "shader/stitch.h"
 
 namespace relevo::effect {
 
@@ -25,9 +26,10 @@ struct Selection {
     bool lit_overlay_is_over_all = true;
 
     bool has(std::string_view id) const;
-    std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
-    std::vector<shader::PluginPass> passes() const;        ///< for shader::StitchInput
-    std::vector<shader::InstanceSet> instances() const;    ///< for shader::StitchInput
+    std::vector<const shader::Snippet*> snippets() const;
+    std::vector<shader::PluginPass> passes() const;
+    /// What the stitcher takes from the effects.
+    shader::StitchInput stitch_input() const;
 };
 
 /// Effects that cannot be on, by id, and why.

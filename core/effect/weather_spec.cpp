@@ -10,9 +10,7 @@
 
 namespace relevo::effect {
 
-WeatherSpec read_weather_spec(const std::string& file, const std::string& id,
-                              const json::Value& value) {
-    json::ObjectReader object("plugin", file, "weather", value);
+WeatherSpec read_weather_spec(json::ObjectReader object, const std::string& id) {
     WeatherSpec spec;
     spec.on = object.strings("on");
     for (const std::string& word : spec.on)

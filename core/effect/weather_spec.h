@@ -4,7 +4,7 @@
 #include <vector>
 
 namespace relevo::json {
-struct Value;
+class ObjectReader;
 }  // namespace relevo::json
 
 namespace relevo::effect {
@@ -23,10 +23,8 @@ struct WeatherSpec {
 };
 
 /// Reads the object.
-/// @param file  plugin.json
-/// @param id    of the plugin
+/// @param id  of the plugin
 /// @throws Error (BadInput) with file and line
-WeatherSpec read_weather_spec(const std::string& file, const std::string& id,
-                              const json::Value& value);
+WeatherSpec read_weather_spec(json::ObjectReader object, const std::string& id);
 
 }  // namespace relevo::effect

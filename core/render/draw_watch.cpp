@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/paths.h"
-#include "shader/loops.h"
+#include "shader/limits.h"
 
 namespace relevo::render {
 namespace {

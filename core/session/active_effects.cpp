@@ -109,12 +109,7 @@ std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word
 
 render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
-    inputs.stitch.snippets = loaded.selection.snippets();
-    inputs.stitch.passes = loaded.selection.passes();
-    inputs.stitch.instances = loaded.selection.instances();
-    inputs.stitch.capabilities = loaded.selection.capabilities;
-    inputs.stitch.over_overlay = loaded.selection.over_overlay;
-    inputs.stitch.lit_overlay_is_over_all = loaded.selection.lit_overlay_is_over_all;
+    inputs.stitch = loaded.selection.stitch_input();
     inputs.stitch.values = &values;
     inputs.stitch.constants = constants;
     if (mapped) inputs.stitch.capabilities.emplace_back("mapped");

@@ -1,6 +1,5 @@
 // Which hook and which value of it is NaN or infinite: the picture is drawn without each in turn.
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
@@ -19,11 +18,7 @@ struct HookPlace {
     const Snippet* snippet;
     const HookFunction* hook;
 
-    const shader::Item& item() const {
-        return *std::ranges::find_if(snippet->source.items, [&](const shader::Item& item) {
-            return item.kind == shader::Item::Kind::Function && item.names[0] == hook->name;
-        });
-    }
+    const shader::Item& item() const { return *snippet->source.function(hook->name); }
 };
 
 /// Number of such pixels with another file in the place of one.
@@ -43,17 +38,12 @@ int pixels_without(const FaultyPicture& picture, const HookPlace& place) {
     return pixels_with(picture, place.snippet, without);
 }
 
-/// The name of the hook's argument of type Surface that it may write; else empty.
-std::string surface_of(const HookPlace& place) {
+/// The name of the first argument of a hook that it may write; empty without one.
+/// @param type  of the argument; empty: any
+std::string output_of(const HookPlace& place, std::string_view type) {
     for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
-        if (argument.type == "Surface" && argument.qualifier == "inout") return argument.name;
-    return {};
-}
-
-/// The value that a hook without a Surface to write makes; empty: what it returns.
-std::string output_of(const HookPlace& place) {
-    for (const shader::Argument& argument : place.snippet->source.signature(place.item()).arguments)
-        if (argument.qualifier == "inout") return argument.name;
+        if (argument.qualifier == "inout" && (type.empty() || argument.type == type))
+            return argument.name;
     return {};
 }
 
@@ -61,69 +51,59 @@ std::string output_of(const HookPlace& place) {
 std::vector<std::string> members_in(const shader::Source& source) {
     std::vector<std::string> members;
     for (std::size_t i = 1; i < source.tokens.size(); ++i) {
-        const std::string member(source.str(source.tokens[i]));
-        if (source.tokens[i].kind == shader::TokenKind::Word &&
-            source.str(source.tokens[i - 1]) == "." && member.size() > 1 &&
+        const std::string member(source.str(i));
+        if (source.is_word(i) && source.is(i - 1, ".") && member.size() > 1 &&
             !contains(members, member))
             members.push_back(member);
     }
     return members;
 }
 
+/// The file with another function in the place of one.
+/// @param inner  the new name of the old one
+Snippet replaced(const Snippet& snippet, const std::string& function, const std::string& inner,
+                 const std::string& by) {
+    const shader::Source& source = snippet.source;
+    std::string text = source.text;
+    for (std::size_t i = source.tokens.size(); i-- > 0;)
+        if (source.is(i, function))
+            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
+    return shader::parse_snippet(snippet.id, snippet.file, text + by);
+}
+
 /// The file with a hook that leaves one member of its Surface unchanged.
 Snippet keeping(const HookPlace& place, const std::string& surface, const std::string& member) {
-    const shader::Source& source = place.snippet->source;
-    const shader::Item& item = place.item();
-    std::string text = source.text;
-    const std::string inner = place.snippet->id + "_kept_" + std::string(place.hook->hook->name);
-    for (std::size_t i = item.first; i < item.last; ++i)
-        if (source.str(source.tokens[i]) == place.hook->name) {
-            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
-            break;
-        }
-    text += fmt::format(
-        "\nvoid {}(inout Surface {}) {{\n    Surface before = {};\n    {}({});\n    {}.{} = "
-        "before.{};\n}}\n",
-        place.hook->name, surface, surface, inner, surface, surface, member, member);
-    return shader::parse_snippet(place.snippet->id, place.snippet->file, text);
+    const std::string inner = fmt::format("{}_kept_{}", place.snippet->id, place.hook->hook->name);
+    return replaced(
+        *place.snippet, place.hook->name, inner,
+        fmt::format("\nvoid {0}(inout Surface {1}) {{\n    Surface before = {1};\n    {2}({1});\n"
+                    "    {1}.{3} = before.{3};\n}}\n",
+                    place.hook->name, surface, inner, member));
 }
 
 /// The first line of a hook that writes a value, such as `s.diffuse`; 0: none.
 int line_of_write(const HookPlace& place, const std::string& variable, const std::string& member) {
-    constexpr std::array<std::string_view, 5> kWriting = {"=", "+=", "-=", "*=", "/="};
     const shader::Source& source = place.snippet->source;
     const shader::Item& item = place.item();
-    const auto str = [&](std::size_t i) {
-        return i < item.last ? source.str(source.tokens[i]) : std::string_view();
-    };
     for (std::size_t i = item.first; i < item.last; ++i) {
-        if (str(i) != variable) continue;
-        std::size_t next = i + 1;
-        if (!member.empty()) {
-            if (str(next) != "." || str(next + 1) != member) continue;
-            next += 2;
-        }
-        if (str(next) == ".") next += 2;  // a swizzle
-        if (contains(kWriting, str(next))) return source.tokens[i].line;
+        if (!source.is(i, variable)) continue;
+        if (!member.empty() && !(source.is(i + 1, ".") && source.is(i + 2, member))) continue;
+        if (!source.writes(member.empty() ? i : i + 2).empty()) return source.tokens[i].line;
     }
     return 0;
 }
 
 /// The file with a pass whose texels are 0 where they would be NaN or infinite.
 Snippet cleaned(const Snippet& snippet, const shader::PassFunction& pass) {
-    const shader::Source& source = snippet.source;
     const std::string function = fmt::format("{}_pass_{}", snippet.id, pass.name);
     const std::string inner = fmt::format("{}_cleaned_{}", snippet.id, pass.name);
-    std::string text = source.text;
-    for (std::size_t i = source.tokens.size(); i-- > 0;)
-        if (source.str(source.tokens[i]) == function)
-            text.replace(source.tokens[i].offset, source.tokens[i].length, inner);
     // By bits: compilers may fold comparisons with NaN.
-    text += fmt::format(
-        "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
-        "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
-        function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner);
-    return shader::parse_snippet(snippet.id, snippet.file, text);
+    return replaced(
+        snippet, function, inner,
+        fmt::format(
+            "\nvec4 {}(in {} t) {{\n    vec4 v = {}(t);\n    const uint ones = 0x7f800000u;\n"
+            "    return mix(v, vec4(0.0), equal(floatBitsToUint(v) & ones, uvec4(ones)));\n}}\n",
+            function, pass.kind == shader::PluginPass::Kind::Volume ? "Voxel" : "Texel", inner));
 }
 
 /// A pass of a plugin without whose NaN and infinite texels fewer pixels are so.
@@ -143,8 +123,8 @@ std::optional<NonFiniteCause> pass_at_fault(const FaultyPicture& picture, const 
 
 NonFiniteCause cause_at(const FaultyPicture& picture, const HookPlace& place, int without) {
     NonFiniteCause cause{place.snippet->file, place.hook->line, place.hook->name, {}};
-    const std::string surface = surface_of(place);
-    std::string variable = output_of(place), member;
+    const std::string surface = output_of(place, "Surface");
+    std::string variable = output_of(place, ""), member;
     if (!surface.empty()) {
         for (const std::string& candidate : members_in(place.snippet->source)) {
             try {

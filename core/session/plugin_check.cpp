@@ -121,11 +121,7 @@ class Check {
                   const std::string& with) {
         try {
             const effect::Selection selection = effect::select(registry, {}, switches);
-            shader::StitchInput input;
-            input.snippets = selection.snippets();
-            input.passes = selection.passes();
-            input.instances = selection.instances();
-            input.capabilities = selection.capabilities;
+            shader::StitchInput input = selection.stitch_input();
             input.values = &session_->effects().values;
             input.max_texture_units = session_->device().max_texture_units;
             render::stitch_frames(shader::FolderTexts(share_dir() / "shaders"), input, {});

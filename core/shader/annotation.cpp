@@ -17,17 +17,6 @@ namespace {
 constexpr std::array kTypes = {ParamType::Float, ParamType::Int,  ParamType::Bool,
                                ParamType::Vec2,  ParamType::Vec3, ParamType::Vec4};
 
-const std::vector<std::string>& annotation_names() {
-    static const std::vector<std::string> names = {"range",  "unit",   "label", "description",
-                                                   "enum",   "colour", "angle", "direction",
-                                                   "static", "host"};
-    return names;
-}
-
-bool is_name(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 /// "Noise scale" for haze_noise_scale.
 std::string label_of(std::string_view name) {
     std::string label(name.substr(name.find('_') + 1));
@@ -57,7 +46,7 @@ class ParamReader {
     void annotation(const std::vector<AnnotationWord>& words) {
         std::vector<std::string> seen;
         for (const AnnotationWord& word : words) {
-            if (contains(seen, word.name)) fail(fmt::format("{} is given twice", word.name));
+            if (contains(seen, word.name)) fail("{} is given twice", word.name);
             seen.push_back(word.name);
             apply(word);
         }
@@ -67,116 +56,114 @@ class ParamReader {
     void initial(std::string_view text) {
         const std::optional<ParamValue> value = read_initial(trimmed(text));
         if (!value)
-            fail(fmt::format("expected a {} literal as its default but got {}",
-                             glsl_name(param_.type), trimmed(text)));
+            fail("expected a {} literal as its default but got {}", glsl_name(param_.type),
+                 trimmed(text));
         param_.initial = *value;
         if (!param_.is_host && !is_valid(param_, *value))
-            fail(fmt::format("expected a default that is {} but got {}",
-                             expected_values(param_, *value), trimmed(text)));
+            fail("expected a default that is {} but got {}", expected_values(param_, *value),
+                 trimmed(text));
     }
 
   private:
-    [[noreturn]] void fail(std::string_view message) const {
-        source_error(file_, line_, fmt::format("{}: {}", param_.name, message));
-    }
-
-    void expect_arguments(const AnnotationWord& word, std::size_t count, std::string_view form) {
-        if (word.arguments.size() != count)
-            fail(fmt::format("expected {} but got {}", form, written(word)));
-    }
-
-    static std::string written(const AnnotationWord& word) {
-        return word.arguments.empty()
-                   ? word.name
-                   : fmt::format("{}({})", word.name, fmt::join(word.arguments, ", "));
+    template <typename... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> message, Args&&... args) const {
+        source_error(
+            file_, line_,
+            fmt::format("{}: {}", param_.name, fmt::format(message, std::forward<Args>(args)...)));
     }
 
     bool is_vec() const { return component_count(param_.type) > 1; }
 
     void role(ParamRole role, bool fits, std::string_view types, const AnnotationWord& word) {
-        if (!fits)
-            fail(fmt::format("{} is for {}, not for a {}", word.name, types,
-                             glsl_name(param_.type)));
+        if (!fits) fail("{} is for {}, not for a {}", word.name, types, glsl_name(param_.type));
         if (param_.role != ParamRole::Plain)
             fail("it can be only one of colour, angle and direction");
         param_.role = role;
     }
 
-    void apply(const AnnotationWord& word) {
-        const bool is_vec3 = param_.type == ParamType::Vec3;
-        if (word.name == "range") {
-            range(word);
-        } else if (word.name == "unit") {
-            expect_arguments(word, 1, "unit(1/km)");
-            param_.unit = word.arguments[0];
-        } else if (word.name == "label") {
-            expect_arguments(word, 1, "label(\"Text\")");
-            param_.label = word.arguments[0];
-        } else if (word.name == "description") {
-            expect_arguments(word, 1, "description(\"Text\")");
-            param_.description = word.arguments[0];
-        } else if (word.name == "enum") {
-            enumeration(word);
-        } else if (word.name == "colour") {
-            if (word.arguments.size() > 1 ||
-                (word.arguments.size() == 1 && word.arguments[0] != "srgb"))
-                fail(fmt::format("expected colour or colour(srgb) but got {}", written(word)));
-            role(word.arguments.empty() ? ParamRole::Colour : ParamRole::ColourSrgb,
-                 is_vec3 || param_.type == ParamType::Vec4, "vec3 and vec4", word);
-        } else if (word.name == "angle") {
-            expect_arguments(word, 0, "angle");
-            role(ParamRole::Angle, param_.type == ParamType::Float, "float", word);
-        } else if (word.name == "direction") {
-            expect_arguments(word, 0, "direction");
-            role(ParamRole::Direction, is_vec3, "vec3", word);
-        } else if (word.name == "static") {
-            expect_arguments(word, 0, "static");
-            param_.is_static = true;
-        } else if (word.name == "host") {
-            expect_arguments(word, 0, "host");
-            param_.is_host = true;
-        } else {
-            const std::optional<std::string> near = nearest(word.name, annotation_names());
-            fail(fmt::format(
-                "unknown annotation {}; {}", word.name,
-                near ? fmt::format("did you mean {}?", *near)
-                     : fmt::format("there are {}", fmt::join(annotation_names(), ", "))));
+    struct Row {
+        std::string_view name, form;
+        std::size_t arguments;  ///< that `form` has
+        void (*apply)(ParamReader& reader, const AnnotationWord& word);
+    };
+    void apply(const AnnotationWord& given) {
+        constexpr std::size_t kAny = 100;
+        static constexpr std::array<Row, 10> kRows = {{
+            {"range", "range(min, max)", 2, [](auto& self, auto& word) { self.range(word); }},
+            {"unit", "unit(1/km)", 1,
+             [](auto& self, auto& word) { self.param_.unit = word.arguments[0]; }},
+            {"label", "label(\"Text\")", 1,
+             [](auto& self, auto& word) { self.param_.label = word.arguments[0]; }},
+            {"description", "description(\"Text\")", 1,
+             [](auto& self, auto& word) { self.param_.description = word.arguments[0]; }},
+            {"enum", "", kAny, [](auto& self, auto& word) { self.enumeration(word); }},
+            {"colour", "", kAny, [](auto& self, auto& word) { self.colour(word); }},
+            {"angle", "angle", 0,
+             [](auto& self, auto& word) {
+                 self.role(ParamRole::Angle, self.param_.type == ParamType::Float, "float", word);
+             }},
+            {"direction", "direction", 0,
+             [](auto& self, auto& word) {
+                 self.role(ParamRole::Direction, self.param_.type == ParamType::Vec3, "vec3", word);
+             }},
+            {"static", "static", 0, [](auto& self, auto&) { self.param_.is_static = true; }},
+            {"host", "host", 0, [](auto& self, auto&) { self.param_.is_host = true; }},
+        }};
+
+        const auto row = std::ranges::find(kRows, given.name, &Row::name);
+        if (row == kRows.end()) {
+            std::vector<std::string> names;
+            for (const Row& known : kRows)
+                names.emplace_back(known.name);
+            const std::optional<std::string> near = nearest(given.name, names);
+            fail("unknown annotation {}; {}", given.name,
+                 near ? fmt::format("did you mean {}?", *near)
+                      : fmt::format("there are {}", fmt::join(names, ", ")));
         }
+        if (row->arguments != kAny && given.arguments.size() != row->arguments)
+            fail("expected {} but got {}", row->form, given.written());
+        row->apply(*this, given);
+    }
+
+    void colour(const AnnotationWord& word) {
+        if (word.arguments.size() > 1 || (!word.arguments.empty() && word.arguments[0] != "srgb"))
+            fail("expected colour or colour(srgb) but got {}", word.written());
+        role(word.arguments.empty() ? ParamRole::Colour : ParamRole::ColourSrgb,
+             param_.type == ParamType::Vec3 || param_.type == ParamType::Vec4, "vec3 and vec4",
+             word);
     }
 
     void range(const AnnotationWord& word) {
         if (param_.type == ParamType::Bool) fail("a bool has no range");
-        expect_arguments(word, 2, "range(min, max)");
         const std::optional<double> min = parse_number(word.arguments[0]);
         const std::optional<double> max = parse_number(word.arguments[1]);
         if (!min || !max || !(*min < *max))
             fail(
-                fmt::format("expected range(min, max), two numbers of which the first is less, "
-                            "but got {}",
-                            written(word)));
+                "expected range(min, max), two numbers of which the first is less, "
+                "but got {}",
+                word.written());
         const bool whole = param_.type == ParamType::Int;
         const double most = whole ? std::numeric_limits<int>::max()
                                   : static_cast<double>(std::numeric_limits<float>::max());
         if (*min < -most || *max > most)
             fail(
-                fmt::format("expected a range within {0:.10g} and {1:.10g}, as {2} can hold, but "
-                            "got {3}",
-                            -most, most, whole ? "an int" : "a float", written(word)));
+                "expected a range within {0:.10g} and {1:.10g}, as {2} can hold, but "
+                "got {3}",
+                -most, most, whole ? "an int" : "a float", word.written());
         param_.range = ParamRange{*min, *max};
     }
 
     void enumeration(const AnnotationWord& word) {
         if (param_.type != ParamType::Int)
-            fail(fmt::format("enum is for int, not for a {}", glsl_name(param_.type)));
+            fail("enum is for int, not for a {}", glsl_name(param_.type));
         for (const std::string& value : word.arguments) {
-            if (value.empty() || !std::ranges::all_of(value, is_name) ||
+            if (value.empty() || !std::ranges::all_of(value, is_word_byte) ||
                 (value[0] >= '0' && value[0] <= '9') ||
                 std::ranges::count(word.arguments, value) > 1)
-                fail(fmt::format("expected enum(word, word, ...), all different, but got {}",
-                                 written(word)));
+                fail("expected enum(word, word, ...), all different, but got {}", word.written());
         }
         if (word.arguments.size() < 2)
-            fail(fmt::format("expected an enum of at least two words but got {}", written(word)));
+            fail("expected an enum of at least two words but got {}", word.written());
         param_.words = word.arguments;
     }
 
@@ -188,15 +175,15 @@ class ParamReader {
         if (!param_.words.empty() && param_.range) fail("an enum has its words and no range");
         if (param_.role == ParamRole::Angle && param_.unit.empty()) param_.unit = "deg";
         if (param_.role == ParamRole::Angle && param_.unit != "deg")
-            fail(fmt::format("an angle is in deg, not in {}", param_.unit));
+            fail("an angle is in deg, not in {}", param_.unit);
         if ((param_.role == ParamRole::Colour || param_.role == ParamRole::ColourSrgb) &&
             !param_.range)
             param_.range = ParamRange{0, 1};
         if (param_.role == ParamRole::Direction && param_.range) fail("a direction has no range");
         const bool number = param_.type == ParamType::Float || param_.type == ParamType::Int;
         if (number && !param_.range && param_.words.empty() && !param_.is_host)
-            fail(fmt::format("expected a //@ after it with a range{}; add //@ range(min, max)",
-                             param_.type == ParamType::Int ? " or an enum" : ""));
+            fail("expected a //@ after it with a range{}; add //@ range(min, max)",
+                 param_.type == ParamType::Int ? " or an enum" : "");
     }
 
     std::optional<ParamValue> read_initial(std::string_view text) const {
@@ -233,6 +220,10 @@ class ParamReader {
 
 }  // namespace
 
+std::string AnnotationWord::written() const {
+    return arguments.empty() ? name : fmt::format("{}({})", name, fmt::join(arguments, ", "));
+}
+
 std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_view file,
                                              int line) {
     std::vector<AnnotationWord> words;
@@ -250,7 +241,7 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
     if (plain != printable(plain)) fail("expected UTF-8 without control characters");
     for (skip_blanks(); at < text.size(); skip_blanks()) {
         AnnotationWord word;
-        while (at < text.size() && is_name(text[at]))
+        while (at < text.size() && is_word_byte(text[at]))
             word.name += text[at++];
         if (word.name.empty()) fail(fmt::format("expected a word but got {}", text.substr(at)));
         skip_blanks();
@@ -300,8 +291,7 @@ Param parse_param(std::string_view type, std::string_view name, std::string_view
 }
 
 std::optional<ParamType> param_type(std::string_view name) {
-    const auto found =
-        std::ranges::find_if(kTypes, [&](ParamType type) { return glsl_name(type) == name; });
+    const auto found = std::ranges::find(kTypes, name, glsl_name);
     if (found == kTypes.end()) return std::nullopt;
     return *found;
 }

@@ -12,6 +12,8 @@ namespace relevo::shader {
 struct AnnotationWord {
     std::string name;
     std::vector<std::string> arguments;  ///< trimmed; quoted ones without their quotes
+
+    std::string written() const;  ///< "range(0, 2)"
 };
 
 /// Reads the text after `//@`.

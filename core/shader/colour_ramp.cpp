@@ -29,8 +29,8 @@ class RampReader {
                 "a constant's annotation has a ramp(from, to), steps(edge, edge, ...) or "
                 "entries(name, ...), which is missing");
         if (ramp_.label.empty())
-            fail(fmt::format("{} a label(\"Text\"), which is missing",
-                             kind_ == "ramp" ? "a ramp has" : kind_ + " have"));
+            fail("{} a label(\"Text\"), which is missing",
+                 kind_ == "ramp" ? "a ramp has" : kind_ + " have");
         if (kind_ == "entries" && !ramp_.unit.empty()) fail("entries have names and no unit");
     }
 
@@ -57,8 +57,8 @@ class RampReader {
     /// ramp(), steps() or entries().
     void meaning(const AnnotationWord& word) {
         if (!kind_.empty())
-            fail(kind_ == word.name ? fmt::format("{} is given twice", kind_)
-                                    : "it can be only one of ramp, steps and entries");
+            fail("{}", kind_ == word.name ? kind_ + " is given twice"
+                                          : "it can be only one of ramp, steps and entries");
         kind_ = word.name;
         if (kind_ == "ramp")
             ends(word);
@@ -78,22 +78,17 @@ class RampReader {
             ramp_.where_word = word.arguments[1];
         } else {
             fail(
-                fmt::format("expected ramp(from, to), steps(edge, edge, ...), entries(name, ...), "
-                            "unit(m), label(\"Text\") or where(parameter, word) but got {}",
-                            written(word)));
+                "expected ramp(from, to), steps(edge, edge, ...), entries(name, ...), "
+                "unit(m), label(\"Text\") or where(parameter, word) but got {}",
+                word.written());
         }
-    }
-
-    static std::string written(const AnnotationWord& word) {
-        return fmt::format("{}({})", word.name, fmt::join(word.arguments, ", "));
     }
 
     void steps(const AnnotationWord& word) {
         for (const std::string& argument : word.arguments) {
             const std::optional<double> edge = parse_number(argument);
             if (!edge || (!ramp_.edges.empty() && !(*edge > ramp_.edges.back())))
-                fail(fmt::format("expected steps(edge, edge, ...), rising numbers, but got {}",
-                                 written(word)));
+                fail("expected steps(edge, edge, ...), rising numbers, but got {}", word.written());
             ramp_.edges.push_back(*edge);
         }
     }
@@ -102,28 +97,29 @@ class RampReader {
         ramp_.entries = word.arguments;
         for (const std::string& name : ramp_.entries)
             if (name.empty() || std::ranges::count(ramp_.entries, name) > 1)
-                fail(fmt::format("expected entries(name, ...), all different, but got {}",
-                                 written(word)));
+                fail("expected entries(name, ...), all different, but got {}", word.written());
     }
 
     /// Steps have an edge more than colours, entries have as many names.
     void check_count() const {
         const std::size_t colours = ramp_.colours.size();
         if (kind_ == "steps" && ramp_.edges.size() != colours + 1)
-            fail(fmt::format("expected {} edges for {} colours but got {}", colours + 1, colours,
-                             ramp_.edges.size()));
+            fail("expected {} edges for {} colours but got {}", colours + 1, colours,
+                 ramp_.edges.size());
         if (kind_ == "entries" && ramp_.entries.size() != colours)
-            fail(fmt::format("expected {} names for {} colours but got {}", colours, colours,
-                             ramp_.entries.size()));
+            fail("expected {} names for {} colours but got {}", colours, colours,
+                 ramp_.entries.size());
     }
 
-    [[noreturn]] void fail(std::string_view message) const {
-        source_error(ramp_.file, ramp_.line, fmt::format("{}: {}", ramp_.name, message));
+    template <typename... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> message, Args&&... args) const {
+        source_error(
+            ramp_.file, ramp_.line,
+            fmt::format("{}: {}", ramp_.name, fmt::format(message, std::forward<Args>(args)...)));
     }
     [[noreturn]] void fail_colours() const {
-        fail(fmt::format(
-            "{}, vec3[](vec3(0.1, 0.2, 0.3), ...), numbers of 0 to 1",
-            kind_ == "ramp" ? "a ramp is at least two colours" : kind_ + " are colours"));
+        fail("{}, vec3[](vec3(0.1, 0.2, 0.3), ...), numbers of 0 to 1",
+             kind_ == "ramp" ? "a ramp is at least two colours" : kind_ + " are colours");
     }
 
     std::array<double, 3> colour(std::string_view text) const {
@@ -142,17 +138,17 @@ class RampReader {
         ramp_.is_ring = word.arguments.size() == 1 && word.arguments[0] == "ring";
         if (ramp_.is_ring) return;
         if (word.arguments.size() != 2)
-            fail(fmt::format("expected ramp(from, to) or ramp(ring) but got ramp({})",
-                             fmt::join(word.arguments, ", ")));
+            fail("expected ramp(from, to) or ramp(ring) but got ramp({})",
+                 fmt::join(word.arguments, ", "));
         ramp_.from = end(word.arguments[0]);
         ramp_.to = end(word.arguments[1]);
         const bool numbers = ramp_.from.of == ColourRamp::End::Of::Number &&
                              ramp_.to.of == ColourRamp::End::Of::Number;
         if (numbers && !(ramp_.from.number < ramp_.to.number))
             fail(
-                fmt::format("expected ramp(from, to), the first below the second, but got "
-                            "ramp({})",
-                            fmt::join(word.arguments, ", ")));
+                "expected ramp(from, to), the first below the second, but got "
+                "ramp({})",
+                fmt::join(word.arguments, ", "));
     }
 
     ColourRamp::End end(const std::string& text) const {

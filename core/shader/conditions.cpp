@@ -1,16 +1,46 @@
 #include "shader/conditions.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
+
+#include "base/text.h"
 
 namespace relevo::shader {
 namespace {
 
-using Value = std::optional<long long>;
+using Int = long long;
+using Value = std::optional<Int>;
 
 Value truth(const Value& value) {
     if (!value) return std::nullopt;
     return *value != 0;
 }
+
+struct Operator {
+    std::string_view text;
+    int precedence;
+    Value (*apply)(Int a, Int b);
+};
+constexpr std::array kOperators = {
+    Operator{"||", 1, [](Int a, Int b) -> Value { return a || b; }},
+    Operator{"&&", 2, [](Int a, Int b) -> Value { return a && b; }},
+    Operator{"|", 3, [](Int a, Int b) -> Value { return a | b; }},
+    Operator{"^", 4, [](Int a, Int b) -> Value { return a ^ b; }},
+    Operator{"&", 5, [](Int a, Int b) -> Value { return a & b; }},
+    Operator{"==", 6, [](Int a, Int b) -> Value { return a == b; }},
+    Operator{"!=", 6, [](Int a, Int b) -> Value { return a != b; }},
+    Operator{"<", 7, [](Int a, Int b) -> Value { return a < b; }},
+    Operator{">", 7, [](Int a, Int b) -> Value { return a > b; }},
+    Operator{"<=", 7, [](Int a, Int b) -> Value { return a <= b; }},
+    Operator{">=", 7, [](Int a, Int b) -> Value { return a >= b; }},
+    Operator{"<<", 8, [](Int a, Int b) { return b >= 0 && b < 32 ? a * (Int{1} << b) : Value(); }},
+    Operator{">>", 8, [](Int a, Int b) { return b >= 0 && b < 32 ? a >> b : Value(); }},
+    Operator{"+", 9, [](Int a, Int b) -> Value { return a + b; }},
+    Operator{"-", 9, [](Int a, Int b) -> Value { return a - b; }},
+    Operator{"*", 10, [](Int a, Int b) -> Value { return a * b; }},
+    Operator{"/", 10, [](Int a, Int b) { return b != 0 ? a / b : Value(); }},
+    Operator{"%", 10, [](Int a, Int b) { return b != 0 ? a % b : Value(); }}};
 
 /// The expressions of #if (GLSL 4.50, 3.3), by precedence climbing. An unknown value is empty.
 class Expression {
@@ -61,47 +91,10 @@ class Expression {
         return true;
     }
 
-    static int precedence(std::string_view op) {
-        if (op == "||") return 1;
-        if (op == "&&") return 2;
-        if (op == "|") return 3;
-        if (op == "^") return 4;
-        if (op == "&") return 5;
-        if (op == "==" || op == "!=") return 6;
-        if (op == "<" || op == ">" || op == "<=" || op == ">=") return 7;
-        if (op == "<<" || op == ">>") return 8;
-        if (op == "+" || op == "-") return 9;
-        if (op == "*" || op == "/" || op == "%") return 10;
-        return 0;
-    }
-
-    static Value apply(std::string_view op, const Value& a, const Value& b) {
-        if (op == "||") {
-            if ((a && *a) || (b && *b)) return 1;
-            return a && b ? Value(0) : std::nullopt;
-        }
-        if (op == "&&") {
-            if ((a && !*a) || (b && !*b)) return 0;
-            return a && b ? Value(1) : std::nullopt;
-        }
-        if (!a || !b) return std::nullopt;
-        if (op == "|") return *a | *b;
-        if (op == "^") return *a ^ *b;
-        if (op == "&") return *a & *b;
-        if (op == "==") return *a == *b;
-        if (op == "!=") return *a != *b;
-        if (op == "<") return *a < *b;
-        if (op == ">") return *a > *b;
-        if (op == "<=") return *a <= *b;
-        if (op == ">=") return *a >= *b;
-        if (op == "+") return *a + *b;
-        if (op == "-") return *a - *b;
-        if (op == "*") return *a * *b;
-        if (op == "/" && *b != 0) return *a / *b;
-        if (op == "%" && *b != 0) return *a % *b;
-        if (op == "<<" && *b >= 0 && *b < 32) return *a * (1LL << *b);
-        if (op == ">>" && *b >= 0 && *b < 32) return *a >> *b;
-        return std::nullopt;
+    static Value apply(const Operator& op, const Value& a, const Value& b) {
+        if (op.text == "||" && ((a && *a) || (b && *b))) return 1;
+        if (op.text == "&&" && ((a && !*a) || (b && !*b))) return 0;
+        return a && b ? op.apply(*a, *b) : std::nullopt;
     }
 
     /// GLSL's integers have 32 bits. The driver decides about larger values.
@@ -112,9 +105,11 @@ class Expression {
 
     Value binary(int least) {
         Value left = unary();
-        while (at_ < words_.size() && precedence(words_[at_]) >= least) {
-            const std::string op = words_[at_++];
-            left = in_range(apply(op, left, binary(precedence(op) + 1)));
+        while (at_ < words_.size()) {
+            const auto op = std::ranges::find(kOperators, words_[at_], &Operator::text);
+            if (op == kOperators.end() || op->precedence < least) break;
+            ++at_;
+            left = in_range(apply(*op, left, binary(op->precedence + 1)));
         }
         return left;
     }
@@ -135,7 +130,8 @@ class Expression {
             return take(")") ? value : std::nullopt;
         }
         if (at_ == words_.size()) return std::nullopt;
-        const std::string& word = words_[at_++];
+        std::string_view word = words_[at_++];
+        if (word.ends_with('u') || word.ends_with('U')) word.remove_suffix(1);
         const bool hexadecimal = word.substr(0, 2) == "0x" || word.substr(0, 2) == "0X";
         const char* const begin = word.data() + (hexadecimal ? 2 : 0);
         const char* const end = word.data() + word.size();
@@ -165,14 +161,12 @@ class Walk {
   public:
     Walk(const Source& source, Macros& macros) : source_(source), macros_(macros) {
         result_.active.resize(source.tokens.size());
-        result_.undecided.resize(source.tokens.size());
     }
 
     Conditions run() {
         for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
             result_.active[i] = is_active();
-            if (source_.tokens[i].kind != TokenKind::Directive) continue;
-            words_ = directive_tokens(source_.text, source_.tokens[i], source_.file);
+            words_ = source_.tokens[i].words;
             if (!words_.empty()) obey(i);
         }
         return std::move(result_);
@@ -186,13 +180,8 @@ class Walk {
 
     std::string word(std::size_t n) const { return std::string(source_.str(words_[n])); }
 
-    /// The text after the directive's word `n`.
-    std::string rest(std::size_t n) const {
-        std::string text;
-        for (std::size_t k = n; k < words_.size(); ++k)
-            text += word(k) + ' ';
-        return text;
-    }
+    /// The text from the directive's word `n`.
+    std::string rest(std::size_t n) const { return joined(source_, words_.subspan(n)); }
 
     Value condition() const {
         const std::string name = word(0);
@@ -247,12 +236,10 @@ class Walk {
     }
 
     void close(std::size_t i) {
-        const Group& group = groups_.back();
-        if (group.parent_active && !group.decided) {
-            result_.undecided[i] = true;
-            for (const std::size_t directive : group.directives)
-                result_.undecided[directive] = true;
-        }
+        Group& group = groups_.back();
+        group.directives.push_back(i);
+        if (group.parent_active && !group.decided)
+            result_.undecided.push_back(std::move(group.directives));
         groups_.pop_back();
     }
 
@@ -260,7 +247,7 @@ class Walk {
     Macros& macros_;
     Conditions result_;
     std::vector<Group> groups_;
-    std::vector<Token> words_;  // of the directive
+    std::span<const Token> words_;  // of the directive
 };
 
 }  // namespace
@@ -271,6 +258,39 @@ std::optional<long long> evaluate_expression(std::string_view expression, const 
 
 Conditions evaluate_conditions(const Source& source, Macros& macros) {
     return Walk(source, macros).run();
+}
+
+// ---- constants
+
+void Constants::add_params(const Source& source) {
+    for (const Param& param : source.params)
+        if (param.is_static && param.range)
+            known_[param.name] = std::to_string(static_cast<long long>(param.range->max));
+}
+
+void Constants::add(const Source& source, std::size_t i) {
+    const std::vector<Token>& words = source.tokens[i].words;
+    if (source.directive(i) == "define" && words.size() > 1)
+        known_[std::string(source.str(words[1]))] = joined(source, std::span(words).subspan(2));
+    if (!source.is(i, "const") || !(source.is(i + 1, "int") || source.is(i + 1, "uint"))) return;
+    // const int n = 3, m = 4;
+    for (i += 2; source.is(i + 1, "="); ++i) {
+        const std::size_t name = i;
+        i = source.until(i + 2, ",;");
+        known_[std::string(source.str(name))] =
+            "( " + joined(source, std::span(source.tokens).subspan(name + 2, i - name - 2)) + ")";
+    }
+}
+
+std::optional<double> Constants::value(const Source& source,
+                                       std::span<const Token> expression) const {
+    const std::string text = joined(source, expression);
+    // Numbers may be greater than those of #if.
+    std::string_view number = trimmed(text);
+    number = number.substr(0, number.find_last_not_of("uU") + 1);
+    if (const std::optional<double> whole = parse_number(number)) return whole;
+    if (const auto known = evaluate_expression(text, known_)) return static_cast<double>(*known);
+    return std::nullopt;
 }
 
 }  // namespace relevo::shader

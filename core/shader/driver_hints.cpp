@@ -1,7 +1,6 @@
 #include "shader/driver_hints.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <set>
 
@@ -16,77 +15,16 @@ namespace relevo::shader {
 namespace {
 
 // GLSL 4.50, 8: the functions that plugins may use.
-constexpr std::array kFunctions = {"radians",
-                                   "degrees",
-                                   "sin",
-                                   "cos",
-                                   "tan",
-                                   "asin",
-                                   "acos",
-                                   "atan",
-                                   "sinh",
-                                   "cosh",
-                                   "tanh",
-                                   "pow",
-                                   "exp",
-                                   "log",
-                                   "exp2",
-                                   "log2",
-                                   "sqrt",
-                                   "inversesqrt",
-                                   "abs",
-                                   "sign",
-                                   "floor",
-                                   "trunc",
-                                   "round",
-                                   "ceil",
-                                   "fract",
-                                   "mod",
-                                   "modf",
-                                   "min",
-                                   "max",
-                                   "clamp",
-                                   "mix",
-                                   "step",
-                                   "smoothstep",
-                                   "isnan",
-                                   "isinf",
-                                   "length",
-                                   "distance",
-                                   "dot",
-                                   "cross",
-                                   "normalize",
-                                   "faceforward",
-                                   "reflect",
-                                   "refract",
-                                   "transpose",
-                                   "determinant",
-                                   "inverse",
-                                   "lessThan",
-                                   "greaterThan",
-                                   "equal",
-                                   "notEqual",
-                                   "any",
-                                   "all",
-                                   "not",
-                                   "textureSize",
-                                   "texture",
-                                   "textureLod",
-                                   "textureGrad",
-                                   "texelFetch",
-                                   "textureOffset",
-                                   "outerProduct",
-                                   "matrixCompMult",
-                                   "roundEven",
-                                   "floatBitsToInt",
-                                   "intBitsToFloat"};
+constexpr const char* kFunctions =
+    "radians degrees sin cos tan asin acos atan sinh cosh tanh pow exp log exp2 log2 "
+    "sqrt inversesqrt abs sign floor trunc round ceil fract mod modf min max clamp mix "
+    "step smoothstep isnan isinf length distance dot cross normalize faceforward reflect "
+    "refract transpose determinant inverse lessThan greaterThan equal notEqual any all "
+    "not textureSize texture textureLod textureGrad texelFetch textureOffset "
+    "outerProduct matrixCompMult roundEven floatBitsToInt intBitsToFloat";
 
 bool has(std::string_view text, std::string_view word) {
     return text.find(word) != std::string_view::npos;
-}
-
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
 /// The identifier between quotes, which drivers write as `x', 'x' and "x".
@@ -94,7 +32,7 @@ std::string quoted_name(std::string_view message) {
     const std::size_t open = message.find_first_of("`'\"");
     if (open == std::string_view::npos) return {};
     std::size_t end = open + 1;
-    while (end < message.size() && is_letter(message[end]))
+    while (end < message.size() && is_word_byte(message[end]))
         ++end;
     return std::string(message.substr(open + 1, end - open - 1));
 }
@@ -103,7 +41,7 @@ std::vector<std::string> words_of(const std::string& text) {
     std::vector<std::string> words;
     for (std::size_t i = 0; i < text.size();) {
         std::size_t end = i;
-        while (end < text.size() && is_letter(text[end]))
+        while (end < text.size() && is_word_byte(text[end]))
             ++end;
         if (end > i) words.push_back(text.substr(i, end - i));
         i = end + 1;
@@ -113,7 +51,9 @@ std::vector<std::string> words_of(const std::string& text) {
 
 /// Names that the author may have meant, without those of core's internals.
 std::optional<std::string> meant(const std::string& name, const CompiledText& compiled) {
-    std::set<std::string> candidates(kFunctions.begin(), kFunctions.end());
+    std::set<std::string> candidates;
+    for (std::string& function : words_of(kFunctions))
+        candidates.insert(std::move(function));
     candidates.insert(compiled.names.begin(), compiled.names.end());
     try {
         for (const Token& token : tokenize(compiled.text, "text").code)

@@ -1,6 +1,7 @@
 #include "shader/driver_log.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 
@@ -8,36 +9,6 @@
 
 namespace relevo::shader {
 namespace {
-
-/// A log line and the place up to which it is read.
-class Cursor {
-  public:
-    explicit Cursor(std::string_view text) : text_(text) {}
-
-    bool take(std::string_view word) {
-        if (text_.substr(0, word.size()) != word) return false;
-        text_.remove_prefix(word.size());
-        return true;
-    }
-
-    std::optional<int> number() {
-        int value = 0;
-        const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-        if (error != std::errc{} || value < 0) return std::nullopt;
-        text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-        return value;
-    }
-
-    void blanks() {
-        while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t'))
-            text_.remove_prefix(1);
-    }
-
-    std::string_view rest() const { return text_; }
-
-  private:
-    std::string_view text_;
-};
 
 struct Parsed {
     int line = 0;
@@ -58,32 +29,43 @@ Parsed severity_and_message(int line, std::string_view text) {
     return {line, "error", std::string(text)};
 }
 
-std::optional<Parsed> parse_mesa_or_nvidia(std::string_view text) {
-    Cursor cursor(text);
-    if (!cursor.number()) return std::nullopt;
-    if (cursor.take(":")) {  // 0:12(5): error: message
-        const std::optional<int> line = cursor.number();
-        if (!line || !cursor.take("(") || !cursor.number() || !cursor.take("):"))
-            return std::nullopt;
-        return severity_and_message(*line, cursor.rest());
+/// The beginning of a driver's line: L is the line, # another number, a blank any number of blanks.
+struct Form {
+    std::string_view begin;
+    std::string_view severity;  ///< empty: the text goes on with it
+};
+constexpr std::array kForms = {Form{"#:L(#):", ""},  // Mesa, "0:12(5): error: message"
+                               Form{"#(L) :", ""},   // NVIDIA, "0(12) : error C1008: message"
+                               Form{"ERROR: #:L:", "error"},  // Intel, AMD and glslang
+                               Form{"WARNING: #:L:", "warning"}};
+
+std::optional<Parsed> parse_as(const Form& form, std::string_view text) {
+    Parsed parsed;
+    for (const char c : form.begin) {
+        if (c == ' ') {
+            text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+        } else if (c == 'L' || c == '#') {
+            int value = 0;
+            const auto [end, error] =
+                std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error != std::errc{} || value < 0) return std::nullopt;
+            text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+            if (c == 'L') parsed.line = value;
+        } else {
+            if (!text.starts_with(c)) return std::nullopt;
+            text.remove_prefix(1);
+        }
     }
-    if (!cursor.take("(")) return std::nullopt;  // 0(12) : error C1008: message
-    const std::optional<int> line = cursor.number();
-    if (!line || !cursor.take(")")) return std::nullopt;
-    cursor.blanks();
-    if (!cursor.take(":")) return std::nullopt;
-    return severity_and_message(*line, cursor.rest());
+    if (form.severity.empty()) return severity_and_message(parsed.line, text);
+    parsed.severity = form.severity;
+    parsed.message = trimmed(text);
+    return parsed;
 }
 
-std::optional<Parsed> parse_severity_first(std::string_view text) {
-    Cursor cursor(text);
-    const bool error = cursor.take("ERROR:");
-    if (!error && !cursor.take("WARNING:")) return std::nullopt;
-    cursor.blanks();
-    if (!cursor.number() || !cursor.take(":")) return std::nullopt;
-    const std::optional<int> line = cursor.number();
-    if (!line || !cursor.take(":")) return std::nullopt;
-    return Parsed{*line, error ? "error" : "warning", std::string(trimmed(cursor.rest()))};
+std::optional<Parsed> parse_line(std::string_view text) {
+    for (const Form& form : kForms)
+        if (auto parsed = parse_as(form, text)) return parsed;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -115,8 +97,7 @@ DriverLog parse_driver_log(std::string_view log, const LineMap& lines) {
     for (const std::string& piece : split(log, '\n')) {
         const std::string_view text = trimmed(std::string_view(piece).substr(0, piece.find('\0')));
         if (text.empty()) continue;
-        std::optional<Parsed> parsed = parse_mesa_or_nvidia(text);
-        if (!parsed) parsed = parse_severity_first(text);
+        const std::optional<Parsed> parsed = parse_line(text);
         Diagnostic diagnostic;
         if (parsed && parsed->line > 0 && static_cast<std::size_t>(parsed->line) <= lines.size()) {
             diagnostic.severity = parsed->severity;

@@ -51,8 +51,7 @@ std::span<const Hook> hooks() {
 }
 
 const Hook* find_hook(std::string_view name) {
-    const auto found =
-        std::ranges::find_if(kHooks, [&](const Hook& hook) { return hook.name == name; });
+    const auto found = std::ranges::find(kHooks, name, &Hook::name);
     return found == kHooks.end() ? nullptr : &*found;
 }
 

@@ -1,5 +1,4 @@
-#include "shader/lifted.h"
-
+// The declarations that are lifted out of a file.
 #include <array>
 #include <optional>
 
@@ -7,6 +6,7 @@
 
 #include "base/contains.h"
 #include "shader/annotation.h"
+#include "shader/source_cursor.h"
 
 namespace relevo::shader {
 namespace {
@@ -27,15 +27,15 @@ bool is_integer(std::string_view type) {
 
 /// Moves after the `;`. The declaration must be the only one on its line.
 void end_lifted(SourceCursor& cursor, std::size_t first, std::size_t name) {
-    const int line = cursor.token(first).line;
-    while (!cursor.at_end() && cursor.token(cursor.at).line == line && !cursor.is(cursor.at, ";"))
+    const int line = cursor.tokens[first].line;
+    while (!cursor.at_end() && cursor.tokens[cursor.at].line == line && !cursor.is(cursor.at, ";"))
         ++cursor.at;
-    if (!cursor.is(cursor.at, ";") || cursor.token(cursor.at).line != line)
+    if (!cursor.is(cursor.at, ";") || cursor.tokens[cursor.at].line != line)
         cursor.fail(line,
                     fmt::format("{}: expected ; before the end of the line", cursor.str(name)));
     ++cursor.at;
     const bool alone = (first == 0 || cursor.end_line(first - 1) < line) &&
-                       (cursor.at_end() || cursor.token(cursor.at).line > line);
+                       (cursor.at_end() || cursor.tokens[cursor.at].line > line);
     if (!alone)
         cursor.fail(line, fmt::format("{}: expected one uniform or varying, alone on its line",
                                       cursor.str(name)));
@@ -43,8 +43,8 @@ void end_lifted(SourceCursor& cursor, std::size_t first, std::size_t name) {
 }
 
 void add_sampler(SourceCursor& cursor, std::string_view type, std::size_t name) {
-    const std::string& file = cursor.source.file;
-    const int line = cursor.token(name).line;
+    const std::string& file = cursor.file;
+    const int line = cursor.tokens[name].line;
     Sampler sampler{std::string(cursor.str(name)), std::string(type), "", file, line};
     sampler.resource = cursor.is_snippet() ? address_of(sampler.name) : sampler.name;
     if (const auto annotation = cursor.annotation_after(cursor.at - 1)) {
@@ -57,14 +57,14 @@ void add_sampler(SourceCursor& cursor, std::string_view type, std::size_t name) 
             sampler.resource = word.arguments[0];
         }
     }
-    cursor.source.samplers.push_back(std::move(sampler));
+    cursor.samplers.push_back(std::move(sampler));
 }
 
 }  // namespace
 
 void read_uniform(SourceCursor& cursor, std::size_t first, std::size_t type, std::size_t name) {
     const std::string_view type_name = cursor.str(type), name_text = cursor.str(name);
-    const int line = cursor.token(name).line;
+    const int line = cursor.tokens[name].line;
     cursor.check_name(name, name_text);
     const std::size_t after_name = cursor.at;
     end_lifted(cursor, first, name);
@@ -90,18 +90,18 @@ void read_uniform(SourceCursor& cursor, std::size_t first, std::size_t type, std
                                       name_text, cursor.written(after_name)));
     const std::string_view initial = cursor.between(after_name, cursor.at - 1);
     const std::string_view annotation = cursor.annotation_after(cursor.at - 1).value_or("");
-    cursor.source.params.push_back(
-        parse_param(type_name, name_text, initial, annotation, cursor.source.file, line));
+    cursor.params.push_back(
+        parse_param(type_name, name_text, initial, annotation, cursor.file, line));
 }
 
 void read_varying(SourceCursor& cursor, std::size_t first, std::size_t type, std::size_t name,
                   const Qualifiers& qualifiers) {
-    const int line = cursor.token(name).line;
+    const int line = cursor.tokens[name].line;
     Varying varying;
     varying.name = cursor.str(name);
     varying.type = cursor.str(type);
     varying.is_input = qualifiers.count("in") > 0;
-    varying.file = cursor.source.file;
+    varying.file = cursor.file;
     varying.line = line;
     cursor.check_name(name, varying.name);
     for (const std::string_view word : {"flat", "smooth", "noperspective"})
@@ -119,19 +119,19 @@ void read_varying(SourceCursor& cursor, std::size_t first, std::size_t type, std
         cursor.fail(line, fmt::format("{}: whole numbers are not interpolated; expected flat out "
                                       "{} but got out {}",
                                       varying.name, varying.type, varying.type));
-    const bool is_fragment = cursor.source.kind == SourceKind::FragmentMain;
+    const bool is_fragment = cursor.kind == SourceKind::FragmentMain;
     if (!cursor.is_snippet() && varying.is_input != is_fragment)
         cursor.fail(line, fmt::format("{}: inputs of a vertex main and outputs of a fragment main "
                                       "have a layout(location = N)",
                                       varying.name));
-    cursor.source.varyings.push_back(std::move(varying));
+    cursor.varyings.push_back(std::move(varying));
 }
 
 void read_ramp(SourceCursor& cursor, std::size_t first, std::size_t name, std::size_t names) {
     const std::optional<std::string_view> annotation = cursor.annotation_after(cursor.at - 1);
     if (!annotation) return;
     const std::string_view name_text = cursor.str(name);
-    const int line = cursor.token(name).line;
+    const int line = cursor.tokens[name].line;
     std::size_t equals = name + 1;
     while (equals < cursor.at && !cursor.is(equals, "="))
         ++equals;
@@ -140,9 +140,9 @@ void read_ramp(SourceCursor& cursor, std::size_t first, std::size_t name, std::s
         cursor.fail(line, fmt::format("{}: an annotation after a variable is for a legend of "
                                       "colours, const vec3 {}[N] = vec3[](...);",
                                       name_text, name_text));
-    cursor.source.ramps.push_back(parse_ramp(cursor.source.owner, name_text,
-                                             cursor.between(equals, cursor.at - 1), *annotation,
-                                             cursor.source.file, line));
+    cursor.ramps.push_back(parse_ramp(cursor.owner, name_text,
+                                      cursor.between(equals, cursor.at - 1), *annotation,
+                                      cursor.file, line));
 }
 
 }  // namespace relevo::shader

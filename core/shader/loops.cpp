@@ -1,11 +1,9 @@
-#include "shader/loops.h"
-
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "base/contains.h"
 #include "base/text.h"
+#include "shader/limits.h"
 
 namespace relevo::shader {
 namespace {
@@ -16,33 +14,28 @@ class LoopReader {
   public:
     explicit LoopReader(const Source& source) : source_(source) {}
 
-    std::vector<int> run() {
-        std::vector<int> lines;
-        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
-            const std::string_view word = str(i);
-            if (word == "while" || (word == "for" && !is_bounded(i)))
-                lines.push_back(source_.tokens[i].line);
-        }
-        return lines;
+    /// @param head  of a for
+    bool is_bounded(std::size_t head) const {
+        const std::size_t close = source_.tokens[head + 1].partner;
+        const std::size_t condition = source_.until(head + 2, ";") + 1;
+        const std::size_t step = source_.until(condition, ";") + 1;
+        if (step != condition + 4 || step > close) return false;
+        const std::string_view name = str(condition), mark = str(condition + 1);
+        const bool rises = mark == "<" || mark == "<=";
+        if (!(rises || mark == ">" || mark == ">=") || !is_constant(condition + 2)) return false;
+        const std::optional<double> from = start_before(condition - 1),
+                                    to = number(str(condition + 2));
+        std::optional<double> way;
+        if (from && to) way = rises ? *to - *from : *from - *to;
+        if (!approaches(step, close, name, rises, way)) return false;
+        const std::size_t end = source_.after_statement(close + 1);  // of the body
+        for (std::size_t i = close; i < end; ++i)
+            if (str(i) == name && !source_.writes(i).empty()) return false;
+        return true;
     }
 
   private:
-    std::string_view str(std::size_t i) const {
-        return i < source_.tokens.size() && source_.tokens[i].kind != TokenKind::Directive
-                   ? source_.str(source_.tokens[i])
-                   : std::string_view();
-    }
-
-    /// The token after the bracket that closes the one at `i`.
-    std::size_t after_brackets(std::size_t i) const {
-        int depth = 0;
-        do {
-            depth += str(i) == "(" || str(i) == "{";
-            depth -= str(i) == ")" || str(i) == "}";
-            ++i;
-        } while (depth > 0 && i < source_.tokens.size());
-        return i;
-    }
+    std::string_view str(std::size_t i) const { return source_.str(i); }
 
     bool is_constant(std::size_t i) const {
         if (const std::optional<double> value = number(str(i))) return *value <= kMaxTurns;
@@ -55,17 +48,6 @@ class LoopReader {
             return known && (item.kind == Item::Kind::Macro ||
                              (item.kind == Item::Kind::Declaration && str(item.first) == "const"));
         });
-    }
-
-    /// Whether the tokens [first, last) write to a variable.
-    bool writes(std::string_view name, std::size_t first, std::size_t last) const {
-        constexpr std::array<std::string_view, 7> kWriting = {
-            "=", "+=", "-=", "*=", "/=", "++", "--"};
-        for (std::size_t i = first; i < last; ++i)
-            if (str(i) == name &&
-                (contains(kWriting, str(i + 1)) || str(i - 1) == "++" || str(i - 1) == "--"))
-                return true;
-        return false;
     }
 
     /// Whether the step in [first, last) brings a variable to its bound within kMaxTurns.
@@ -89,9 +71,7 @@ class LoopReader {
 
     /// A number of GLSL, without its suffix.
     static std::optional<double> number(std::string_view text) {
-        while (!text.empty() && (text.back() == 'f' || text.back() == 'F' || text.back() == 'u' ||
-                                 text.back() == 'U'))
-            text.remove_suffix(1);
+        text = text.substr(0, text.find_last_not_of("fFuU") + 1);
         if (text.ends_with('.')) text.remove_suffix(1);
         return parse_number(text);
     }
@@ -104,41 +84,18 @@ class LoopReader {
         return std::nullopt;
     }
 
-    /// @param head  of a for
-    bool is_bounded(std::size_t head) const {
-        const std::size_t close = after_brackets(head + 1);  // after the )
-        std::vector<std::size_t> semicolons;
-        for (std::size_t i = head + 1; i < close; ++i)
-            if (str(i) == ";") semicolons.push_back(i);
-        if (semicolons.size() != 2) return false;
-        const std::size_t condition = semicolons[0] + 1;
-        const std::string_view name = str(condition), mark = str(condition + 1);
-        const bool compares = mark == "<" || mark == "<=" || mark == ">" || mark == ">=";
-        if (!compares || semicolons[1] != condition + 3 || !is_constant(condition + 2))
-            return false;
-        const std::size_t step = semicolons[1] + 1;
-        const bool rises = mark == "<" || mark == "<=";
-        const std::optional<double> from = start_before(semicolons[0]),
-                                    to = number(str(condition + 2));
-        std::optional<double> way;
-        if (from && to) way = rises ? *to - *from : *from - *to;
-        if (!approaches(step, close - 1, name, rises, way)) return false;
-        std::size_t end = close;  // of the body
-        if (str(close) == "{")
-            end = after_brackets(close);
-        else
-            while (end < source_.tokens.size() && str(end) != ";")
-                ++end;
-        return !writes(name, close, end);
-    }
-
     const Source& source_;
 };
 
 }  // namespace
 
 std::vector<int> open_loops(const Source& source) {
-    return LoopReader(source).run();
+    std::vector<int> lines;
+    const LoopReader reader(source);
+    for (std::size_t i = 0; i < source.tokens.size(); ++i)
+        if (source.is(i, "while") || (source.is(i, "for") && !reader.is_bounded(i)))
+            lines.push_back(source.tokens[i].line);
+    return lines;
 }
 
 }  // namespace relevo::shader

@@ -1,6 +1,7 @@
 #include "shader/params.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -19,28 +20,6 @@ constexpr double kMaxFloat = static_cast<double>(std::numeric_limits<float>::max
 
 bool is_colour(const Param& param) {
     return param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb;
-}
-
-/// "#rrggbb", and "#rrggbbaa" for four components.
-std::optional<ParamValue> parse_hex_colour(const Param& param, std::string_view text) {
-    const auto count = static_cast<std::size_t>(component_count(param.type));
-    if (text.size() != 7 && text.size() != 9) return std::nullopt;
-    if (text.front() != '#' || text.size() > 1 + 2 * count) return std::nullopt;
-    ParamValue value{};
-    if (count == 4) value[3] = 1;
-    for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i) {
-        int byte = 0;
-        for (const char c : text.substr(2 * i + 1, 2)) {
-            const std::size_t digit =
-                std::string_view("0123456789abcdef")
-                    .find(static_cast<char>(c >= 'A' && c <= 'F' ? c + 32 : c));
-            if (digit == std::string_view::npos) return std::nullopt;
-            byte = byte * 16 + static_cast<int>(digit);
-        }
-        const double share = byte / 255.0;
-        value[i] = param.role == ParamRole::Colour && i < 3 ? linear_of_srgb(share) : share;
-    }
-    return value;
 }
 
 std::optional<ParamValue> parse_bool(std::string_view text) {
@@ -65,9 +44,11 @@ std::optional<ParamValue> read_value(const Param& param, std::string_view text) 
     if (param.type == ParamType::Bool) return parse_bool(text);
     if (const auto word = std::ranges::find(param.words, text); word != param.words.end())
         return ParamValue{static_cast<double>(word - param.words.begin())};
-    if (is_colour(param) && !text.empty() && text.front() == '#')
-        return parse_hex_colour(param, text);
-    return parse_components(param, text);
+    if (!is_colour(param) || !text.starts_with('#')) return parse_components(param, text);
+    std::optional<ParamValue> value = parse_hex_colour(text, component_count(param.type));
+    if (value && param.role == ParamRole::Colour)
+        std::transform(value->begin(), value->begin() + 3, value->begin(), linear_of_srgb);
+    return value;
 }
 
 std::string float_literal(float value) {
@@ -85,16 +66,8 @@ std::string_view glsl_name(ParamType type) {
 }
 
 int component_count(ParamType type) {
-    switch (type) {
-        case ParamType::Vec2:
-            return 2;
-        case ParamType::Vec3:
-            return 3;
-        case ParamType::Vec4:
-            return 4;
-        default:
-            return 1;
-    }
+    constexpr std::array<int, 6> kCounts = {1, 1, 1, 2, 3, 4};
+    return kCounts[static_cast<std::size_t>(type)];
 }
 
 std::string describe_values(const Param& param) {
@@ -148,6 +121,22 @@ bool is_valid(const Param& param, const ParamValue& value) {
             return param.role != ParamRole::Direction ||
                    std::hypot(value[0], value[1], value[2]) > 0;
     }
+}
+
+std::optional<ParamValue> parse_hex_colour(std::string_view text, int components) {
+    const std::size_t bytes = text.size() / 2;
+    if ((text.size() != 7 && text.size() != 9) || text.front() != '#' ||
+        bytes > static_cast<std::size_t>(components))
+        return std::nullopt;
+    ParamValue value{0, 0, 0, components == 4 ? 1.0 : 0.0};
+    for (std::size_t i = 0; i < bytes; ++i) {
+        int byte = 0;
+        const char* const end = text.data() + 2 * i + 3;
+        if (std::from_chars(end - 2, end, byte, 16).ptr != end || text[2 * i + 1] == '-')
+            return std::nullopt;
+        value[i] = byte / 255.0;
+    }
+    return value;
 }
 
 ParamValue parse_value(const Param& param, std::string_view text) {

@@ -59,6 +59,9 @@ struct Param {
 ///         `haze.density: expected a float in [0, 2] 1/km but got "5"`
 ParamValue parse_value(const Param& param, std::string_view text);
 
+/// "#rrggbb", or with four components "#rrggbbaa", as sRGB from 0 to 1; none of another text.
+std::optional<ParamValue> parse_hex_colour(std::string_view text, int components);
+
 /// The shortest text that parse_value reads back as the same value.
 std::string format_value(const Param& param, const ParamValue& value);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -53,45 +54,31 @@ struct PluginPass {
 
     bool is_buffer() const { return output == Output::Floats || output == Output::Uints; }
     /// "bloom_blur_out", by which a compute pass writes.
-    std::string output_name() const;
+    std::string output_name() const {
+        std::string result = resource + "_out";
+        std::ranges::replace(result, '.', '_');
+        return result;
+    }
 };
 
 /// The head of a pass's function, with the name `pass`.
 constexpr std::string_view signature_of(PluginPass::Kind kind) {
-    switch (kind) {
-        case PluginPass::Kind::Volume:
-            return "vec4 pass(in Voxel v)";
-        case PluginPass::Kind::Compute:
-            return "void pass(in Invocation i)";
-        default:
-            return "vec4 pass(in Texel t)";
-    }
+    constexpr std::array<std::string_view, 3> kHeads = {
+        "vec4 pass(in Texel t)", "vec4 pass(in Voxel v)", "void pass(in Invocation i)"};
+    return kHeads[static_cast<std::size_t>(kind)];
 }
 
 /// The word of a kind in plugin.json.
 constexpr std::string_view word_of(PluginPass::Kind kind) {
-    switch (kind) {
-        case PluginPass::Kind::Volume:
-            return "3d";
-        case PluginPass::Kind::Compute:
-            return "compute";
-        default:
-            return "full";
-    }
+    constexpr std::array<std::string_view, 3> kWords = {"full", "3d", "compute"};
+    return kWords[static_cast<std::size_t>(kind)];
 }
 
 /// The type of samplers that read what a pass writes.
 constexpr std::string_view sampler_of(PluginPass::Output output) {
-    switch (output) {
-        case PluginPass::Output::Texture3D:
-            return "sampler3D";
-        case PluginPass::Output::Floats:
-            return "samplerBuffer";
-        case PluginPass::Output::Uints:
-            return "usamplerBuffer";
-        default:
-            return "sampler2D";
-    }
+    constexpr std::array<std::string_view, 4> kSamplers = {"sampler2D", "sampler3D",
+                                                           "samplerBuffer", "usamplerBuffer"};
+    return kSamplers[static_cast<std::size_t>(output)];
 }
 
 /// Formats of textures, by their names in plugin.json and in GLSL's image layouts.

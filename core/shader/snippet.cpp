@@ -1,11 +1,13 @@
 #include "shader/snippet.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/text.h"
+#include "shader/conditions.h"
 
 namespace relevo::shader {
 namespace {
@@ -96,68 +98,21 @@ void read_place(Snippet& snippet, const Item& item) {
 
 void read_wanted(Snippet& snippet, const Token& word) {
     const std::string_view text = snippet.source.str(word);
-    if (word.kind != TokenKind::Word || text.substr(0, kHasPrefix.size()) != kHasPrefix) return;
-    const std::string_view capability = text.substr(kHasPrefix.size());
-    const bool known = std::ranges::any_of(
-        snippet.wanted, [&](const Wanted& wanted) { return wanted.word == capability; });
-    if (!known) snippet.wanted.push_back({std::string(capability), word.line});
-}
-
-// HAS_ macros are 0 or 1: a misspelt one is an error, not a missing capability.
-void check_has(const Snippet& snippet, const std::vector<Token>& directive) {
-    for (std::size_t i = 1; i < directive.size(); ++i) {
-        const std::string_view text = snippet.source.str(directive[i]);
-        if (text.substr(0, kHasPrefix.size()) != kHasPrefix) continue;
-        std::string_view before = snippet.source.str(directive[i - 1]);
-        if (before == "(" && i >= 2) before = snippet.source.str(directive[i - 2]);
-        if (before == "ifdef" || before == "ifndef" || before == "defined")
-            source_error(
-                snippet.file, directive[i].line,
-                fmt::format("{} is always defined, as 0 or as 1; write #if {}", text, text));
-    }
+    if (!text.starts_with(kHasPrefix)) return;
+    const std::string capability(text.substr(kHasPrefix.size()));
+    if (std::ranges::find(snippet.wanted, capability, &Wanted::word) == snippet.wanted.end())
+        snippet.wanted.push_back({capability, word.line});
 }
 
 void check_unique(const Snippet& snippet) {
-    std::vector<std::pair<std::string, int>> seen;
-    const auto add = [&](const std::string& name, int line) {
-        for (const auto& [other, other_line] : seen)
-            if (other == name)
-                source_error(snippet.file, line,
-                             fmt::format("{}: declared already in line {}", name, other_line));
-        seen.emplace_back(name, line);
-    };
-    for (const Param& param : snippet.source.params)
-        add(param.name, param.line);
-    for (const Sampler& sampler : snippet.source.samplers)
-        add(sampler.name, sampler.line);
-    for (const Varying& varying : snippet.source.varyings)
-        add(varying.name, varying.line);
-}
-
-/// The words of a function's code where HAS_<word> is 0 or 1.
-std::vector<std::string_view> words_left(const Source& source, const Item& item,
-                                         std::string_view word, bool is_provided) {
-    const std::string has = fmt::format("{}{}", kHasPrefix, word);
-    const std::string met = (is_provided ? "#if " : "#if !") + has;
-    const std::string unmet = (is_provided ? "#if !" : "#if ") + has;
-    struct Condition {
-        bool omits, omits_else;
-    };
-    std::vector<Condition> around;
-    std::vector<std::string_view> words;
-    for (std::size_t i = item.first; i < item.last; ++i) {
-        const std::string_view text = source.str(source.tokens[i]);
-        if (source.tokens[i].kind != TokenKind::Directive) {
-            if (std::ranges::none_of(around, &Condition::omits)) words.push_back(text);
-        } else if (text.starts_with("#if")) {
-            around.push_back({text == unmet, text == met || text.starts_with(met + " ||")});
-        } else if (text.starts_with("#endif")) {
-            around.pop_back();
-        } else if (!around.empty()) {
-            around.back().omits = around.back().omits_else;
-        }
+    std::map<std::string, int> seen;
+    for (const Lifted& lifted : snippet.source.lifted()) {
+        const auto [first, is_new] = seen.try_emplace(lifted.name, lifted.line);
+        if (!is_new)
+            source_error(
+                snippet.file, lifted.line,
+                fmt::format("{}: declared already in line {}", lifted.name, first->second));
     }
-    return words;
 }
 
 }  // namespace
@@ -170,20 +125,26 @@ const HookFunction* Snippet::find(std::string_view hook_name) const {
 
 bool changes_arguments(const Snippet& snippet, const HookFunction& function, std::string_view word,
                        bool is_provided) {
-    for (const Item& item : snippet.source.items) {
-        if (item.kind != Item::Kind::Function || item.names[0] != function.name) continue;
-        const Signature signature = snippet.source.signature(item);
-        if (signature.type != "void") return true;
-        auto words = words_left(snippet.source, item, word, is_provided);
-        // Core's own function does what is done without the effect.
-        const auto core = std::ranges::find(words, fmt::format("core_on_{}", function.hook->name));
-        words.erase(core, std::ranges::find(core, words.end(), ")"));
-        return std::ranges::any_of(signature.arguments, [&](const Argument& argument) {
-            // Once in the head.
-            return argument.qualifier != "in" && std::ranges::count(words, argument.name) > 1;
-        });
-    }
-    return false;
+    const Source& source = snippet.source;
+    const Item& item = *source.function(function.name);
+    const Signature signature = source.signature(item);
+    if (signature.type != "void") return true;
+    Macros macros{{std::string(kHasPrefix).append(word), is_provided ? "1" : "0"}};
+    // Other files may define the other words.
+    for (const Token& token : source.tokens)
+        for (const Token& other : token.words)
+            macros.try_emplace(std::string(source.str(other)));
+    const Conditions conditions = evaluate_conditions(source, macros);
+    std::vector<std::string_view> words;
+    for (std::size_t i = item.first; i < item.last; ++i)
+        if (conditions.active[i]) words.push_back(source.str(i));
+    // Core's own function does what is done without the effect.
+    const auto core = std::ranges::find(words, fmt::format("core_on_{}", function.hook->name));
+    words.erase(core, std::ranges::find(core, words.end(), ")"));
+    return std::ranges::any_of(signature.arguments, [&](const Argument& argument) {
+        // Once in the head.
+        return argument.qualifier != "in" && std::ranges::count(words, argument.name) > 1;
+    });
 }
 
 Snippet parse_snippet(std::string_view id, std::string_view file, std::string_view text) {
@@ -197,16 +158,7 @@ Snippet parse_snippet(std::string_view id, std::string_view file, std::string_vi
             read_pass(snippet, item);
             read_place(snippet, item);
         }
-    for (const Token& token : snippet.source.tokens) {
-        if (token.kind != TokenKind::Directive) {
-            read_wanted(snippet, token);
-            continue;
-        }
-        const std::vector<Token> words = directive_tokens(snippet.source.text, token, snippet.file);
-        check_has(snippet, words);
-        for (const Token& word : words)
-            read_wanted(snippet, word);
-    }
+    snippet.source.each([&](const Token& word) { read_wanted(snippet, word); });
     check_unique(snippet);
     return snippet;
 }

@@ -10,9 +10,6 @@
 
 namespace relevo::shader {
 
-/// Names that snippets test by #ifdef begin with this.
-inline constexpr std::string_view kHasPrefix = "HAS_";
-
 /// A hook function that a snippet defines.
 struct HookFunction {
     const Hook* hook;

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/contains.h"
-#include "shader/lifted.h"
-#include "shader/source_checks.h"
 #include "shader/source_cursor.h"
 
 namespace relevo::shader {
@@ -27,63 +25,63 @@ class Parser : SourceCursor {
     using SourceCursor::SourceCursor;
 
     Source run() {
-        check_words(source);
-        check_brackets(source);
+        check_words(*this);
+        pair_brackets(*this);
         read_includes();
         while (!at_end())
             item();
         check_annotations();
-        return std::move(source);
+        return std::move(static_cast<Source&>(*this));
     }
 
   private:
     // ---- items
 
     /// Directives inside an item are not evaluated: only conditionals are allowed there.
-    void check_directives_inside(std::size_t first, Item::Kind kind,
+    void check_directives_inside(std::size_t first, Item::Kind of,
                                  const std::vector<std::string>& names) const {
         for (std::size_t i = first; i < at; ++i) {
-            if (token(i).kind != TokenKind::Directive) continue;
-            const std::vector<Token> words = directive_tokens(source.text, token(i), source.file);
-            const std::string_view what = words.empty() ? "if" : source.str(words[0]);
+            if (tokens[i].kind != TokenKind::Directive) continue;
+            const std::string_view what = directive(i);
+            if (what.empty()) continue;
             if (what == "define" || what == "undef" || !contains(kDirectives, what))
-                fail(token(i).line,
+                fail(tokens[i].line,
                      fmt::format("#{} inside {}; move it out of the {}", what,
                                  names.empty() ? "a declaration" : names.front(),
-                                 kind == Item::Kind::Function ? "function" : "declaration"));
+                                 of == Item::Kind::Function ? "function" : "declaration"));
         }
     }
 
-    void add(Item::Kind kind, std::size_t first, std::vector<std::string> names, int name_line) {
-        if (token(first).kind != TokenKind::Directive) check_directives_inside(first, kind, names);
+    void add(Item::Kind of, std::size_t first, std::vector<std::string> names, int name_line) {
+        if (tokens[first].kind != TokenKind::Directive) check_directives_inside(first, of, names);
         Item item;
-        item.kind = kind;
+        item.kind = of;
         item.names = std::move(names);
         item.first = first;
         item.last = at;
         item.name_line = name_line;
-        item.begin = token(first).offset;
-        item.line = token(first).line;
-        item.end = token(at - 1).offset + token(at - 1).length;
+        item.begin = tokens[first].offset;
+        item.line = tokens[first].line;
+        item.end = tokens[at - 1].offset + tokens[at - 1].length;
         attach_comments(item, first == 0 ? 0 : end_line(first - 1), end_line(at - 1));
-        source.items.push_back(std::move(item));
+        items.push_back(std::move(item));
     }
 
     void item() {
-        if (token(at).kind == TokenKind::Directive)
-            directive();
+        if (tokens[at].kind == TokenKind::Directive)
+            read_directive();
         else if (is(at, ";"))
             ++at;
         else
             declaration();
     }
 
-    void directive() {
+    void read_directive() {
         const std::size_t first = at++;
-        const int line = token(first).line;
-        const std::vector<Token> words = directive_tokens(source.text, token(first), source.file);
-        if (words.empty()) return;
-        const std::string_view name = source.str(words[0]);
+        const int line = tokens[first].line;
+        const std::vector<Token>& words = tokens[first].words;
+        const std::string_view name = directive(first);
+        if (name.empty()) return;
         if (name == "version" || name == "extension")
             fail(line, fmt::format("#{} is core's: every program is plain GLSL 4.50 core", name));
         if (name == "line") fail(line, "#line would lose the file's own line numbers; remove it");
@@ -92,26 +90,24 @@ class Parser : SourceCursor {
         if (name == "define" || name == "undef") {
             if (words.size() < 2 || words[1].kind != TokenKind::Word)
                 fail(line, fmt::format("#{} without a name", name));
-            const std::string macro(source.str(words[1]));
+            const std::string macro(str(words[1]));
             check_name(first, macro);
-            if (macro.find("__") != std::string::npos)
-                fail(line, fmt::format("{}: names with __ are reserved for GLSL", macro));
             add(name == "define" ? Item::Kind::Macro : Item::Kind::Undef, first, {macro}, line);
             return;
         }
-        if (name.substr(0, 2) == "if") conditional_lines.push_back(line);
+        if (name.starts_with("if")) conditional_lines.push_back(line);
         if (name == "endif") conditional_lines.pop_back();
         add(Item::Kind::Conditional, first, {}, line);
     }
 
     void declaration() {
         const std::size_t first = at;
-        const int line = token(first).line;
+        const int line = tokens[first].line;
         Qualifiers qualifiers;
         while (is_word(at) && contains(kQualifiers, str(at))) {
             qualifiers.emplace(str(at));
             ++at;
-            if (is(at - 1, "layout") && is(at, "(")) at = after_brackets(at);
+            if (is(at - 1, "layout") && is(at, "(")) at = next(at);
         }
         const auto has = [&](std::string_view q) { return qualifiers.count(q) > 0; };
 
@@ -134,7 +130,7 @@ class Parser : SourceCursor {
             return;
         }
         if (!is_word(at))
-            fail(token(std::min(at, source.tokens.size() - 1)).line,
+            fail(tokens[std::min(at, tokens.size() - 1)].line,
                  fmt::format("expected a declaration but got {}", written(at)));
         const std::size_t type = at++;
         if (is(at, "{"))
@@ -142,7 +138,7 @@ class Parser : SourceCursor {
                                    "one by one",
                                    str(type)));
         while (is(at, "["))
-            at = after_brackets(at);
+            at = next(at);
         if (!is_word(at))
             fail(line, fmt::format("expected a declaration but got {} {}", str(type), written(at)));
         const std::size_t name = at++;
@@ -157,28 +153,27 @@ class Parser : SourceCursor {
     }
 
     void skip_declaration() {
-        while (!at_end() && !is(at, ";"))
-            at = is(at, "{") || is(at, "(") ? after_brackets(at) : at + 1;
-        expect_semicolon(token(at - 1).line);
+        at = until(at, ";");
+        expect_semicolon(tokens[at - 1].line);
     }
 
     void structure(std::size_t first) {
-        const int line = token(first).line;
+        const int line = tokens[first].line;
         ++at;
         if (!is_word(at) || !is(at + 1, "{"))
             fail(line, "expected a struct with a name and its members");
         const std::size_t name = at;
         check_name(name, str(name));
         std::vector<std::string> names = {std::string(str(name))};
-        at = after_brackets(at + 1);
-        if (is_word(at) && token(at).line > end_line(at - 1))
-            fail(token(at - 1).line, fmt::format("expected ; after the struct {}", names[0]));
+        at = next(at + 1);
+        if (is_word(at) && tokens[at].line > end_line(at - 1))
+            fail(tokens[at - 1].line, fmt::format("expected ; after the struct {}", names[0]));
         if (is_word(at)) {
             const std::size_t variable = at++;
             declarators(variable, names);
         }
         expect_semicolon(line);
-        add(Item::Kind::Declaration, first, std::move(names), token(name).line);
+        add(Item::Kind::Declaration, first, std::move(names), tokens[name].line);
     }
 
     /// Reads from the token after the first name up to the semicolon.
@@ -187,20 +182,20 @@ class Parser : SourceCursor {
             check_name(name, str(name));
             names.emplace_back(str(name));
             while (!at_end() && !is(at, ",") && !is(at, ";")) {
-                if (token(at).kind == TokenKind::Directive)
-                    fail(token(at).line,
+                if (tokens[at].kind == TokenKind::Directive)
+                    fail(tokens[at].line,
                          fmt::format("expected ; after {} but got a directive", names.back()));
                 // In an expression no word follows an operand, and no body follows a `)`.
-                const bool operand = is_word(at - 1) || token(at - 1).kind == TokenKind::Number ||
+                const bool operand = is_word(at - 1) || tokens[at - 1].kind == TokenKind::Number ||
                                      is(at - 1, ")") || is(at - 1, "}");
                 if (operand && (is_word(at) || is(at, "{")))
-                    fail(token(at - 1).line,
+                    fail(tokens[at - 1].line,
                          fmt::format("expected ; after {} but got {}", names.back(), str(at)));
-                at = is(at, "(") || is(at, "[") || is(at, "{") ? after_brackets(at) : at + 1;
+                at = next(at);
             }
             if (!is(at, ",")) return;
             name = at + 1;
-            if (!is_word(name)) fail(token(at).line, "expected a name after the comma");
+            if (!is_word(name)) fail(tokens[at].line, "expected a name after the comma");
             at = name + 1;
         }
     }
@@ -208,46 +203,95 @@ class Parser : SourceCursor {
     void variables(std::size_t first, std::size_t name) {
         std::vector<std::string> names;
         declarators(name, names);
-        expect_semicolon(token(name).line);
+        expect_semicolon(tokens[name].line);
         if (is_snippet()) read_ramp(*this, first, name, names.size());
-        add(Item::Kind::Declaration, first, std::move(names), token(name).line);
+        add(Item::Kind::Declaration, first, std::move(names), tokens[name].line);
     }
 
     void function(std::size_t first, std::size_t name) {
-        const std::string text(str(name));
-        const int line = token(name).line;
-        check_name(name, text);
-        at = after_brackets(at);
+        const std::string word(str(name));
+        const int line = tokens[name].line;
+        check_name(name, word);
+        at = next(at);
         if (is(at, ";")) {
             ++at;
-            add(Item::Kind::Prototype, first, {text}, line);
+            add(Item::Kind::Prototype, first, {word}, line);
             return;
         }
         if (!is(at, "{"))
-            fail(line, fmt::format("expected {{ or ; after the head of {} but got {}", text,
+            fail(line, fmt::format("expected {{ or ; after the head of {} but got {}", word,
                                    written(at)));
-        at = after_brackets(at);
-        add(Item::Kind::Function, first, {text}, line);
-        if (is_snippet() && text.substr(source.owner.size(), 4) == "_on_")
-            check_unconditional(line, text);
+        at = next(at);
+        add(Item::Kind::Function, first, {word}, line);
+        if (is_snippet() && word.substr(owner.size(), 4) == "_on_") check_unconditional(line, word);
     }
 };
 
 }  // namespace
 
+std::vector<Lifted> Source::lifted() const {
+    std::vector<Lifted> all;
+    for (const Param& param : params)
+        all.push_back({param.name, owner, param.file, param.line});
+    for (const Sampler& sampler : samplers)
+        all.push_back({sampler.name, owner, sampler.file, sampler.line, &sampler});
+    for (const Varying& varying : varyings)
+        all.push_back({varying.name, owner, varying.file, varying.line, nullptr, &varying});
+    return all;
+}
+
 Signature Source::signature(const Item& item) const {
-    std::size_t i = item.first;
-    while (str(tokens[i]) != "(")
-        ++i;
-    int depth = 0;
-    std::size_t close = i;
-    do {
-        depth += (str(tokens[close]) == "(") - (str(tokens[close]) == ")");
-        ++close;
-    } while (depth > 0);
+    std::size_t open = item.first;
+    while (!is(open, "("))
+        ++open;
     const std::size_t begin = tokens[item.first].offset;
-    const std::size_t end = tokens[close - 1].offset + 1;
-    return parse_signature(std::string_view(text).substr(begin, end - begin));
+    return parse_signature(
+        std::string_view(text).substr(begin, tokens[tokens[open].partner].offset + 1 - begin));
+}
+
+std::size_t Source::until(std::size_t i, std::string_view marks) const {
+    while (i < tokens.size() && (str(i).size() != 1 || marks.find(str(i)) == marks.npos))
+        i = next(i);
+    return i;
+}
+
+std::size_t Source::after_statement(std::size_t i) const {
+    constexpr std::array<std::string_view, 6> kBefore = {"for",    "if",   "while",
+                                                         "switch", "else", "do"};
+    int left = 1000;  // Longer chains take too long to follow.
+    do {
+        for (; i < tokens.size() &&
+               (tokens[i].kind == TokenKind::Directive || contains(kBefore, str(i)));
+             i = is(i + 1, "(") ? next(i + 1) : i + 1)
+            if (--left == 0) return i;
+        i = is(i, "{") ? next(i) : until(i, ";") + 1;
+    } while (is(i, "else"));
+    return i;
+}
+
+std::string_view Source::writes(std::size_t i) const {
+    constexpr std::array<std::string_view, 4> kComparing = {"==", "!=", "<=", ">="};
+    if (is(i - 1, "++") || is(i - 1, "--")) return str(i - 1);
+    ++i;
+    while (is(i, ".") || is(i, "["))
+        i = is(i, ".") ? i + 2 : next(i);
+    const bool is_writing =
+        is(i, "++") || is(i, "--") || (str(i).ends_with('=') && !contains(kComparing, str(i)));
+    return is_writing ? str(i) : "";
+}
+
+std::string joined(const Source& source, std::span<const Token> tokens) {
+    std::string text;
+    for (const Token& token : tokens)
+        text.append(source.str(token)) += ' ';
+    return text;
+}
+
+const Item* Source::function(std::string_view name) const {
+    const auto found = std::ranges::find_if(items, [&](const Item& item) {
+        return item.kind == Item::Kind::Function && item.names[0] == name;
+    });
+    return found == items.end() ? nullptr : &*found;
 }
 
 Source parse_source(SourceKind kind, std::string_view owner, std::string_view file,

@@ -1,10 +1,10 @@
-#include "shader/source_checks.h"
-
+// The checks of SourceCursor's header.
 #include <array>
 
 #include <fmt/format.h>
 
 #include "base/contains.h"
+#include "shader/source_cursor.h"
 
 namespace relevo::shader {
 namespace {
@@ -12,27 +12,42 @@ namespace {
 constexpr std::array<std::string_view, 10> kOwnedByCore = {
     "gl_Position",   "gl_PointSize", "gl_ClipDistance",  "gl_CullDistance", "gl_FragDepth",
     "gl_SampleMask", "gl_Layer",     "gl_ViewportIndex", "gl_FragColor",    "gl_FragData"};
-struct Open {
-    char bracket;
-    int line;
-};
+constexpr std::array<std::string_view, 3> kTestsOfMacros = {"ifdef", "ifndef", "defined"};
 
-struct Branch {
-    std::size_t depth;  ///< brackets that were open before the #if
-    int line;
+/// A word that a plugin must not use. The message has {0}, the word, and {1}, the plugin's id.
+struct WordRule {
+    /// @param before  the token before the word, without brackets
+    bool (*is_broken)(std::string_view word, std::string_view before);
+    std::string_view message;
 };
+// Names that a macro pastes together are not checked: pasting is refused.
+constexpr std::array kWordRules = {
+    WordRule{[](auto word, auto) { return word.find("__") != word.npos; },
+             "{0}: names with __ are reserved for GLSL"},
+    WordRule{[](auto word, auto) { return contains(kOwnedByCore, word); },
+             "{0} is core's; a plugin moves the ground in {1}_on_displace"},
+    WordRule{[](auto word, auto) { return word == "discard"; },
+             "discard: every pixel must be written, or it shows an earlier frame; leave the "
+             "arguments unchanged instead"},
+    WordRule{[](auto word, auto) { return word.starts_with("hook_"); },
+             "{0}: only core's main programs call hooks"},
+    WordRule{[](auto word, auto) { return word == "#" || word == "\""; },
+             "{0} is not allowed in a directive of GLSL 4.50"},
+    // A misspelt one is an error, not a missing capability.
+    WordRule{[](auto word, auto before) {
+                 return word.starts_with(kHasPrefix) && contains(kTestsOfMacros, before);
+             },
+             "{0} is always defined, as 0 or as 1; write #if {0}"}};
 
 class Brackets {
   public:
-    explicit Brackets(const Source& source) : source_(source) {}
+    explicit Brackets(Source& source) : source_(source) {}
 
-    void check() {
-        for (const Token& token : source_.tokens) {
-            if (token.kind == TokenKind::Directive) {
-                directive(token);
-                continue;
-            }
-            bracket(open_, source_.str(token), token.line);
+    void pair() {
+        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
+            Token& token = source_.tokens[i];
+            if (token.kind == TokenKind::Directive) directive(token);
+            bracket(source_.tokens, i, open_);
             if (!branches_.empty() && open_.size() < branches_.back().depth)
                 fail(token.line, fmt::format("{} closes a bracket that was opened before the #if "
                                              "of line {}",
@@ -40,93 +55,85 @@ class Brackets {
         }
         // A forgotten brace leaves its function open: that is the line to report.
         if (!open_.empty())
-            fail(open_.front().line, fmt::format("{} is never closed", open_.front().bracket));
+            fail(source_.tokens[open_.front()].line,
+                 fmt::format("{} is never closed", source_.str(open_.front())));
         if (!branches_.empty()) fail(branches_.back().line, "#if without an #endif");
     }
 
   private:
+    struct Branch {
+        std::size_t depth;  ///< brackets that were open before the #if
+        int line;
+    };
+
     [[noreturn]] void fail(int line, std::string_view message) const {
         source_error(source_.file, line, message);
     }
 
-    void bracket(std::vector<Open>& open, std::string_view text, int line) const {
-        if (text == "(" || text == "[" || text == "{") {
-            open.push_back({text[0], line});
-        } else if (text == ")" || text == "]" || text == "}") {
-            const char expected = text == ")" ? '(' : text == "]" ? '[' : '{';
-            if (open.empty()) fail(line, fmt::format("{} closes nothing", text));
-            if (open.back().bracket != expected)
-                fail(line, fmt::format("{} cannot close the {} of line {}", text,
-                                       open.back().bracket, open.back().line));
-            open.pop_back();
-        }
+    void bracket(std::vector<Token>& tokens, std::size_t i, std::vector<std::size_t>& open) const {
+        constexpr std::string_view kOpening = "([{", kClosing = ")]}";
+        const std::string_view text = source_.str(tokens[i]);
+        if (text.size() != 1) return;
+        if (kOpening.find(text) != text.npos) open.push_back(i);
+        const std::size_t kind = kClosing.find(text);
+        if (kind == text.npos) return;
+        if (open.empty()) fail(tokens[i].line, fmt::format("{} closes nothing", text));
+        Token& partner = tokens[open.back()];
+        if (source_.str(partner)[0] != kOpening[kind])
+            fail(tokens[i].line, fmt::format("{} cannot close the {} of line {}", text,
+                                             source_.str(partner), partner.line));
+        partner.partner = i;
+        tokens[i].partner = open.back();
+        open.pop_back();
     }
 
-    void directive(const Token& token) {
-        const std::vector<Token> words = directive_tokens(source_.text, token, source_.file);
-        if (words.empty()) return;
-        const std::string_view name = source_.str(words[0]);
+    void directive(Token& token) {
+        if (token.words.empty()) return;
+        const std::string_view name = source_.str(token.words[0]);
         if (name == "define") {
-            std::vector<Open> inside;
-            for (const Token& word : words)
-                bracket(inside, source_.str(word), word.line);
-            if (!inside.empty())
-                fail(inside.back().line,
-                     fmt::format("{} is never closed in this #define", inside.back().bracket));
-        } else if (name.substr(0, 2) == "if") {
+            std::vector<std::size_t> inside;
+            for (std::size_t i = 0; i < token.words.size(); ++i)
+                bracket(token.words, i, inside);
+            if (!inside.empty()) {
+                const Token& last = token.words[inside.back()];
+                fail(last.line,
+                     fmt::format("{} is never closed in this #define", source_.str(last)));
+            }
+        } else if (name.starts_with("if")) {
             branches_.push_back({open_.size(), token.line});
         } else if (name == "elif" || name == "else" || name == "endif") {
             if (branches_.empty()) fail(token.line, fmt::format("#{} without an #if", name));
-            if (open_.size() != branches_.back().depth)
-                fail(open_.back().line, fmt::format("{} is not closed before the #{} of line {}",
-                                                    open_.back().bracket, name, token.line));
+            if (open_.size() != branches_.back().depth) {
+                const Token& last = source_.tokens[open_.back()];
+                fail(last.line, fmt::format("{} is not closed before the #{} of line {}",
+                                            source_.str(last), name, token.line));
+            }
             if (name == "endif") branches_.pop_back();
         }
     }
 
-    const Source& source_;
-    std::vector<Open> open_;
+    Source& source_;
+    std::vector<std::size_t> open_;
     std::vector<Branch> branches_;
 };
-
-void check_word(const Source& source, const Token& token) {
-    const std::string_view word = source.str(token);
-    const auto fail = [&](const std::string& message) {
-        source_error(source.file, token.line, message);
-    };
-    if (word.find("__") != std::string_view::npos)
-        fail(fmt::format("{}: names with __ are reserved for GLSL", word));
-    if (contains(kOwnedByCore, word))
-        fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
-                         source.owner));
-    if (word == "discard")
-        fail(
-            "discard: every pixel must be written, or it shows an earlier frame; leave the "
-            "arguments unchanged instead");
-    if (word.substr(0, 5) == "hook_")
-        fail(fmt::format("{}: only core's main programs call hooks", word));
-}
 
 }  // namespace
 
 void check_words(const Source& source) {
-    if (source.kind != SourceKind::Snippet) return;
-    for (const Token& token : source.tokens) {
-        if (token.kind == TokenKind::Word) check_word(source, token);
-        if (token.kind != TokenKind::Directive) continue;
-        // Names that a macro pastes together are not checked.
-        for (const Token& word : directive_tokens(source.text, token, source.file)) {
-            if (word.kind == TokenKind::Word) check_word(source, word);
-            if (source.str(word) == "#" || source.str(word) == "\"")
-                source_error(
-                    source.file, word.line,
-                    fmt::format("{} is not allowed in a directive of GLSL 4.50", source.str(word)));
-        }
-    }
+    if (!source.is_snippet()) return;
+    std::string_view before;
+    source.each([&](const Token& token) {
+        const std::string_view word = source.str(token);
+        for (const WordRule& rule : kWordRules)
+            if (rule.is_broken(word, before))
+                source_error(source.file, token.line,
+                             fmt::format(fmt::runtime(rule.message), word, source.owner));
+        if (word != "(") before = word;
+    });
 }
 
-void check_brackets(const Source& source) {
-    Brackets(source).check();
+void pair_brackets(Source& source) {
+    Brackets(source).pair();
 }
 
 }  // namespace relevo::shader

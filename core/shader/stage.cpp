@@ -16,11 +16,6 @@ namespace {
 
 constexpr std::string_view kHookPrefix = "hook_";
 
-std::string bare_name(const std::string& file) {
-    const std::size_t slash = file.rfind('/');
-    return slash == std::string::npos ? file : file.substr(slash + 1);
-}
-
 bool is_service(const Hook& hook) {
     return hook.kind == HookKind::Service;
 }
@@ -57,27 +52,22 @@ Stage::Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInp
     const std::string& main = vertex                       ? program.vertex_main
                               : kind == StageKind::Compute ? program.compute_main
                                                            : program.fragment_main;
-    const SourceKind main_kind = vertex ? SourceKind::VertexMain : SourceKind::FragmentMain;
-
-    add_core(UnitRole::Types, SourceKind::Lib, "lib/types.glsl");
-    add_core(UnitRole::Frame, SourceKind::Lib, "lib/frame.glsl");
+    const Source* const main_source =
+        core_source(vertex ? SourceKind::VertexMain : SourceKind::FragmentMain, main);
+    const Source* const defaults = core_source(SourceKind::Defaults, "defaults.glsl");
+    add_unit(UnitRole::Types, core_source(SourceKind::Lib, "lib/types.glsl"), "lib/types.glsl");
+    add_unit(UnitRole::Frame, core_source(SourceKind::Lib, "lib/frame.glsl"), "lib/frame.glsl");
     // Core's items first: plugins must not change its text.
-    add_core(UnitRole::Main, main_kind, main);
-    const Unit main_unit = std::move(units_.back());
-    units_.pop_back();
-    add_core(UnitRole::Defaults, SourceKind::Defaults, "defaults.glsl");
-    const Unit defaults = std::move(units_.back());
-    units_.pop_back();
-
     std::vector<std::string> pending;
-    add_includes(*main_unit.source, pending);
-    add_includes(*defaults.source, pending);
+    add_includes(*main_source, pending);
+    add_includes(*defaults, pending);
     for (const Snippet* snippet : input.snippets)
         add_includes(snippet->source, pending);
-    units_.push_back(defaults);
+    add_unit(UnitRole::Defaults, defaults, "defaults.glsl");
     for (const Snippet* snippet : input.snippets)
-        add_unit(UnitRole::Snippet, &snippet->source, bare_name(snippet->file));
-    units_.push_back(main_unit);
+        add_unit(UnitRole::Snippet, &snippet->source,
+                 std::filesystem::path(snippet->file).filename().string());
+    add_unit(UnitRole::Main, main_source, main);
 
     Macros macros;
     for (const Define& define : program.defines)
@@ -96,10 +86,10 @@ void Stage::add_unit(UnitRole role, const Source* source, std::string title) {
     units_.push_back({role, source, std::move(title), {}, {}});
 }
 
-void Stage::add_core(UnitRole role, SourceKind kind, const std::string& name) {
+const Source* Stage::core_source(SourceKind kind, const std::string& name) {
     const Source* const source = library_.find(kind, name);
     if (!source) failed(fmt::format("shader: {}: core has no such shader file", name));
-    add_unit(role, source, name);
+    return source;
 }
 
 std::string Stage::no_library(const Source& source, const Include& include) const {
@@ -143,12 +133,8 @@ void Stage::index(Macros macros) {
             for (const std::string& name : source.items[i].names)
                 places_[name].push_back({u, i});
         }
-        for (const Param& param : source.params)
-            lift(param.name, {nullptr, nullptr, source.owner, param.file, param.line});
-        for (const Sampler& sampler : source.samplers)
-            lift(sampler.name, {nullptr, &sampler, source.owner, sampler.file, sampler.line});
-        for (const Varying& varying : source.varyings)
-            lift(varying.name, {&varying, nullptr, source.owner, varying.file, varying.line});
+        for (const Lifted& lifted : source.lifted())
+            lift(lifted);
     }
     for (const auto& [name, places] : places_) {
         const auto other = lifted_.find(name);
@@ -164,8 +150,8 @@ void Stage::index(Macros macros) {
     }
 }
 
-void Stage::lift(const std::string& name, Lifted lifted) {
-    const auto [known, fresh] = lifted_.try_emplace(name, lifted);
+void Stage::lift(const Lifted& lifted) {
+    const auto [known, fresh] = lifted_.try_emplace(lifted.name, lifted);
     if (fresh) return;
     // Two of core's files may declare the same sampler.
     const Lifted& other = known->second;
@@ -174,7 +160,7 @@ void Stage::lift(const std::string& name, Lifted lifted) {
         return;
     throw AuthorError(lifted.owner,
                       fmt::format("shader: {}:{}: {} is declared already, in {}:{}", lifted.file,
-                                  lifted.line, name, other.file, other.line));
+                                  lifted.line, lifted.name, other.file, other.line));
 }
 
 // ---- queries
@@ -357,29 +343,16 @@ void Stage::keep(const Place& place) {
 
 // Keeps the undecided directives around kept items: the driver evaluates them.
 void Stage::keep_conditionals(const Place& place) {
-    Unit& unit = units_[place.unit];
+    const Unit& unit = unit_of(place);
     const std::vector<Item>& items = unit.source->items;
-    std::vector<std::vector<std::size_t>> open;  // directives of the groups around items[i]
-    std::vector<std::vector<std::size_t>> around;
-    std::size_t still_open = 0;  // of the groups around the item
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i == place.item) still_open = open.size();
-        if (items[i].kind != Item::Kind::Conditional) continue;
-        const Token& token = unit.source->tokens[items[i].first];
-        const std::string_view name =
-            unit.source->str(directive_tokens(unit.source->text, token, unit.source->file)[0]);
-        if (name.substr(0, 2) == "if") open.emplace_back();
-        open.back().push_back(i);
-        if (name != "endif") continue;
-        if (i > place.item && open.size() == still_open) {
-            around.push_back(open.back());
-            --still_open;
+    const std::size_t at = items[place.item].first;
+    for (const std::vector<std::size_t>& group : unit.conditions.undecided) {
+        if (at < group.front() || at > group.back()) continue;
+        for (const std::size_t directive : group) {
+            const auto found = std::ranges::find(items, directive, &Item::first);
+            keep({place.unit, static_cast<std::size_t>(found - items.begin())});
         }
-        open.pop_back();
     }
-    for (const std::vector<std::size_t>& group : around)
-        for (const std::size_t directive : group)
-            if (unit.conditions.undecided[items[directive].first]) keep({place.unit, directive});
 }
 
 void Stage::read(const Place& place) {

@@ -99,20 +99,12 @@ class Stage {
         std::size_t unit;
         std::size_t item;
     };
-    struct Lifted {
-        const Varying* varying = nullptr;
-        const Sampler* sampler = nullptr;
-        std::string owner;
-        std::string file;
-        int line = 0;
-    };
-
-    void add_core(UnitRole role, SourceKind kind, const std::string& name);
+    const Source* core_source(SourceKind kind, const std::string& name);
     void add_includes(const Source& source, std::vector<std::string>& pending);
     std::string no_library(const Source& source, const Include& include) const;
     void add_unit(UnitRole role, const Source* source, std::string title);
     void index(Macros macros);
-    void lift(const std::string& name, Lifted lifted);
+    void lift(const Lifted& lifted);
 
     const Item& item(const Place& place) const;
     const Unit& unit_of(const Place& place) const { return units_[place.unit]; }
@@ -125,7 +117,6 @@ class Stage {
     void read(const Place& place);
     void call_hook(const Hook& hook, const Place& from, const std::string& by);
     void check_name(const Place& place, const std::string& name, bool called) const;
-    void check_library(const Place& place, const std::string& name) const;
     void check_stage(const Place& place, const Uses& uses) const;
     void check_output(const Place& place, const std::string& name) const;
     void check_shared(const Place& place) const;
@@ -145,10 +136,10 @@ class Stage {
     std::map<std::string, std::vector<Place>, std::less<>> places_;  // of globals in the text
     std::map<std::string, Lifted, std::less<>> lifted_;              // of globals lifted out
     std::map<std::string, std::string, std::less<>>
-        parents_;                                         // needed name -> the name that needs it
-    std::set<std::string_view> hooks_;                    // called by core or snippets
-    std::set<std::string_view> early_hooks_;              // before their definition
-    std::map<std::string, Uses, std::less<>> functions_;  // names that kept functions use
+        parents_;                             // needed name -> the name that needs it
+    std::set<std::string_view> hooks_;        // called by core or snippets
+    std::set<std::string_view> early_hooks_;  // before their definition
+    UsesOf functions_;                        // names that kept functions use
     std::deque<Place> queue_;
 };
 

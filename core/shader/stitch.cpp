@@ -337,6 +337,17 @@ class Stitcher {
                 result_.plugins.push_back(unit.source->owner);
     }
 
+    void add_names() {
+        for (const Snippet* snippet : input_.snippets) {
+            for (const Item& item : snippet->source.items)
+                result_.names.insert(result_.names.end(), item.names.begin(), item.names.end());
+            for (const Lifted& lifted : snippet->source.lifted())
+                result_.names.push_back(lifted.name);
+            for (const Param& param : snippet->source.params)
+                if (!is_constant(param)) result_.values.push_back(param.name);
+        }
+    }
+
     const ProgramRecipe& program_;
     const StitchInput& input_;
     CoreLibrary library_;
@@ -346,22 +357,6 @@ class Stitcher {
     std::optional<Stage> shading_;
     StoredVaryings stored_;
     TextureUnits units_;
-    void add_names() {
-        for (const Snippet* snippet : input_.snippets) {
-            const Source& source = snippet->source;
-            for (const Item& item : source.items)
-                result_.names.insert(result_.names.end(), item.names.begin(), item.names.end());
-            for (const Param& param : source.params) {
-                result_.names.push_back(param.name);
-                if (!is_constant(param)) result_.values.push_back(param.name);
-            }
-            for (const Sampler& sampler : source.samplers)
-                result_.names.push_back(sampler.name);
-            for (const Varying& varying : source.varyings)
-                result_.names.push_back(varying.name);
-        }
-    }
-
     Stitched result_;
 };
 

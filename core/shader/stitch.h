@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "shader/core_texts.h"
+#include "shader/driver_log.h"
 #include "shader/instance_set.h"
-#include "shader/line_map.h"
 #include "shader/param_store.h"
 #include "shader/plugin_pass.h"
 #include "shader/snippet.h"

@@ -1,6 +1,8 @@
 #include "shader/tokenizer.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,10 +15,6 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-bool is_word(char c) {
-    return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
 // Longest first: GLSL reads the longest that matches.
 constexpr std::array<std::string_view, 21> kLongMarks = {
     "<<=", ">>=", "<<", ">>", "<=", ">=", "==", "!=", "&&", "||", "^^",
@@ -27,15 +25,18 @@ class Scanner {
   public:
     Scanner(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
-    /// Reads `text[offset_, end)`. Inside a directive a `#` is an operator, not a directive.
-    Tokens run(std::size_t begin, std::size_t end, int line, int column, bool in_directive) {
-        at_ = begin;
-        end_ = end;
-        line_ = line;
-        column_ = column;
+    Tokens run() {
+        read(/*in_directive=*/false);
+        return std::move(tokens_);
+    }
+
+  private:
+    /// Reads to the end, or the end of a directive, in which a `#` is an operator.
+    void read(bool in_directive) {
         bool first_on_line = true;
-        while (at_ < end_) {
+        while (at_ < text_.size()) {
             const char c = text_[at_];
+            if (in_directive && (c == '\n' || starts("//"))) return;
             if (c == '\n') {
                 advance(1);
                 first_on_line = true;
@@ -54,13 +55,9 @@ class Scanner {
                 first_on_line = false;
             }
         }
-        return std::move(tokens_);
     }
 
-  private:
-    bool starts(std::string_view what) const {
-        return text_.substr(at_, std::min(what.size(), end_ - at_)) == what;
-    }
+    bool starts(std::string_view what) const { return text_.substr(at_).starts_with(what); }
 
     // A backslash before the line end joins two lines, also in comments (GLSL 4.50, 3.2).
     bool continues() const { return starts("\\\n"); }
@@ -76,32 +73,27 @@ class Scanner {
     }
 
     void advance(std::size_t count) {
-        for (; count > 0; --count, ++at_) {
-            ++column_;
-            if (text_[at_] == '\n') {
-                ++line_;
-                column_ = 1;
-            }
-        }
+        for (; count > 0; --count, ++at_)
+            line_ += text_[at_] == '\n';
     }
 
     [[noreturn]] void fail(std::string_view message) const { source_error(file_, line_, message); }
 
     void comment() {
-        Comment result{at_, 0, line_, line_, column_};
+        Comment result{at_, 0, line_, line_};
         if (starts("//")) {
-            while (at_ < end_ && text_[at_] != '\n')
+            while (at_ < text_.size() && text_[at_] != '\n')
                 advance(continues() ? 2 : 1);
         } else {
             advance(2);
-            while (at_ < end_ && !starts("*/")) {
-                if (text_[at_] == '*' && at_ + 1 < end_ && text_[at_ + 1] == '\\')
+            while (at_ < text_.size() && !starts("*/")) {
+                if (text_[at_] == '*' && at_ + 1 < text_.size() && text_[at_ + 1] == '\\')
                     fail(
                         "* and \\ next to each other in a comment may end it; put a space between "
                         "them");
                 advance(1);
             }
-            if (at_ == end_) source_error(file_, result.line, "/* is never closed");
+            if (at_ == text_.size()) source_error(file_, result.line, "/* is never closed");
             advance(2);
         }
         result.length = at_ - result.offset;
@@ -110,54 +102,44 @@ class Scanner {
     }
 
     void directive() {
-        Token token{TokenKind::Directive, at_, 0, line_, column_};
-        while (at_ < end_ && text_[at_] != '\n') {
-            if (continues()) {
-                check_continuation();
-                advance(2);
-            } else if (starts("//")) {
-                break;
-            } else if (starts("/*")) {
-                comment();
-                tokens_.comments.pop_back();  // a part of the directive
-                token.length = at_ - token.offset;
-            } else {
-                const bool blank = text_[at_] == ' ' || text_[at_] == '\t';
-                advance(1);
-                if (!blank) token.length = at_ - token.offset;
-            }
-        }
-        tokens_.code.push_back(token);
+        Token token{TokenKind::Directive, at_, 1, line_};
+        std::vector<Token> before = std::exchange(tokens_.code, {});
+        const std::size_t comments = tokens_.comments.size();
+        advance(1);
+        read(/*in_directive=*/true);
+        tokens_.comments.resize(comments);  // those in it are a part of it
+        token.words = std::exchange(tokens_.code, std::move(before));
+        if (!token.words.empty())
+            token.length = token.words.back().offset + token.words.back().length - token.offset;
+        tokens_.code.push_back(std::move(token));
     }
 
     void code(char c, bool in_directive) {
-        Token token{TokenKind::Mark, at_, 0, line_, column_};
+        Token token{TokenKind::Mark, at_, 0, line_};
         std::size_t length = 0;
-        const bool number = is_digit(c) || (c == '.' && at_ + 1 < end_ && is_digit(text_[at_ + 1]));
+        const bool number =
+            is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]));
         if (number) {
             token.kind = TokenKind::Number;
             const bool hexadecimal = starts("0x") || starts("0X");
-            while (at_ + length < end_) {
+            while (at_ + length < text_.size()) {
                 const char next = text_[at_ + length];
                 const char last = length > 0 ? text_[at_ + length - 1] : '\0';
                 const bool exponent_sign =
                     (next == '+' || next == '-') && !hexadecimal && (last == 'e' || last == 'E');
-                if (!is_word(next) && next != '.' && !exponent_sign) break;
+                if (!is_word_byte(next) && next != '.' && !exponent_sign) break;
                 ++length;
             }
-        } else if (is_word(c)) {
+        } else if (is_word_byte(c)) {
             token.kind = TokenKind::Word;
-            while (at_ + length < end_ && is_word(text_[at_ + length]))
+            while (at_ + length < text_.size() && is_word_byte(text_[at_ + length]))
                 ++length;
         } else {
-            for (const std::string_view mark : kLongMarks) {
-                if (starts(mark)) {
-                    length = mark.size();
-                    break;
-                }
-            }
-            if (length == 0 && (kMarks.find(c) != std::string_view::npos ||
-                                (in_directive && (c == '#' || c == '"'))))
+            const auto mark =
+                std::ranges::find_if(kLongMarks, [&](auto known) { return starts(known); });
+            if (mark != kLongMarks.end())
+                length = mark->size();
+            else if (kMarks.find(c) != kMarks.npos || (in_directive && (c == '#' || c == '"')))
                 length = 1;
             if (length == 0) {
                 const auto byte = static_cast<unsigned char>(c);
@@ -174,24 +156,14 @@ class Scanner {
     std::string_view text_;
     std::string_view file_;
     std::size_t at_ = 0;
-    std::size_t end_ = 0;
     int line_ = 1;
-    int column_ = 1;
     Tokens tokens_;
 };
 
 }  // namespace
 
 Tokens tokenize(std::string_view text, std::string_view file) {
-    return Scanner(text, file).run(0, text.size(), 1, 1, false);
-}
-
-std::vector<Token> directive_tokens(std::string_view text, const Token& directive,
-                                    std::string_view file) {
-    return Scanner(text, file)
-        .run(directive.offset + 1, directive.offset + directive.length, directive.line,
-             directive.column + 1, true)
-        .code;
+    return Scanner(text, file).run();
 }
 
 std::string unix_lines(std::string_view text) {

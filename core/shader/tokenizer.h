@@ -19,8 +19,9 @@ struct Token {
     TokenKind kind;
     std::size_t offset;  ///< of its first byte
     std::size_t length;
-    int line;    ///< from 1
-    int column;  ///< from 1, in bytes
+    int line;                    ///< from 1
+    std::size_t partner = 0;     ///< of a bracket in a Source: the index of the other of the pair
+    std::vector<Token> words{};  ///< of a directive: the tokens after its `#`, without comments
 };
 
 struct Comment {
@@ -28,7 +29,6 @@ struct Comment {
     std::size_t length;
     int line;  ///< of its first byte
     int last_line;
-    int column;
 };
 
 struct Tokens {
@@ -43,9 +43,10 @@ struct Tokens {
 ///         a `#` that is not first on its line
 Tokens tokenize(std::string_view text, std::string_view file);
 
-/// The tokens of a directive after its `#`. Offsets are into the same text.
-std::vector<Token> directive_tokens(std::string_view text, const Token& directive,
-                                    std::string_view file);
+/// Whether an identifier may have a byte.
+constexpr bool is_word_byte(char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
 
 /// The text without a byte-order mark, with "\n" line ends.
 std::string unix_lines(std::string_view text);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,5 +19,11 @@ struct Uses {
 /// within their scope.
 /// @param active  per token of the source, evaluate_conditions().active
 Uses uses_of(const Source& source, const Item& item, const std::vector<bool>& active);
+
+using UsesOf = std::map<std::string, Uses, std::less<>>;
+
+/// The names that some need, themselves included.
+/// @param uses  of names; others need none
+std::set<std::string> reachable(std::vector<std::string> names, const UsesOf& uses);
 
 }  // namespace relevo::shader

@@ -67,9 +67,10 @@ TEST_F(WeatherPreset, WrongWordsAreErrorsOfThePlugin) {
               "rainy, snowy, thundery but got \"sunny\"");
     EXPECT_NE(error(R"("weather": {"set": {"share": "luck"}})").find("expected one of wind_m_s"),
               std::string::npos);
-    EXPECT_EQ(error(R"("weather": {"set": {"depth": "rain"}})"),
-              "plugin: plugins/puddles/plugin.json:1: weather.set: expected a float or int "
-              "parameter of the plugin's, not host, but got \"puddles.depth\"");
+    EXPECT_EQ(
+        error(R"("weather": {"set": {"depth": "rain"}})"),
+        "plugin: plugins/puddles/plugin.json:1: weather.set: expected a parameter of type float "
+        "or int, not host, but got \"puddles.depth\", which is none of the plugin's");
 }
 
 TEST_F(WeatherPreset, ParametersThatMustRiseAreChecked) {

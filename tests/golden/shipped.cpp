@@ -83,11 +83,7 @@ render::StitchedFrames stitched(const effect::Selection& selection,
                                 const shader::ParamStore& values,
                                 const render::ProgramOptions& options, bool constants) {
     static const shader::FolderTexts core{share_dir() / "shaders"};
-    shader::StitchInput input;
-    input.snippets = selection.snippets();
-    input.passes = selection.passes();
-    input.instances = selection.instances();
-    input.capabilities = selection.capabilities;
+    shader::StitchInput input = selection.stitch_input();
     input.values = &values;
     input.constants = constants;
     input.max_texture_units = 32;

@@ -310,11 +310,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "    probe_a_out[i.at.x] = uint(probe_s[0].x);\n"
                 "}\n",
                 "probe.glsl:3: probe_s: expected one variable without an initial value"},
+        Refused{"SharedMemoryOfUnknownLength", kUints,
+                "uniform usamplerBuffer probe_a;\n"
+                "shared vec3 probe_s[2 + probe_n];\n"
+                "void probe_pass_a(in Invocation i) {\n"
+                "    probe_a_out[i.at.x] = uint(probe_s[0].x);\n"
+                "}\n"
+                "const int probe_n = int(sqrt(4.0));\n",
+                "probe.glsl:2: probe_s: expected a length of numbers and constants of this file "
+                "but got 2 + probe_n"},
         Refused{"MoreSharedMemoryThanDevicesHave", kUints,
                 "uniform usamplerBuffer probe_a;\n"
                 "const int probe_n = 1024;\n"
                 "shared float probe_r[16];\n"
-                "shared vec3 probe_s[probe_n * 2];\n"
+                "shared vec3 probe_s[probe_n + 1024];\n"
                 "void probe_pass_a(in Invocation i) {\n"
                 "    probe_a_out[i.at.x] = uint(probe_r[0] + probe_s[0].x);\n"
                 "}\n",

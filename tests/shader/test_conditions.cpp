@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "base/contains.h"
 #include "shader/conditions.h"
 
 namespace relevo::shader::test_conditions {
@@ -57,7 +58,11 @@ std::string left_in(std::string_view text, Macros macros = {}) {
     for (const Item& item : source.items) {
         if (!conditions.active[item.first]) continue;
         if (item.kind == Item::Kind::Conditional)
-            result += conditions.undecided[item.first] ? "# " : "";
+            result +=
+                std::ranges::any_of(conditions.undecided,
+                                    [&](const auto& group) { return contains(group, item.first); })
+                    ? "# "
+                    : "";
         else
             result += item.names[0] + ' ';
     }

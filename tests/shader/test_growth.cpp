@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "shader/growth.h"
+#include "shader/limits.h"
 #include "support/support.h"
 
 namespace relevo::shader::test_growth {

@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "shader/loops.h"
-#include "shader/snippet.h"
+#include "shader/limits.h"
 
 namespace relevo::shader::test_loops {
 namespace {
@@ -35,17 +34,36 @@ TEST(Loops, WithAConstantBoundEnd) {
 }
 
 TEST(Loops, OthersAreOpen) {
-    for (const char* loop :
-         {"while (x > 0.0) x -= 0.1;", "do { x -= 0.1; } while (x > 0.0);", "for (;;) x += 1.0;",
-          "for (int i = 0; i < k; ++i) x += 1.0;", "for (int i = 0; i < haze_u; ++i) x += 1.0;",
-          "for (int i = 0; i < 20000; ++i) x += 1.0;", "for (int i = 0; i < 8; x += 1.0) {}",
-          "for (int i = 0; i < 8; ++i) { i = 0; }", "for (int i = 0; i < 8; ++i) --i;",
-          "for (int i = 0; i != 8; ++i) {}", "for (int i = 0; i < 8 || x > 0.0; ++i) {}",
-          "for (float f = 0.0; f < 10.0; f += 0.0) {}", "for (int i = 0; i < 8; --i) {}",
-          "for (int i = 0; i >= 0; i = (i + 1) % 1000) {}", "for (int i = 8; i > 0; ++i) {}",
-          "for (float f = 0.0; f < 10.0; f += 1e-6) {}", "for (int i = 1; i < 8; i *= 1) {}",
-          "for (int i = -20000; i < 8; ++i) {}", "for (int i = 0; i < 8; i -= 1) {}"})
+    for (const char* loop : {"while (x > 0.0) x -= 0.1;",
+                             "do { x -= 0.1; } while (x > 0.0);",
+                             "for (;;) x += 1.0;",
+                             "for (int i = 0; i < k; ++i) x += 1.0;",
+                             "for (int i = 0; i < haze_u; ++i) x += 1.0;",
+                             "for (int i = 0; i < 20000; ++i) x += 1.0;",
+                             "for (int i = 0; i < 8; x += 1.0) {}",
+                             "for (int i = 0; i < 8; ++i) { i = 0; }",
+                             "for (int i = 0; i < 8; ++i) --i;",
+                             "for (int i = 0; i != 8; ++i) {}",
+                             "for (int i = 0; i < 8 || x > 0.0; ++i) {}",
+                             "for (float f = 0.0; f < 10.0; f += 0.0) {}",
+                             "for (int i = 0; i < 8; --i) {}",
+                             "for (int i = 0; i >= 0; i = (i + 1) % 1000) {}",
+                             "for (int i = 8; i > 0; ++i) {}",
+                             "for (float f = 0.0; f < 10.0; f += 1e-6) {}",
+                             "for (int i = 1; i < 8; i *= 1) {}",
+                             "for (int i = -20000; i < 8; ++i) {}",
+                             "for (int i = 0; i < 8; i -= 1) {}",
+                             "for (int i = 0; i < 8; ++i) if (x > 0.0) x = 1.0; else i = 0;",
+                             "for (int i = 0; i < 8; ++i) for (int j = 0; j < 8; ++j) i = 0;",
+                             "for (int i = 0; i < 8; ++i) { i <<= 1; }"})
         EXPECT_THAT(loops(loop), ElementsAre(6)) << loop;
+}
+
+TEST(Loops, DeepNestingTakesNoStackAndLittleTime) {
+    std::string nested;
+    for (int i = 0; i < 50000; ++i)
+        nested += "for (;;) ";
+    EXPECT_EQ(loops(nested + "x += 1.0;").size(), 50000u);
 }
 
 }  // namespace

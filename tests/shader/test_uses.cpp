@@ -47,7 +47,9 @@ TEST(Uses, ALoopsCounterEndsWithTheLoop) {
     for (const char* loop :
          {"for (int i = 0; i < n; ++i) g(i);", "for (int i = 0; i < n; ++i) { g(i); }",
           "for (int i = 0; i < n; ++i) for (int k = 0; k < i; ++k) g(k);",
-          "for (int i = 0; i < n; ++i) { if (n > 2) { g(i); } g(i); }"}) {
+          "for (int i = 0; i < n; ++i) { if (n > 2) { g(i); } g(i); }",
+          "for (int i = 0; i < n; ++i) if (n > 2) g(i); else { g(i); g(i); }",
+          "for (int i = 0; i < n; ++i) do g(i); while (n > 2);"}) {
         EXPECT_THAT(uses(std::string("void f() { ") + loop + " }").names, Not(Contains("i")))
             << loop;
         EXPECT_THAT(uses(std::string("void f() { ") + loop + " y = i; }").names, Contains("i"))

@@ -4,6 +4,7 @@
 
 #include "shader/snippet.h"
 
+/// GLSL that a driver would not survive.
 namespace relevo::shader {
 
 /// Refuses short GLSL that grows larger than a driver's memory. Drivers expand all macros and
@@ -13,5 +14,10 @@ namespace relevo::shader {
 ///     when expanded, for macros and calls nested more than 200 deep, and for an array of more
 ///     than 65536 elements, if its length is known
 void check_growth(const std::vector<Snippet>& files);
+
+/// Lines of the loops in a file that may not end, or only after a very long time, judged by their
+/// heads. All loops but `for (int i = 0; i < N; ++i)` and similar ones, where N is a number up to
+/// 10000 or a constant and the body does not write to i.
+std::vector<int> open_loops(const Source& source);
 
 }  // namespace relevo::shader
