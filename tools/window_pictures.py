@@ -19,8 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 # Of each picture the words of its command, and what mouse and keys do afterwards, as xdotool has it.
 STATES = {
     "day": (["tyrol.tif", "--time", "2026-06-21T08:20+02:00"], ["mousemove 820 420"]),
-    "evening": (["tyrol.tif", "--time", "2026-09-21T18:20+02:00", "--eye", "47.24,11.16,1700", "--heading", "262",
-                 "--pitch", "2"], ["mousemove 900 300"]),
+    "evening": (["tyrol.tif", "--time", "2026-09-21T18:20+02:00", "--eye", "47.3128,11.3850,30agl", "--heading", "250",
+                 "--pitch", "-3"], ["mousemove 900 300"]),
     "point": (["tyrol.tif", "--time", "2026-12-21T10:30+01:00"],
               ["mousemove 760 560 click 1", "sleep 6", "key m", "mousemove 1010 500", "sleep 1", "mousemove 1012 502"]),
     "hours": (["tujunga.tif", "--time", "2026-12-21T13:00-08:00", "--view", "az=220,el=35"],
