@@ -29,6 +29,7 @@ enum class Command {
     Walk,
     StandHere,  ///< at the chosen point
     LookThere,  ///< to the chosen point
+    LookToMoon,
     SaveView,
     Measure,  ///< begins or ends a line
     EndMeasuring,

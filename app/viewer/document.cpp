@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "scene/options.h"
 #include "scene/scene_words.h"
+#include "session/unseen_effects.h"
 
 namespace relevo::viewer {
 std::string quoted(const std::string& word) {
@@ -163,6 +164,12 @@ std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects,
         effect::select(model->registry, model->presets, effects.switches, {}, ground);
     effect::apply_settings(model->values, model->registry, model->selection, model->presets,
                            effects.settings);
+    const std::vector<const effect::Effect*>& on = model->selection.effects;
+    const bool has_block = session::have_block(on);
+    for (const effect::Effect* const effect : on) {
+        if (!session::is_seen(*effect, false)) model->unseen_within.push_back(effect->id());
+        if (!session::is_seen(*effect, has_block)) model->unseen_outside.push_back(effect->id());
+    }
     return model;
 }
 

@@ -77,6 +77,8 @@ Pose pose_of(const SavedView& view, const Land& land);
 /// Installed effects and the selection of active ones, for panels. Needs no device.
 struct EffectsModel : session::InstalledEffects {
     effect::Selection selection;  ///< points into registry
+    /// Ids of active effects that draw nothing within the DEM, and nothing from outside.
+    std::vector<std::string> unseen_within{}, unseen_outside{};
 
     using InstalledEffects::InstalledEffects;
     /// @param ground  of the DEM; empty: unknown, no effect is excluded

@@ -215,6 +215,24 @@ void effect_values(State& state, const effect::Effect& effect) {
     ImGui::EndDisabled();
 }
 
+/// Of an effect that draws nothing in this view: one in which it does.
+void offer_view(State& state, const effect::Effect& effect) {
+    const EffectsModel& model = *state.effects;
+    if (!contains(state.is_outside ? model.unseen_outside : model.unseen_within, effect.id()))
+        return;
+    ImGui::SameLine();
+    if (ImGui::SmallButton(tr_label("Show"))) {
+        state.document.scene.backdrop =
+            state.is_outside ? scene::Backdrop::Horizon : scene::Backdrop::Studio;
+        if (!state.is_outside) state.commands.push_back(Command::Whole);
+        state.step = true;
+    }
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", state.is_outside
+                                    ? tr("Not seen from outside: with sky and horizon")
+                                    : tr("Seen from outside alone: the DEM as a block"));
+}
+
 void effect_row(State& state, const effect::Effect& effect) {
     const bool is_on = state.effects->selection.has(effect.id());
     ImGui::PushID(effect.id().c_str());
@@ -229,6 +247,7 @@ void effect_row(State& state, const effect::Effect& effect) {
         ImGui::TextDisabled("%s", why.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
+    if (is_on) offer_view(state, effect);
     if (open) {
         effect_values(state, effect);
         ImGui::TreePop();

@@ -234,6 +234,10 @@ void MainWindow::hand_over() {
 
 void MainWindow::hand_over_scene() {
     const Opened& opened = *opening_->opened();
+    const scene::Scene& scene = state_.document.scene;
+    state_.is_outside =
+        scene.backdrop != scene::Backdrop::Horizon &&
+        render::is_outside(opened.ground, state_.document.pose.eye_m, scene.exaggeration);
     show_true_heights();
     if (state_.step && !film_->shows_frame()) {
         history_.add(state_.document);

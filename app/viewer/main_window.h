@@ -146,6 +146,7 @@ class MainWindow {
     void move(Command command);
     /// Stands on the chosen point, or looks at it.
     void move_to_point(Command command);
+    void look_to_moon();
     /// The whole DEM, from its side and from above.
     Whole whole_views() const;
     void save_view();

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "base/paths.h"
+#include "base/units.h"
+#include "sun/moon.h"
 #include "sun/zone_of_place.h"
 #include "viewer/export.h"
 #include "viewer/translation.h"
@@ -222,6 +224,8 @@ void MainWindow::move(Command command) {
         by(kDay_s);
     else if (command == Command::StandHere || command == Command::LookThere)
         move_to_point(command);
+    else if (command == Command::LookToMoon)
+        look_to_moon();
     else if (!hand_->move(command, [this] { return whole_views(); })) {
         if (command == Command::Walk)
             messages_.note(tr("no ground to walk on here; click a point, then press G"));
@@ -246,6 +250,18 @@ void MainWindow::move_to_point(Command command) {
         hand_->stand_at(point_m);
     else
         state_.document.pose = facing(state_.document.pose, state_.land, point_m);
+}
+
+void MainWindow::look_to_moon() {
+    Pose& pose = state_.document.pose;
+    const geo::Geodetic eye = view_of(pose, state_.land).eye->place;
+    const sun::MoonPosition moon = sun::moon_position(state_.document.utc, eye);
+    const double elevation_rad = state_.air.apparent_rad(moon.elevation_rad);
+    if (elevation_rad < 0)
+        return messages_.note(
+            tr("the moon is below the horizon; the line above the day says when it is up"));
+    pose.heading_deg = degrees(moon.azimuth_rad);
+    pose.pitch_deg = degrees(elevation_rad);
 }
 
 void MainWindow::measure() {

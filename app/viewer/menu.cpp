@@ -22,7 +22,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 36> kKeys = {{
+constexpr std::array<Key, 37> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -39,6 +39,7 @@ constexpr std::array<Key, 36> kKeys = {{
     {GLFW_KEY_F, false, Command::Film},
     {GLFW_KEY_HOME, false, Command::Whole},
     {GLFW_KEY_N, false, Command::NorthUp},
+    {GLFW_KEY_L, false, Command::LookToMoon},
     {GLFW_KEY_T, false, Command::FromAbove},
     {GLFW_KEY_G, false, Command::Walk},
     {GLFW_KEY_B, false, Command::SaveView},
@@ -134,6 +135,7 @@ void view_menu(State& state) {
     item(state, tr_label("North up"), "N", Command::NorthUp);
     item(state, tr_label("Top view"), "T", Command::FromAbove);
     item(state, tr_label("Walk at eye height"), "G", Command::Walk);
+    item(state, tr_label("Look to the moon"), "L", Command::LookToMoon);
     item(state, tr_label("Go to a place..."), tr("Ctrl+F"), Command::Find);
     ImGui::Separator();
     item(state, tr_label("Undo"), tr("Ctrl+Z"), Command::Undo, false, state.can_undo);

@@ -121,7 +121,7 @@ std::string slope_text(double slope_deg, double aspect_deg) {
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 36> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 37> kKeys = {{
         {tr_later("Left drag"), tr_later("move the ground")},
         {tr_later("Right drag, Shift + drag"), tr_later("turn about the ground under the cursor")},
         {tr_later("Middle drag"), tr_later("look around")},
@@ -134,6 +134,7 @@ void key_sheet() {
         {"G", tr_later("walk at the clicked point or in the middle, and fly again")},
         {tr_later("Ctrl + F"), tr_later("go to coordinates or a name")},
         {tr_later("Home, N, T"), tr_later("whole DEM, north up, top view")},
+        {"L", tr_later("look to the moon")},
         {"[ ]", tr_later("half an hour earlier, later; with Shift a day")},
         {tr_later("Space"), tr_later("play and pause the time")},
         {tr_later("Click"), tr_later("direct sun of the day at a point, its horizon and year")},

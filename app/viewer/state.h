@@ -37,6 +37,7 @@ struct State {
     sun::Refraction air = sun::Refraction::none();  ///< at the DEM's centre
     std::unique_ptr<EffectsModel> effects;
     effect::GroundWords ground_words;  ///< of the DEM; empty: not known yet
+    bool is_outside = false;           ///< the DEM is seen as a block
     bool is_preview = false;           ///< a coarse DEM stands in until all posts are read
     SunDay day;
     std::vector<SunDay> extremes;      ///< the solstices of its year

@@ -15,6 +15,12 @@ namespace {
 /// Hooks of walls and the backdrop. Those of the sky are of any stage.
 constexpr std::array<std::string_view, 2> kOfOutside = {"side", "backdrop"};
 
+bool names(const effect::Switches& switches, const std::string& id) {
+    return contains(switches.enable, id) || (switches.only && contains(*switches.only, id));
+}
+
+}  // namespace
+
 bool is_seen(const effect::Effect& effect, bool outside) {
     const effect::Manifest& manifest = effect.manifest;
     if (!manifest.marks.empty() || !manifest.instances.empty() || !manifest.module.empty())
@@ -33,18 +39,16 @@ bool is_seen(const effect::Effect& effect, bool outside) {
     return !any;
 }
 
-bool names(const effect::Switches& switches, const std::string& id) {
-    return contains(switches.enable, id) || (switches.only && contains(*switches.only, id));
+bool have_block(const std::vector<const effect::Effect*>& effects) {
+    return std::ranges::any_of(effects, [](const effect::Effect* effect) {
+        return std::ranges::any_of(kOfOutside, [&](auto hook) { return effect->answers(hook); });
+    });
 }
-
-}  // namespace
 
 std::vector<std::string> unseen_effects(const ActiveEffects& effects, const scene::Effects& asked,
                                         bool outside) {
     const std::vector<const effect::Effect*>& on = effects.loaded.selection.effects;
-    const bool has_block = std::ranges::any_of(on, [](const effect::Effect* effect) {
-        return std::ranges::any_of(kOfOutside, [&](auto hook) { return effect->answers(hook); });
-    });
+    const bool has_block = have_block(on);
     std::vector<std::string> ids;
     for (const effect::Effect* effect : on) {
         const bool is_asked =

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "base/units.h"
+#include "sun/moon.h"
+#include "sun/time.h"
 #include "viewer/find_sheet.h"
 #include "viewer/navigation.h"
 #include "window/viewer_fixture.h"
@@ -31,6 +33,32 @@ TEST(FindNames, AreThoseOfTheFilesThatAreShown) {
     EXPECT_THAT(names(""), testing::IsEmpty());
     effects.settings = {{"labels.file", "/missing.csv"}};
     EXPECT_THAT(names("bettel"), testing::IsEmpty());
+}
+
+TEST(EffectsModel, KnowsWhatAViewDoesNotShow) {
+    using testing::Contains, testing::Not;
+    scene::Effects effects;
+    const auto all = viewer::EffectsModel::of(effects);
+    EXPECT_THAT(all->unseen_outside, Contains("haze"));
+    EXPECT_THAT(all->unseen_within, Not(Contains("haze")));
+    EXPECT_THAT(all->unseen_within, Contains("block"));
+    EXPECT_THAT(all->unseen_outside, Not(Contains("block")));
+    effects.switches.disable = {"block"};  // then there is air everywhere
+    EXPECT_THAT(viewer::EffectsModel::of(effects)->unseen_outside, Not(Contains("haze")));
+}
+
+TEST_F(Viewer, LooksToTheMoon) {
+    const std::string at = "2026-06-29T04:00:00Z";  // a day before it is full, in the evening
+    open({dem_, "--only", "--time", at});
+    act({"key", "l"});
+    ASSERT_TRUE(settles());
+    const nlohmann::json camera = resting_scene()["camera"];
+    const sun::MoonPosition moon =
+        sun::moon_position(sun::parse_time(at).utc,
+                           geo::geodetic_deg(camera["eye"][0], camera["eye"][1], camera["eye"][2]));
+    ASSERT_GT(degrees(moon.elevation_rad), 10);
+    EXPECT_NEAR(camera["heading"].get<double>(), degrees(moon.azimuth_rad), 0.01);
+    EXPECT_NEAR(camera["pitch"].get<double>(), degrees(moon.elevation_rad), 0.1);  // and refraction
 }
 
 /// With the panel View open.
