@@ -93,6 +93,9 @@ void MainWindow::open_dem(const RecentDem& dem) {
     if (state_.chooses_exaggeration) {
         scene.exaggeration = 1;
         scene.chooses_exaggeration = scene::may_exaggerate(scene);
+        // Not what was chosen for the snow of the DEM before.
+        if (is_open() && scene.exposure_ev == opening_->opened()->scene.exposure_ev)
+            scene.exposure_ev = opening_->scene().exposure_ev;
     }
     open_scene(std::move(scene));
 }

@@ -49,6 +49,7 @@ void MainWindow::clear_scene() {
     scene::Scene& scene = state_.document.scene;
     state_.chooses_exaggeration = std::exchange(scene.chooses_exaggeration, false);
     scene.exaggeration = opening_->opened()->scene.exaggeration;
+    scene.exposure_ev = opening_->opened()->scene.exposure_ev;
     export_sheet_.take_scene(state_.document.scene);
     point_->clear();
     overlay_->clear();

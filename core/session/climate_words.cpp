@@ -46,6 +46,26 @@ ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic
     return report;
 }
 
+double snowy_share(const climate::ClimateMap& map, const dem::Heightfield& field,
+                   sun::Instant utc) {
+    constexpr int kAside = 16;
+    const sun::Date date = utc.utc().date;
+    const int day = climate::day_of_year(date.month, date.day);
+    int land = 0, snowy = 0;
+    for (int j = 0; j < kAside; ++j)
+        for (int i = 0; i < kAside; ++i) {
+            const int column = (2 * i + 1) * field.height_m.width() / (2 * kAside);
+            const int row = (2 * j + 1) * field.height_m.height() / (2 * kAside);
+            const float height_m = field.height_m.at(column, row);
+            if (!(height_m > 0)) continue;  // sea, and voids
+            const climate::Cover cover =
+                climate::CoverColumn(map.at(field.place(column, row))).cover(height_m, day);
+            ++land;
+            snowy += cover == climate::Cover::Ice || cover == climate::Cover::Snow;
+        }
+    return land > 0 ? static_cast<double>(snowy) / land : 0;
+}
+
 std::string climate_text(const ClimateReport& report) {
     return fmt::format("January {:.1f}, July {:.1f} degC at {:.0f} m, {:.0f} mm of rain a year",
                        report.january_c, report.july_c, report.height_m,

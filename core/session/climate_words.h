@@ -3,7 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "climate/climate_map.h"
 #include "climate/cover.h"
+#include "dem/heightfield.h"
 #include "geo/geodetic.h"
 #include "sun/time.h"
 
@@ -30,6 +32,10 @@ double middle_height_m(double lowest_m, double highest_m);
 /// @throws Error (BadInput) as climate::ClimateMap
 ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic& place,
                              sun::Instant utc);
+
+/// Fraction of the land of a DEM that snow or ice covers on a day, by 16 x 16 posts; 0 without
+/// land.
+double snowy_share(const climate::ClimateMap& map, const dem::Heightfield& field, sun::Instant utc);
 
 /// "January -4.1, July 13.2 degC at 1960 m, 1320 mm of rain a year".
 std::string climate_text(const ClimateReport& report);

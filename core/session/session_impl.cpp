@@ -1,12 +1,16 @@
 #include "session/session_impl.h"
 
+#include <cmath>
 #include <future>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
 #include "scene/panorama.h"
+#include "session/climate_words.h"
 #include "session/land_cover.h"
 #include "session/non_finite.h"
 #include "session/picture_maker.h"
@@ -58,6 +62,7 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     dem::add_all(scene.dems, files);
     // Which effects are on may depend on the DEM.
     drawn->take_ground(loaded->ground_words(scene.holes));
+    const bool chooses = scene.chooses_exaggeration;
     state.choose_exaggeration(*loaded);
     const auto began = Clock::now();
     compile(*drawn, loaded.get());
@@ -68,8 +73,19 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     look(scene.view);
     warn_of_eye();
     set_time(time ? time->utc : state.default_time());
+    if (chooses) choose_exposure();
     if (state.weather) log::info(state.weather->notice(timed, is_seen_from_outside()));
     say_unseen(scene.effects);
+}
+
+void Session::Impl::choose_exposure() {
+    scene::Scene& scene = state.scene;
+    if (scene.exposure_ev != 0 || scene.ev100 || !drawn->renderer().reads_climate()) return;
+    const double share =
+        snowy_share(terrain->natural().climate_map(), state.dem()->to_frame(), state.utc());
+    if (share < 0.5) return;
+    scene.exposure_ev = state.inputs.exposure_ev = -std::round(10 * share) / 10;
+    log::info(fmt::format("snow and ice: {:g} EV; --exposure sets another", scene.exposure_ev));
 }
 
 void Session::Impl::say_unseen(const scene::Effects& asked) const {

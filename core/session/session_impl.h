@@ -80,6 +80,8 @@ struct Session::Impl {
     bool is_seen_from_outside() const;  ///< as a block, or as a map
     /// Logs which effects of those that were asked for draw nothing in this view.
     void say_unseen(const scene::Effects& asked) const;
+    /// A stop less for ground that is snow and ice all over, which else is white without form.
+    void choose_exposure();
     /// Events that depend on terrain need all posts, not a preview.
     std::shared_ptr<const LoadedDem> load_own() const;
     void open_device(FilesInUse& files);

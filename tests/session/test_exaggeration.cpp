@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "dem/fixture.h"
 #include "session/record.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
@@ -43,6 +45,43 @@ TEST(ExaggeratedRecord, SaysTheEyesHeightAsItWasAskedFor) {
         EXPECT_NEAR(json["camera"]["pitch_deg"], -10, 1e-6);
         EXPECT_EQ(json["scene"]["exaggeration"].get<double>(), exaggeration);
     }
+}
+
+/// A dome of 40 x 40 posts, 800 to 2400 m high.
+std::string dome(double west_deg, double north_deg) {
+    test::Raster raster;
+    raster.columns = raster.rows = 40;
+    raster.geotransform = {{west_deg, 0.01, 0, north_deg, 0, -0.01}};
+    raster.crs = "EPSG:4326";
+    raster.value = [](int column, int row, int) {
+        return 2400 - 1600 * std::hypot(column - 20, row - 20) / 28.3;
+    };
+    return test::write_raster(test::scratch_dir("domes") / fmt::format("{}.tif", north_deg),
+                              raster);
+}
+
+TEST(ChosenExposure, IsLowerOnSnowAloneWhereNoneIsGiven) {
+    scene::Scene scene;
+    scene.width_px = 64;
+    scene.height_px = 48;
+    scene.chooses_exaggeration = true;
+    const auto exposure_ev = [&] {
+        FilesInUse files;
+        return Session(scene, {.device = test::gl_device()}, files).scene().exposure_ev;
+    };
+    scene.dems = {dome(-40, 72)};  // the ice of Greenland
+    EXPECT_NEAR(exposure_ev(), -1, 0.11);
+    scene.exposure_ev = 0.5;
+    EXPECT_EQ(exposure_ev(), 0.5);
+    scene.exposure_ev = 0;
+    scene.effects.switches.only = std::vector<std::string>{"sky"};  // ground of one colour
+    EXPECT_EQ(exposure_ev(), 0);
+    scene.effects = {};
+    scene.chooses_exaggeration = false;
+    EXPECT_EQ(exposure_ev(), 0);
+    scene.chooses_exaggeration = true;
+    scene.dems = {dome(11, 47)};  // the Alps in June
+    EXPECT_EQ(exposure_ev(), 0);
 }
 
 TEST(ChosenScale, KeepsSideAndSunAndIsOfTheFirstPictureAlone) {
