@@ -65,7 +65,7 @@ scene::Camera Opened::camera(const scene::View& view, double aspect,
 struct SceneThread::Impl {
     Impl(scene::Scene given, const SceneDevice& on) : scene(std::move(given)), device(on) {}
 
-    scene::Scene scene;
+    const scene::Scene scene;  // as given; read on two threads
     SceneDevice device;
     std::shared_ptr<const session::LoadedDem> dem;
     std::function<void()> on_change;
@@ -329,7 +329,6 @@ struct SceneThread::Impl {
         if (!attempt([&] { session->show(next, now.scene ? now.utc : session->time(), hints); }))
             session->show(next, session->time(), hints);
         if (next.exaggeration != before) publish_opened(now.insets);
-        scene.exaggeration = next.exaggeration;
     }
 
     /// Fraction of the window's sides at which a frame meets kSoon_ms.

@@ -21,9 +21,9 @@ bool refuses(const char* what) {
 
 }  // namespace
 
-/// "memory": there are no 256 KiB in one piece.
+/// "memory": there are no 512 KiB in one piece.
 void* operator new(std::size_t size) {
-    void* const memory = size > (1U << 18) && refuses("memory") ? nullptr : std::malloc(size);
+    void* const memory = size > (1U << 19) && refuses("memory") ? nullptr : std::malloc(size);
     if (!memory) throw std::bad_alloc();
     return memory;
 }
