@@ -149,14 +149,11 @@ TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
     EXPECT_EQ(recent[0][0], (folder_ / "maps/c.tif").string());
     EXPECT_EQ(recent[1][0], (folder_ / "maps/a.tif").string());
     // From the menu: File, Open again, the second.
-    act({"mousemove", "23", "11", "click", "1"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    act({"mousemove", "60", "52"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    act({"mousemove", "330", "52"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    act({"mousemove", "330", "72"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const glm::ivec4 menu{20, 90, 150, 60}, list{340, 45, 200, 15}, second{340, 65, 200, 15};
+    ASSERT_TRUE(changes_in(menu, [&] { act({"mousemove", "23", "11", "click", "1"}); }));
+    ASSERT_TRUE(changes_in(list, [&] { act({"mousemove", "60", "52"}); }));
+    ASSERT_TRUE(changes_in(list, [&] { act({"mousemove", "330", "52"}); }));
+    ASSERT_TRUE(changes_in(second, [&] { act({"mousemove", "330", "72"}); }));
     act({"click", "1"});
     EXPECT_TRUE(shows("a.tif"));
 }
