@@ -398,8 +398,8 @@ void add_sun_plane(Verb sun_verb) {
     add_plane_options(verb, *arguments);
     arguments->days.add_to(verb);
     verb.option("--tz").description(
-        "Time zone of the rows: Europe/Zurich, +05:30, solar, or auto, that of the place (that of "
-        "--irradiance, or else auto)");
+        "Time zone of the rows: Europe/Zurich, +05:30, solar, or auto (the zone of the place); "
+        "without it the zone of --irradiance, else auto");
     arguments->light.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run_plane(*arguments); });

@@ -80,8 +80,8 @@ void say_allocation(const MemoryBudget& memory) {
 
 void add_tiles(Verb verb, RasterArguments& arguments) {
     verb.add_option("--tiles", arguments.tiles.tiles,
-                    "Write tiles into the folder that -o names, a GeoTIFF each: of N x N posts, or "
-                    "those of an index, as gdaltindex and STAC have it")
+                    "Write a GeoTIFF for each tile into the folder that -o names: tiles of N x N "
+                    "posts, or the tiles of an index by gdaltindex or STAC")
         .type_name("N|INDEX")
         .group("Tiles");
     add_number(verb, figure::kHalo_km, arguments.tiles.halo_km).group("Tiles");

@@ -82,11 +82,12 @@ struct SceneThread::Impl {
     std::uint64_t wants = 0;
 
     // Used only on the thread.
-    scene::Effects asked_effects, effects;  // last, and those of them that did not fail
-    int effects_read = 0;                   // as in Wanted
-    bool reads_all_posts = false;           // the complete DEM replaces a preview
-    bool awaits_pages = false;              // a frame without motion lacks tile pages
-    bool moves = false;                     // effects move without requests
+    scene::Effects asked_effects;  // of the last request
+    scene::Effects effects;        // of the last request whose effects could be drawn
+    int effects_read = 0;          // as in Wanted
+    bool reads_all_posts = false;  // the complete DEM replaces a preview
+    bool awaits_pages = false;     // a frame without motion lacks tile pages
+    bool moves = false;            // effects move without requests
     std::unique_ptr<session::Session> session;
     std::optional<FrameExchange> exchange;  // if frames are shared with the window
     std::uint64_t published = 0;
@@ -181,7 +182,7 @@ struct SceneThread::Impl {
         session->show(whole, session->time(), {.exact = false, .keep_above_m = kClearance_m});
     }
 
-    /// What is drawn now, with effects as they were asked for.
+    /// The drawn scene. Its effects are written as the window wrote them, not as the session does.
     scene::Scene scene_now() const {
         scene::Scene now = session->scene();
         now.effects = effects;
@@ -313,7 +314,7 @@ struct SceneThread::Impl {
         if (attempt([&] { session->show(next, session->time(), hints); })) effects = asked_effects;
     }
 
-    /// Shows what is wanted at a fraction of the window's sides.
+    /// @param scale  of the frame's sides to the window's
     void show(const Wanted& now, double scale, const session::Hints& hints) {
         if (now.scene) take_effects(now, hints);
         scene::Scene next = now.scene.value_or(session->scene());

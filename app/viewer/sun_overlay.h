@@ -49,8 +49,8 @@ struct OverlayWanted {
     bool lit = false;  ///< as scene::Overlay
 };
 
-/// The figure for the displayed time. Members that it does not depend on have their defaults. A
-/// range whose last day is before its first is that of the first.
+/// The figure for the displayed time. Members that it does not depend on have their defaults. If a
+/// range ends before it begins, only its first day counts.
 /// @param utc, zone  as Document
 FigureWanted figure_of(const OverlayChoice& choice, sun::Instant utc, const sun::Zone& zone,
                        const std::string& refraction);

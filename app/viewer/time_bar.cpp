@@ -7,7 +7,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "base/contains.h"
+#include "base/units.h"
 #include "viewer/overlay.h"
 #include "viewer/state.h"
 #include "viewer/translation.h"
@@ -64,9 +64,6 @@ class Strip {
         return span.begin +
                std::clamp(double{x - left_} / width_, 0.0, 1.0) * (span.length_s() - 1);
     }
-    double elevation_deg(sun::Instant utc) const {
-        return sun_at(utc, state_.centre, state_.air).elevation_deg;
-    }
     Sky sky(sun::Instant utc) const { return sky_at(state_.day, utc, by_points_deg(utc)); }
     /// Whether ground hides the sun from the clicked point; false if that is not known.
     bool is_hidden(sun::Instant utc) const {
@@ -79,20 +76,22 @@ class Strip {
 
     void draw() const {
         ImDrawList& list = *ImGui::GetWindowDrawList();
-        const auto last = static_cast<int>(width_);
-        for (int from = 0, to = 1; to <= last; ++to) {
-            const auto look = [&](int x) {
-                const sun::Instant utc = time_at(left_ + static_cast<float>(x) + 0.5f);
-                return std::pair(sky(utc).colour, is_hidden(utc));
-            };
-            if (to < last && look(to) == look(from)) continue;
-            const auto [colour, hidden] = look(from);
-            const float x = left_ + static_cast<float>(from), end = left_ + static_cast<float>(to);
-            list.AddRectFilled({x, at_.y}, {end, at_.y + height_}, colour);
-            if (hidden)
-                list.AddRectFilled({x, at_.y + height_ / 2}, {end, at_.y + height_},
+        const auto look = [&](float x) {
+            const sun::Instant utc = time_at(x + 0.5f);
+            return std::pair(sky(utc).colour, is_hidden(utc));
+        };
+        const float right = left_ + width_;
+        std::pair<ImU32, bool> now = look(left_);
+        for (float from = left_, to = left_ + 1; from < right; to += 1) {
+            const auto next = to < right ? look(to) : std::pair(ImU32{0}, false);
+            if (next == now) continue;
+            const float end = std::min(to, right);
+            list.AddRectFilled({from, at_.y}, {end, at_.y + height_}, now.first);
+            if (now.second)
+                list.AddRectFilled({from, at_.y + height_ / 2}, {end, at_.y + height_},
                                    IM_COL32(70, 66, 74, 255));
             from = to;
+            now = next;
         }
         for (const sun::TimeSpan& up : state_.moon->moon_up)
             list.AddRectFilled({x_of(up.begin), at_.y}, {x_of(up.end), at_.y + height_ / 6},
@@ -155,7 +154,7 @@ void tell(const State& state, const Strip& strip, sun::Instant utc) {
     std::string text =
         tr_format("{}   {}   sun {:.1f}° in the {}", wall_clock(utc, state.document.zone),
                   tr(strip.sky(utc).name), sun.elevation_deg,
-                  compass_text(glm::degrees(std::atan2(sun.direction.x, sun.direction.y))));
+                  compass_text(degrees(std::atan2(sun.direction.x, sun.direction.y))));
     if (strip.is_hidden(utc)) text += std::string("\n") + tr("behind the ground at the point");
     const float em = ImGui::GetFontSize();
     ImGui::SetNextWindowPos({ImGui::GetIO().MousePos.x, strip.top_px() - kGap * em},
@@ -196,7 +195,7 @@ void strip_row(State& state) {
 }
 
 void calendar(State& state, sun::Date date) {
-    // As wide for any date, so that what stands beside it stays where it is.
+    // The button has the width of the widest date, so that its neighbours do not move.
     // Translators: the widest date.
     const float width = ImGui::CalcTextSize(tr("30 September 2000")).x + ImGui::GetFontSize();
     if (ImGui::Button(

@@ -34,7 +34,7 @@ struct Hours : Figure {
     /// Whether a band is of first and last light and sunshine periods.
     bool has_spells() const;
     bool has_irradiation() const;
-    /// The word of a second band of one word; empty: there is none.
+    /// The first word that is listed twice; empty: none is.
     std::string repeated_word() const;
 
   private:

@@ -37,7 +37,8 @@ class Program(Backend):
         self, figure: str, dem: Dem, options: Options, bounds: Optional[Bounds], output: str, watch: Watch
     ) -> None:
         words = ["sun", figure.replace("_", "-"), *_dem_words(dem), *_option_words(options)]
-        words += [] if bounds is None else ["--clip=" + ",".join(repr(edge) for edge in bounds)]
+        if bounds is not None:
+            words.append("--clip=" + ",".join(repr(edge) for edge in bounds))
         for line in self._run([*words, *_output_words(output)], watch).splitlines():
             watch.info(line)
 
@@ -178,7 +179,7 @@ def _dem_words(dem: Dem) -> List[str]:
 
 
 def _option_words(options: Options) -> List[str]:
-    """Those that are not None or False. A step is in seconds, which the program needs a unit for."""
+    """Options that are None or False are left out. A step is in seconds; the program needs its unit."""
     words: List[str] = []
     for name, value in options.items():
         if value is None or value is False:
