@@ -144,7 +144,8 @@ std::string moon_text(const State& state) {
     std::string text = tr("moon up");
     for (const sun::TimeSpan& up : moon.moon_up)
         text +=
-            fmt::format(" {} - {}", wall_clock(up.begin, state.document.zone),
+            fmt::format("{}{} - {}", up.begin == moon.moon_up.front().begin ? " " : ", ",
+                        wall_clock(up.begin, state.document.zone),
                         up.end < moon.span.end ? wall_clock(up.end, state.document.zone) : "24:00");
     return text + tr_format(", {:.0f} % lit", 100 * moon.illuminated_fraction);
 }
@@ -157,7 +158,8 @@ void tell(const State& state, const Strip& strip, sun::Instant utc) {
                   compass_text(degrees(std::atan2(sun.direction.x, sun.direction.y))));
     if (strip.is_hidden(utc)) text += std::string("\n") + tr("behind the ground at the point");
     const float em = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({ImGui::GetIO().MousePos.x, strip.top_px() - kGap * em},
+    // Above the status line, which lies over everything.
+    ImGui::SetNextWindowPos({ImGui::GetIO().MousePos.x, strip.top_px() - 2.2f * em},
                             ImGuiCond_Always, {0.5f, 1});
     ImGui::SetTooltip("%s\n%s", text.c_str(), moon_text(state).c_str());
 }
