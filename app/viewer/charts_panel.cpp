@@ -17,13 +17,6 @@ namespace relevo::viewer {
 namespace {
 
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
-constexpr float kHeight_units = 300;
-
-/// Height of the time bar, the status line and the scale.
-float below_px(const State& state) {
-    return state.bar_px + 3.4f * ImGui::GetFontSize();
-}
-
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -36,16 +29,6 @@ ImVec2 show(const gl::Texture& texture) {
 ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
     return {corner.x + static_cast<float>(units.x * px_a_unit),
             corner.y + static_cast<float>(units.y * px_a_unit)};
-}
-
-/// Window position of the chosen point [px], from the upper left.
-std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px) {
-    geo::Geodetic place = *state.chosen;
-    place.height_m = state.land.aim_m(place) * state.land.exaggeration;
-    const auto at = in_picture(camera_of(state.document.pose, state.land),
-                               state.land.frame->to_local(place), double{size_px.x} / size_px.y);
-    if (!at) return std::nullopt;
-    return in_window(*at, size_px);
 }
 
 }  // namespace
@@ -100,49 +83,6 @@ void ChartsPanel::year(State& state) {
     state.step = true;
 }
 
-void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
-    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
-    if (std::exchange(is_open_, true)) return;
-    if (extent_px_.x == 0) {
-        const float left = 400 * unit;
-        extent_px_ = {std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit)),
-                      kHeight_units * unit};
-        at_px_ = {std::max(0.0f, size_px.x - 10 - extent_px_.x),
-                  size_px.y - state.bar_px - 64 * unit - extent_px_.y};
-    }
-    if (const auto point = chosen_in_window(state, size_px)) {
-        const glm::vec2 from = *point - at_px_;
-        const bool is_under =
-            from.x > 0 && from.y > 0 && from.x < extent_px_.x && from.y < extent_px_.y;
-        if (is_under) {
-            // At the edge with more room, upper or lower.
-            const float top = ImGui::GetFrameHeight() + 10;
-            at_px_.y = point->y - top > size_px.y - point->y
-                           ? top
-                           : size_px.y - extent_px_.y - below_px(state);
-        }
-    }
-    ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
-    ImGui::SetNextWindowSize({extent_px_.x, extent_px_.y});
-}
-
-void ChartsPanel::dock(State& state, glm::vec2 size_px, float unit) {
-    const glm::vec2 sides = state.side_panel_px.value_or(glm::vec2(0));
-    // On the right of the side panel unless that is at the right edge.
-    const bool is_left = sides.x + sides.y < size_px.x;
-    float left = is_left ? sides.y + 10 : 10, right = is_left ? size_px.x - 10 : sides.x - 10;
-    if (right - left < 360 * unit) {  // over the side panel
-        left = 10;
-        right = size_px.x - 10;
-    }
-    if (docked_px_ == 0) docked_px_ = kHeight_units * unit;
-    docked_px_ = std::clamp(docked_px_, 150 * unit, std::max(150 * unit, size_px.y / 2));
-    ImGui::SetNextWindowPos({left, size_px.y - below_px(state)}, ImGuiCond_Always, {0, 1});
-    ImGui::SetNextWindowSize({right - left, docked_px_});
-    state.docked_px = docked_px_ + 1.4f * ImGui::GetFontSize();
-    is_open_ = false;  // place() begins anew
-}
-
 void ChartsPanel::tabs(State& state) {
     const auto tab = [&](const char* name, bool is_there, const auto& draw_it) {
         if (!ImGui::BeginTabItem(name)) return;
@@ -158,42 +98,27 @@ void ChartsPanel::tabs(State& state) {
     };
     tab(tr_label("Horizon"), horizon_.chart != nullptr, [&] { horizon(state); });
     tab(tr_label("Year"), year_.chart != nullptr, [&] { year(state); });
-    bool& is_docked = state.settings.charts_are_docked;
-    if (ImGui::TabItemButton(is_docked ? tr_label("Float") : tr_label("Dock"),
-                             ImGuiTabItemFlags_Trailing))
-        is_docked = !is_docked;
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(
-            "%s", is_docked ? tr("Moves freely") : tr("Stays at the lower edge of the window"));
 }
 
-void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
+void ChartsPanel::draw(State& state, double px_a_unit) {
     horizon_.take(state.point ? state.point->horizon : nullptr);
     year_.take(state.point ? state.point->year : nullptr);
     state.chart_px = {0, 0};
-    state.docked_px = 0;
-    if (!state.settings.charts || !state.chosen) {
-        is_open_ = false;
-        return;
-    }
-    const bool is_docked = state.settings.charts_are_docked;
-    if (is_docked)
-        dock(state, size_px, static_cast<float>(px_a_unit));
-    else
-        place(state, size_px, static_cast<float>(px_a_unit));
-    const ImGuiWindowFlags flags = is_docked ? ImGuiWindowFlags_NoMove : 0;
-    const bool open =
-        ImGui::Begin(tr_label("Horizon and year of the point"), &state.settings.charts,
-                     flags | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
-                         ImGuiWindowFlags_NoScrollWithMouse);
-    const glm::vec2 extent_px(ImGui::GetWindowSize().x, ImGui::GetWindowSize().y);
-    if (is_docked) {
-        if (open) docked_px_ = extent_px.y;
-    } else {
-        at_px_ = {ImGui::GetWindowPos().x, ImGui::GetWindowPos().y};
-        if (open) extent_px_ = extent_px;
-    }
-    if (open && ImGui::BeginTabBar("charts")) {
+    if (!state.settings.charts || !state.chosen) return;
+    const Area& area = state.layout.charts;
+    const glm::vec2 end = area.end();
+    ImGui::SetNextWindowPos({area.at.x, end.y}, ImGuiCond_Always, {0, 1});
+    ImGui::SetNextWindowSize({area.size.x, area.size.y});
+    ImGui::SetNextWindowSizeConstraints({area.size.x, 1}, {area.size.x, end.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::Begin("##charts", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
+                     ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PopStyleVar();
+    if (const float height = ImGui::GetWindowHeight(); height != area.size.y)
+        state.settings.charts_height = static_cast<int>(std::lround(height / px_a_unit));
+    if (ImGui::BeginTabBar("charts")) {
         tabs(state);
         ImGui::EndTabBar();
     }

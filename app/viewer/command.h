@@ -37,6 +37,7 @@ enum class Command {
     SaveProfile,
     Compare,
     Play,
+    Now,
     Earlier,
     Later,
     DayEarlier,
@@ -45,8 +46,10 @@ enum class Command {
     PanelKeys,  ///< gives the keyboard to the panels, or back to the scene
     MenuKeys,   ///< gives it to the menu
     Charts,
-    Keys,
-    CloseKeys,
+    Keys,  ///< a sheet of help, like the next two
+    FirstSteps,
+    About,
+    Close,  ///< what is open: a sheet, a measured line, a message
     Overlay,
     SaveOverlay,
     GiveUpSaving,

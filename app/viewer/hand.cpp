@@ -219,9 +219,11 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
     if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
         const bool click = distance(mouse, pressed_px_) < kClick_px;
         const bool right = *dragging_ == Drag::Orbit;
-        const std::optional<glm::dvec3> ground =
-            click && (right || *dragging_ == Drag::Pan) ? ground_at(mouse) : std::nullopt;
-        if (ground && !std::isnan(drawn_height_m(*ground))) clicked_ = Click{*ground, right};
+        if (click && (right || *dragging_ == Drag::Pan)) {
+            clicked_ = Click{ground_at(mouse), right};
+            if (clicked_->point_m && std::isnan(drawn_height_m(*clicked_->point_m)))
+                clicked_->point_m.reset();
+        }
         dragging_.reset();
         return;
     }

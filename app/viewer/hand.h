@@ -13,10 +13,10 @@
 
 namespace relevo::viewer {
 
-/// Ground that was clicked.
+/// A click on the picture.
 struct Click {
-    glm::dvec3 point_m;
-    bool asks_for_menu = false;  ///< by the right button
+    std::optional<glm::dvec3> point_m;  ///< none: there is no ground
+    bool asks_for_menu = false;         ///< by the right button
 };
 
 /// Home view of the whole DEM, and from above.

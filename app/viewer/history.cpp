@@ -1,9 +1,21 @@
 #include "viewer/history.h"
 
+#include "viewer/translation.h"
+
 namespace relevo::viewer {
 namespace {
 
 constexpr std::size_t kMaxStates = 500;
+
+std::string change_name(const Document& from, const Document& to) {
+    if (!(from.scene.effects == to.scene.effects)) return tr("effects");
+    if (!(from.overlay == to.overlay) || !(from.scene.overlay == to.scene.overlay))
+        return tr("layers");
+    if (from.scene.exaggeration != to.scene.exaggeration) return tr("heights");
+    if (from.scene.exposure_ev != to.scene.exposure_ev) return tr("exposure");
+    if (from.zone.name() != to.zone.name()) return tr("time zone");
+    return from.utc != to.utc ? tr("time") : tr("view");
+}
 
 }  // namespace
 
@@ -28,6 +40,16 @@ bool History::differs(const Document& document) const {
 
 void History::end_step(const Document& document) {
     if (differs(document)) add(document);
+}
+
+std::string History::undo_name(const Document* document) const {
+    if (states_.empty()) return {};
+    if (document && differs(*document)) return change_name(states_[at_], *document);
+    return can_undo() ? change_name(states_[at_ - 1], states_[at_]) : "";
+}
+
+std::string History::redo_name() const {
+    return can_redo() ? change_name(states_[at_], states_[at_ + 1]) : "";
 }
 
 const Document& History::undo() {

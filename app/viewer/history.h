@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "viewer/document.h"
@@ -17,6 +18,10 @@ class History {
     void amend(const Document& document);
     /// Adds a state if camera or time differ from the current one.
     void end_step(const Document& document);
+    /// What undo() would change: "time", "view" ...; empty: nothing.
+    /// @param document  as it is now, with what is no state yet; null: as its last state
+    std::string undo_name(const Document* document) const;
+    std::string redo_name() const;  ///< likewise
     bool can_undo() const { return at_ > 0; }
     bool can_redo() const { return at_ + 1 < states_.size(); }
     const Document& undo();  ///< the previous state; requires can_undo()

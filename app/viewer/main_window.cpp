@@ -66,7 +66,7 @@ Clock::duration MainWindow::shown_for() const {
 void MainWindow::run() {
     while (!ends()) {
         const bool is_animated = state_.playing || hand_->is_moving() || film_->is_playing();
-        const double wait_s = pacing_.wait_s(is_animated, is_drawing());
+        const double wait_s = pacing_.wait_s(is_animated, is_drawing() || shows_card());
         const auto waits_from = Clock::now();
         window_->wait(wait_s);
         // Panels process input in one frame and show its result in the next.
@@ -96,6 +96,10 @@ void MainWindow::run() {
         if (style_->update(state_)) pacing_.need_frames(3);
     }
     leave();
+}
+
+bool MainWindow::shows_card() const {
+    return !picture_ && !opening_->is_refused() && !opening_->thread().rests();
 }
 
 bool MainWindow::is_drawing() const {
@@ -135,53 +139,48 @@ double MainWindow::unit() const {
     return window_->scale() * state_.settings.text_px / kUsualText_px;
 }
 
+Layout MainWindow::layout() const {
+    const bool has_charts = state_.settings.charts && state_.chosen;
+    return lay_out(size(), static_cast<float>(unit()), state_.settings,
+                   film_->is_open() ? Lower::Film
+                   : has_charts     ? Lower::Charts
+                                    : Lower::Bar);
+}
+
 scene::Insets MainWindow::panel_insets() const {
-    if (!state_.settings.panels) return {};
-    const auto text_px = static_cast<float>(unit() * kUsualText_px);
-    scene::Insets insets = side_panel_insets(state_, size(), unit());
-    insets.top = 1.5 * text_px / size().y;  // the menu
-    // The status line and the time bar.
-    insets.bottom = ((film_->is_open() ? 2 : 2 + kBar) * text_px + state_.docked_px) / size().y;
-    // A very low window has no room between the two.
-    if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
-    return insets;
+    return layout().insets(size());
 }
 
 glm::vec2 MainWindow::free_middle() const {
-    const scene::Insets insets = panel_insets();
-    return size() * glm::vec2(0.5 * (1 + insets.left - insets.right),
-                              0.5 * (1 + insets.top - insets.bottom));
+    const Area picture = layout().picture;
+    return picture.at + 0.5f * picture.size;
 }
 
 void MainWindow::draw_panels() {
     // Menus close if no window has the focus.
     if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
+    state_.layout = layout();
+    if (!picture_) draw_no_picture();
+    if (shows_card()) opening_card(state_, opening_->scene(), seconds_since(began_at_));
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        if (opening_->is_opening()) waiting_text(opening_->scene());
         import_sheet_.draw(size());
         return;
     }
-    const bool has_bar = state_.settings.panels && !film_->is_open();
-    state_.bar_px = has_bar ? static_cast<float>(kBar * kUsualText_px * unit()) : 0;
     if (picture_) draw_over_image();
     film_->draw_edges(size());
-    state_.can_undo =
-        history_.can_undo() || (!film_->shows_frame() && history_.differs(state_.document));
-    state_.can_redo = history_.can_redo();
+    // A film's frame is no change of the user's.
+    state_.undo_name = history_.undo_name(film_->shows_frame() ? nullptr : &state_.document);
+    state_.redo_name = history_.redo_name();
     if (state_.settings.panels) {
         menu_bar(state_);
         draw_film();
-        // A side panel that takes most of the window has no room beside the film panel.
-        const scene::Insets side = side_panel_insets(state_, size(), unit());
-        const bool has_room = side.left > 0 || side.right > 0 || !film_->is_open();
-        if (!film_->shows_frame() && has_room) side_panel(state_, size(), unit());
-        // The film panel takes the place of the charts.
-        if (film_->is_open())
-            state_.docked_px = 0;
-        else
-            charts_.draw(state_, size(), unit());
-        if (has_bar) time_bar(state_, size());
+        if (!film_->shows_frame()) side_panel(state_, size(), unit());
+        // The film panel takes the place of charts and time bar.
+        if (!film_->is_open()) {
+            charts_.draw(state_, unit());
+            time_bar(state_);
+        }
     }
     if (const auto to = std::exchange(gives_keys_, std::nullopt))
         window_->give_keys_to(*to == Command::MenuKeys ? nullptr
@@ -196,8 +195,8 @@ void MainWindow::draw_panels() {
         export_sheet_.draw(size(), scene_to_export(), state_.document.utc, state_.document.zone,
                            picture_export_ != nullptr);
     status_line(state_, work_in_progress());
-    message_box(state_, size(), unit());
-    if (shows_keys_) key_sheet();
+    message_box(state_, unit());
+    if (sheet_) help_sheet(*sheet_, window_->context().info().renderer);
 }
 
 std::string MainWindow::work_in_progress() const {
@@ -211,18 +210,17 @@ std::string MainWindow::work_in_progress() const {
 void MainWindow::draw_over_image() {
     const std::shared_ptr<const Picture>& before = comparison_->image();
     const float line = before ? window_->line() : 0;
-    const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
-    legend_.update(overlay_->coloured(*picture_).legends, size(), top, unit());
+    const Area& free = state_.layout.picture;
+    legend_.update(overlay_->coloured(*picture_).legends, free, unit());
     std::vector<chart::Rect> taken = legend_.places();
-    taken.push_back(north_place(size(), top));
+    taken.push_back(north_place(free));
     if (before) marks_before_.draw(before, window_->size_px(), 0, line, size(), taken);
     marks_.draw(picture_, window_->size_px(), line, 1, size(), taken);
     if (!film_->shows_frame()) draw_sun_path(state_, *picture_, size());
     draw_measurement(state_.measurement, *picture_, size());
-    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), top,
-                         state_.bar_px);
+    draw_scale_and_north(*picture_, state_.land, hand_->ground_at(free_middle()), size(), free);
     legend_.draw();
-    if (comparison_->thread()) draw_sides(window_->line() * size().x, top);
+    if (comparison_->thread()) draw_sides(window_->line() * size().x, free.at.y);
 }
 
 void MainWindow::hand_over() {

@@ -45,6 +45,8 @@ class MainWindow {
     // ---- event loop and frames: main_window.cpp
 
     bool is_open() const { return opening_->opened() != nullptr; }
+    /// Whether the first picture is still to come.
+    bool shows_card() const;
     /// Whether the image is overdue, so that the status line reports it.
     bool is_drawing() const;
     /// For the status line; empty: none.
@@ -56,6 +58,7 @@ class MainWindow {
     glm::vec2 size() const { return window_->size(); }
     /// Pixels per unit of a layout for the default text size.
     double unit() const;
+    Layout layout() const;
     scene::Insets panel_insets() const;
     /// The middle of what the panels leave free of the window.
     glm::vec2 free_middle() const;
@@ -211,15 +214,17 @@ class MainWindow {
     std::unique_ptr<WindowStyle> style_;
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
-    int effects_read_ = 0;                         // as in Wanted
-    sun::Instant first_utc_{};                     ///< at which the scene began
-    std::optional<Pose> home_;                     // of the whole DEM,
-    glm::vec2 home_size_{0};                       // in a window of this size
+    int effects_read_ = 0;      // as in Wanted
+    sun::Instant first_utc_{};  ///< at which the scene began
+    std::optional<Pose> home_;  // of the whole DEM,
+    glm::vec2 home_size_{0};    // in a window of this size
+    const Clock::time_point began_at_ = Clock::now();
     Clock::time_point checked_at_ = Clock::now();  // files
     std::optional<Clock::time_point> first_picture_at_;
-    bool sun_moved_ = false;      // in the frame before
-    bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
-    bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
+    bool sun_moved_ = false;        // in the frame before
+    bool has_new_input_ = false;    // ImGui has processed input since process_mouse()
+    std::optional<Command> sheet_;  // of help, that is shown
+    bool closes_menus_ = false, takes_picture_ = false;
     bool opens_point_menu_ = false, quits_ = false;
     std::optional<Command> gives_keys_;  // PanelKeys or MenuKeys: when they are drawn
 };

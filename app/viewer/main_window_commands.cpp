@@ -19,16 +19,21 @@ namespace relevo::viewer {
 void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
-    const std::optional<Click> clicked = hand_->take_click();
+    std::optional<Click> clicked = hand_->take_click();
+    if (clicked && !clicked->point_m) {
+        if (clicked->asks_for_menu)
+            messages_.note(tr("no height here: sky, a void or the side of a block"));
+        clicked.reset();
+    }
     if (hand_->is_busy() && window_->panels_have_keys()) window_->take_keys_back();
     Measurement& line = state_.measurement;
     if (clicked && !line.follows_cursor) {
-        choose_point(clicked->point_m);
+        choose_point(*clicked->point_m);
         opens_point_menu_ = clicked->asks_for_menu;
     } else if (clicked && clicked->asks_for_menu) {
         line.end();
     } else if (clicked) {
-        line.set_corner(clicked->point_m, state_.land, state_.spacing_m);
+        line.set_corner(*clicked->point_m, state_.land, state_.spacing_m);
     }
     if (line.follows_cursor && state_.cursor)
         line.follow(state_.cursor->point_m, state_.land, state_.spacing_m);
@@ -110,9 +115,11 @@ bool MainWindow::run_program_command(Command command) {
             find_sheet_.open();
             return true;
         case Command::Keys:
-            shows_keys_ = !shows_keys_;
+        case Command::FirstSteps:
+        case Command::About:
+            sheet_ = sheet_ == command ? std::nullopt : std::optional(command);
             return true;
-        case Command::CloseKeys:
+        case Command::Close:
             close_dialogs();
             return true;
         default:
@@ -182,7 +189,7 @@ void MainWindow::run_scene_command(Command command) {
 
 void MainWindow::close_dialogs() {
     if (opening_->can_cancel()) return opening_->cancel();
-    shows_keys_ = false;
+    sheet_.reset();
     state_.measurement.end();
     open_dialog_.close();
     import_sheet_.close();
@@ -214,7 +221,9 @@ void MainWindow::move(Command command) {
     constexpr double kHour_s = 3600, kDay_s = 86400;
     history_.end_step(state_.document);
     const auto by = [&](double seconds) { state_.set_utc(state_.document.utc + seconds); };
-    if (command == Command::Earlier)
+    if (command == Command::Now)
+        state_.set_utc(sun::Instant::now());
+    else if (command == Command::Earlier)
         by(-kHour_s / 2);
     else if (command == Command::Later)
         by(kHour_s / 2);

@@ -65,10 +65,7 @@ void MainWindow::end_film_preview(Command before) {
 
 void MainWindow::draw_film() {
     constexpr float kBeside_px = 10;
-    const scene::Insets side = side_panel_insets(state_, size(), unit());
-    const auto left = static_cast<float>(side.left) * size().x;
-    const auto right = static_cast<float>(1 - side.right) * size().x;
-    film_->draw(size(), std::max(left, kBeside_px), std::min(right, size().x - kBeside_px));
+    film_->draw(size(), state_.layout.picture.at.x + kBeside_px, size().x - kBeside_px);
 }
 
 }  // namespace relevo::viewer

@@ -170,7 +170,8 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
     first_utc_ = document.utc;
     if (state_.chooses_exaggeration && scene.exaggeration != 1)
-        messages_.note(tr_format("heights × {:g}; View, Heights sets another", scene.exaggeration));
+        messages_.note(
+            tr_format("heights × {:g}; Camera, Heights sets another", scene.exaggeration));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     const std::vector<std::string> names = absolute_names(scene.dems);
@@ -230,7 +231,7 @@ void MainWindow::show_true_heights() {
     if (!state_.chooses_exaggeration || state_.document.utc == first_utc_) return;
     state_.chooses_exaggeration = false;
     if (std::exchange(times, 1) == 1) return;
-    messages_.note(tr("heights are true now, as shadows of another time need: View, Heights"));
+    messages_.note(tr("heights are true now, as shadows of another time need: Camera, Heights"));
 }
 
 void MainWindow::take_shape() {

@@ -59,7 +59,7 @@ constexpr std::array<Key, 37> kKeys = {{
     {GLFW_KEY_E, true, Command::SaveOverlay},
     {GLFW_KEY_H, false, Command::Keys},
     {GLFW_KEY_F1, false, Command::Keys},
-    {GLFW_KEY_ESCAPE, false, Command::CloseKeys},
+    {GLFW_KEY_ESCAPE, false, Command::Close},
 }};
 
 void item(State& state, const char* label, const char* keys, Command command, bool checked = false,
@@ -86,18 +86,35 @@ void file_menu(State& state) {
     item(state, tr_label("How this DEM is read..."), nullptr, Command::HowToRead);
     item(state, tr_label("Next DEM in the folder"), tr("Ctrl+Page down"), Command::NextFile);
     item(state, tr_label("Previous DEM in the folder"), tr("Ctrl+Page up"), Command::PreviousFile);
-    item(state, tr_label("Reload effects"), "F5", Command::ReadAgain);
     ImGui::Separator();
     item(state, tr_label("Save picture"), "F12", Command::TakePicture);
     item(state, tr_label("Export a picture..."), tr("Ctrl+P"), Command::ExportPicture);
-    item(state, tr_label("Copy command"), tr("Ctrl+C"), Command::CopyCommand);
-    item(state, tr_label("Save scene"), tr("Ctrl+S"), Command::SaveScene);
+    item(state, tr_label("Film..."), "F", Command::Film);
     item(state, tr_label("Export overlay as GeoTIFF"), tr("Ctrl+E"), Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
+    item(state, tr_label("Save scene"), tr("Ctrl+S"), Command::SaveScene);
     item(state, tr_label("Save the day as a job"), tr("Ctrl+J"), Command::SaveJob);
-    item(state, tr_label("Film..."), "F", Command::Film);
     ImGui::Separator();
     item(state, tr_label("Quit"), tr("Ctrl+Q"), Command::Quit);
+    ImGui::EndMenu();
+}
+
+/// "Undo: time"
+std::string with_name(const char* label, const std::string& of) {
+    return of.empty() ? label : tr_format("{}: {}", label, of);
+}
+
+void edit_menu(State& state) {
+    if (!ImGui::BeginMenu(tr_label("Edit"))) return;
+    item(state, with_name(tr_label("Undo"), state.undo_name).c_str(), tr("Ctrl+Z"), Command::Undo,
+         false, !state.undo_name.empty());
+    item(state, with_name(tr_label("Redo"), state.redo_name).c_str(), tr("Ctrl+Y"), Command::Redo,
+         false, !state.redo_name.empty());
+    ImGui::Separator();
+    item(state, tr_label("Copy command"), tr("Ctrl+C"), Command::CopyCommand);
+    if (ImGui::MenuItem(tr_label("Copy coordinates"), nullptr, false, state.chosen.has_value()))
+        ImGui::SetClipboardText(
+            coordinates_text(*state.chosen, state.settings.coordinates).c_str());
     ImGui::EndMenu();
 }
 
@@ -129,33 +146,7 @@ void saved_views(State& state) {
     state.views_changed = true;
 }
 
-void view_menu(State& state) {
-    if (!ImGui::BeginMenu(tr_label("View"))) return;
-    item(state, tr_label("Whole DEM"), tr("Home"), Command::Whole);
-    item(state, tr_label("North up"), "N", Command::NorthUp);
-    item(state, tr_label("Top view"), "T", Command::FromAbove);
-    item(state, tr_label("Walk at eye height"), "G", Command::Walk);
-    item(state, tr_label("Look to the moon"), "L", Command::LookToMoon);
-    item(state, tr_label("Go to a place..."), tr("Ctrl+F"), Command::Find);
-    ImGui::Separator();
-    item(state, tr_label("Undo"), tr("Ctrl+Z"), Command::Undo, false, state.can_undo);
-    item(state, tr_label("Redo"), tr("Ctrl+Y"), Command::Redo, false, state.can_redo);
-    ImGui::Separator();
-    item(state, tr_label("Save view"), "B", Command::SaveView);
-    saved_views(state);
-    ImGui::EndMenu();
-}
-
-void show_menu(State& state) {
-    if (!ImGui::BeginMenu(tr_label("Show"))) return;
-    Settings& settings = state.settings;
-    item(state, tr_label("Panels"), tr("Tab"), Command::Panels, settings.panels);
-    item(state, tr_label("Keyboard in the panels"), "F6", Command::PanelKeys);
-    item(state, tr_label("Horizon and year of the point"), "P", Command::Charts, settings.charts);
-    item(state, tr_label("Sun hours of the day"), "O", Command::Overlay,
-         state.document.overlay.shows_day());
-    item(state, tr_label("Comparison"), "C", Command::Compare, state.compare_is_wanted);
-    ImGui::Separator();
+void style_items(Settings& settings) {
     if (ImGui::MenuItem(tr_label("Light theme"), nullptr, settings.light_style))
         settings.light_style = !settings.light_style;
     if (ImGui::BeginMenu(tr_label("Font size"))) {
@@ -172,6 +163,54 @@ void show_menu(State& state) {
                 settings.coordinates = kind;
         ImGui::EndMenu();
     }
+}
+
+void view_menu(State& state) {
+    if (!ImGui::BeginMenu(tr_label("View"))) return;
+    item(state, tr_label("Whole DEM"), tr("Home"), Command::Whole);
+    item(state, tr_label("North up"), "N", Command::NorthUp);
+    item(state, tr_label("Top view"), "T", Command::FromAbove);
+    item(state, tr_label("Walk at eye height"), "G", Command::Walk);
+    item(state, tr_label("Go to a place..."), tr("Ctrl+F"), Command::Find);
+    item(state, tr_label("Save view"), "B", Command::SaveView);
+    saved_views(state);
+    ImGui::Separator();
+    item(state, tr_label("Panels"), tr("Tab"), Command::Panels, state.settings.panels);
+    item(state, tr_label("Keyboard in the panels"), "F6", Command::PanelKeys);
+    style_items(state.settings);
+    ImGui::EndMenu();
+}
+
+void sun_menu(State& state) {
+    if (!ImGui::BeginMenu(tr_label("Sun"))) return;
+    item(state, tr_label("Now"), nullptr, Command::Now);
+    item(state, tr_label("Half an hour earlier"), "[", Command::Earlier);
+    item(state, tr_label("Half an hour later"), "]", Command::Later);
+    item(state, tr_label("A day earlier"), tr("Shift+["), Command::DayEarlier);
+    item(state, tr_label("A day later"), tr("Shift+]"), Command::DayLater);
+    item(state, state.playing ? tr_label("Pause") : tr_label("Play"), tr("Space"), Command::Play);
+    ImGui::Separator();
+    item(state, tr_label("Look to the moon"), "L", Command::LookToMoon);
+    item(state, tr_label("Sun hours of the day"), "O", Command::Overlay,
+         state.document.overlay.shows_day());
+    item(state, tr_label("Horizon and year of the point"), "P", Command::Charts,
+         state.settings.charts);
+    ImGui::EndMenu();
+}
+
+void tools_menu(State& state) {
+    if (!ImGui::BeginMenu(tr_label("Tools"))) return;
+    item(state, tr_label("Measure"), "M", Command::Measure, state.measurement.follows_cursor);
+    item(state, tr_label("Comparison"), "C", Command::Compare, state.compare_is_wanted);
+    item(state, tr_label("Reload effects"), "F5", Command::ReadAgain);
+    ImGui::EndMenu();
+}
+
+void help_menu(State& state) {
+    if (!ImGui::BeginMenu(tr_label("Help"))) return;
+    item(state, tr_label("First steps"), nullptr, Command::FirstSteps);
+    item(state, tr_label("Keys"), "H", Command::Keys);
+    item(state, tr_label("About Relevo"), nullptr, Command::About);
     ImGui::EndMenu();
 }
 
@@ -192,12 +231,11 @@ void menu_bar(State& state) {
     if (!ImGui::BeginMainMenuBar()) return;
     if (std::exchange(state.opens_menu, false)) ImGui::OpenPopup(tr_label("File"));
     file_menu(state);
+    edit_menu(state);
     view_menu(state);
-    show_menu(state);
-    if (ImGui::BeginMenu(tr_label("Help"))) {
-        item(state, tr_label("Keys"), "H", Command::Keys);
-        ImGui::EndMenu();
-    }
+    sun_menu(state);
+    tools_menu(state);
+    help_menu(state);
     ImGui::EndMainMenuBar();
 }
 

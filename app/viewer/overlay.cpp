@@ -54,14 +54,14 @@ namespace {
 
 constexpr float kNorthRadius_px = 34;
 
-ImVec2 north_middle(glm::vec2 size_px, float top_px) {
-    return {size_px.x - 46, 46 + top_px};
+ImVec2 north_middle(const Area& free) {
+    return {free.end().x - 46, free.at.y + 46};
 }
 
 }  // namespace
 
-chart::Rect north_place(glm::vec2 size_px, float top_px) {
-    const ImVec2 middle = north_middle(size_px, top_px);
+chart::Rect north_place(const Area& free) {
+    const ImVec2 middle = north_middle(free);
     return {static_cast<double>(middle.x - kNorthRadius_px),
             static_cast<double>(middle.y - kNorthRadius_px), 2 * double{kNorthRadius_px},
             2 * double{kNorthRadius_px}};
@@ -69,14 +69,14 @@ chart::Rect north_place(glm::vec2 size_px, float top_px) {
 
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
-                          float top_px, float bottom_px) {
+                          const Area& free) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     // True north at the eye, as if the arrow lay on level ground.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
-    const ImVec2 middle = north_middle(size_px, top_px);
+    const ImVec2 middle = north_middle(free);
     const auto tip = [&](glm::dvec2 way, double length) {
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
@@ -95,7 +95,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const auto width = static_cast<float>(length_m / m_a_px);
     const std::string text = tr_format("{} here", length_text(length_m));
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 end{size_px.x - 24, size_px.y - 24 - bottom_px};
+    const ImVec2 end{free.end().x - 24, free.end().y - 24};
     const float wide = std::max(width, extent.x), tall = extent.y + 10;
     list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, kShade, 4);
     list.AddLine({end.x - width, end.y}, end, kInk, 2);
@@ -118,65 +118,6 @@ std::string slope_text(double slope_deg, double aspect_deg) {
     if (std::isnan(slope_deg)) return "";
     if (std::isnan(aspect_deg)) return tr_format("{:.1f} degrees", slope_deg);
     return tr_format("{:.1f} degrees, facing {}", slope_deg, compass_text(aspect_deg));
-}
-
-void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 37> kKeys = {{
-        {tr_later("Left drag"), tr_later("move the ground")},
-        {tr_later("Right drag, Shift + drag"), tr_later("turn about the ground under the cursor")},
-        {tr_later("Middle drag"), tr_later("look around")},
-        {tr_later("Wheel, two fingers"), tr_later("zoom to the ground under the cursor")},
-        {tr_later("Shift + wheel"), tr_later("move the ground")},
-        {tr_later("Drag the sun"), tr_later("along its path of the day")},
-        {tr_later("Arrows"), tr_later("turn about the centre")},
-        {tr_later("Page up, Page down"), tr_later("zoom in, zoom out")},
-        {"W A S D, Q E", tr_later("fly, down and up; faster with Shift")},
-        {"G", tr_later("walk at the clicked point or in the middle, and fly again")},
-        {tr_later("Ctrl + F"), tr_later("go to coordinates or a name")},
-        {tr_later("Home, N, T"), tr_later("whole DEM, north up, top view")},
-        {"L", tr_later("look to the moon")},
-        {"[ ]", tr_later("half an hour earlier, later; with Shift a day")},
-        {tr_later("Space"), tr_later("play and pause the time")},
-        {tr_later("Click"), tr_later("direct sun of the day at a point, its horizon and year")},
-        {tr_later("Right click"),
-         tr_later("stand there, look there, measure from there, copy its coordinates")},
-        {"P", tr_later("horizon and year on and off")},
-        {"M", tr_later("measure from the point: clicks set corners, Backspace goes back, M ends")},
-        {"C", tr_later("compare: the left side stays, the right side follows; drag the line")},
-        {"O", tr_later("sun hours of the day on the ground, on and off")},
-        {"F12", tr_later("save the image as a picture")},
-        {tr_later("Ctrl + P"), tr_later("export a picture: size, format, samples, stamps")},
-        {tr_later("Ctrl + C"), tr_later("copy the command for this picture")},
-        {tr_later("Ctrl + S"), tr_later("save the scene")},
-        {tr_later("Ctrl + E"), tr_later("export the sun overlay as GeoTIFF")},
-        {tr_later("Ctrl + J"), tr_later("save the day's hours as a job")},
-        {"F", tr_later("film: a day, a year, orbits and flights, on a time line")},
-        {tr_later("Ctrl + O"),
-         tr_later("open a DEM, scene, photograph, track ...; files can be dropped too")},
-        {tr_later("Ctrl + Page down, Page up"), tr_later("next, previous DEM of the folder")},
-        {tr_later("B, then 1 to 9"), tr_later("save the view; go to a saved view")},
-        {"F5", tr_later("reload effects (automatic if their files change)")},
-        {tr_later("Ctrl + Z, Ctrl + Y"), tr_later("undo, redo")},
-        {tr_later("Tab"), tr_later("panels and menu on and off")},
-        {tr_later("F6, F10, Esc"),
-         tr_later("keyboard to the panels, to the menu, back to the scene")},
-        {tr_later("H, Esc"), tr_later("this sheet; Esc also cancels opening a DEM")},
-        {tr_later("Ctrl + Q"), tr_later("quit")},
-    }};
-    ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2},
-                            ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin(tr_label("Keys"), nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
-    if (ImGui::BeginTable("keys", 2)) {
-        for (const auto& [key, what] : kKeys) {
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(tr(key));
-            ImGui::TableNextColumn();
-            ImGui::TextDisabled("%s", tr(what));
-        }
-        ImGui::EndTable();
-    }
-    ImGui::End();
 }
 
 }  // namespace relevo::viewer

@@ -8,10 +8,12 @@
 #include <glm/vec3.hpp>
 
 #include "chart/drawing.h"
+#include "viewer/command.h"
+#include "viewer/layout.h"
 #include "viewer/navigation.h"
 #include "viewer/scene_thread.h"
 
-/// Drawings over the image: scale, north arrow, sheet of keys.
+/// Drawings over the image: scale, north arrow, sheets of help.
 namespace relevo::viewer {
 
 /// "440 m", "1.23 km".
@@ -31,16 +33,17 @@ std::string slope_text(double slope_deg, double aspect_deg);
 /// @param line_px  from the left edge
 void draw_sides(float line_px, float top_px);
 
-/// Where the north arrow is in the window.
-chart::Rect north_place(glm::vec2 size_px, float top_px);
+/// Where the north arrow is in the window. @param free  what panels leave of the picture
+chart::Rect north_place(const Area& free);
 
 /// @param middle_m  ground at the centre of the image; none: no scale bar
-/// @param top_px     height of the menu
-/// @param bottom_px  height of the time bar
+/// @param size_px   of the window
+/// @param free      what panels leave of the picture
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
-                          float top_px, float bottom_px);
+                          const Area& free);
 
-void key_sheet();
+/// A sheet of the menu Help. @param sheet  Keys, FirstSteps or About
+void help_sheet(Command sheet, const std::string& device);
 
 }  // namespace relevo::viewer

@@ -161,8 +161,8 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
     }
 }
 
-void LegendPicture::update(const std::vector<chart::Legend>& legends, glm::vec2 size_px,
-                           float top_px, double px_a_unit) {
+void LegendPicture::update(const std::vector<chart::Legend>& legends, const Area& picture,
+                           double px_a_unit) {
     if (of_ != legends || px_a_unit_ != px_a_unit) {
         of_ = legends;
         px_a_unit_ = px_a_unit;
@@ -172,10 +172,10 @@ void LegendPicture::update(const std::vector<chart::Legend>& legends, glm::vec2 
     }
     constexpr double kMargin_px = 12, kNorth_px = 92;
     places_.clear();
-    double y = static_cast<double>(top_px) + kNorth_px;
+    double y = double{picture.at.y} + kNorth_px;
     for (const gl::Texture& texture : textures_) {
         const double width = texture.extent().width, height = texture.extent().height;
-        places_.push_back({static_cast<double>(size_px.x) - kMargin_px - width, y, width, height});
+        places_.push_back({double{picture.end().x} - kMargin_px - width, y, width, height});
         y += height + kMargin_px;
     }
 }

@@ -13,11 +13,9 @@ namespace relevo::viewer {
 class LegendPicture {
   public:
     /// Sets what draw() draws.
-    /// @param size_px    of the window
-    /// @param top_px     height of the menu
+    /// @param picture    without what panels cover
     /// @param px_a_unit  pixels per unit of the legends, whose text is about 12 units high
-    void update(const std::vector<chart::Legend>& legends, glm::vec2 size_px, float top_px,
-                double px_a_unit);
+    void update(const std::vector<chart::Legend>& legends, const Area& picture, double px_a_unit);
     void draw() const;
     /// Where they are in the window.
     const std::vector<chart::Rect>& places() const { return places_; }

@@ -13,7 +13,8 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr float kPanel_px = 360, kBeside_px = 10;
+/// Before the first picture.
+constexpr ImU32 kDusk = IM_COL32(22, 34, 58, 255), kDawn = IM_COL32(118, 96, 96, 255);
 
 void export_panel(State& state) {
     const auto button = [&](const char* name, Command command) {
@@ -38,52 +39,32 @@ void roomy_point_panel(State& state) {
     ImGui::SetCursorPosY(top + std::max(state.point_room_px, used));
 }
 
-/// Moves a panel back into the window far enough for the user to drag it.
-void keep_in_reach(glm::vec2 size_px) {
-    const ImVec2 at = ImGui::GetWindowPos(), extent = ImGui::GetWindowSize();
-    const float reach = 5 * ImGui::GetFrameHeight();
-    const ImVec2 kept{
-        std::clamp(at.x, reach - extent.x, std::max(0.0f, size_px.x - reach)),
-        std::clamp(at.y, ImGui::GetFrameHeight(),
-                   std::max(ImGui::GetFrameHeight(), size_px.y - 2 * ImGui::GetFrameHeight()))};
-    if (kept.x != at.x || kept.y != at.y) ImGui::SetWindowPos(kept);
-}
-
 }  // namespace
 
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
-    const auto width = static_cast<float>(kPanel_px * px_a_unit);
-    const float top = 10 + ImGui::GetFrameHeight();
-    ImGui::SetNextWindowPos({kBeside_px, top}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size_px.y - top - 50 - state.bar_px});
+    const Area& side = state.layout.side;
+    ImGui::SetNextWindowPos({side.at.x, side.at.y});
+    ImGui::SetNextWindowSize({side.size.x, side.size.y});
+    ImGui::SetNextWindowSizeConstraints({1, side.size.y}, {size_px.x, side.size.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::Begin("Relevo", nullptr,
-                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoTitleBar |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PopStyleVar();
+    if (const float width = ImGui::GetWindowWidth(); width != side.size.x)
+        state.settings.panel_width = static_cast<int>(std::lround(width / px_a_unit));
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
-    keep_in_reach(size_px);
-    const float left = ImGui::GetWindowPos().x;
-    state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
     state.measurement.marked.reset();
     if (state.measurement.profile && ImGui::CollapsingHeader(tr_label("Measured line"), kOpen))
         measurement_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Sun"), kOpen)) sun_panel(state);
-    if (ImGui::CollapsingHeader(tr_label("View"))) view_panel(state, double{size_px.x} / size_px.y);
+    if (ImGui::CollapsingHeader(tr_label("Camera")))
+        view_panel(state, double{size_px.x} / size_px.y);
     if (ImGui::CollapsingHeader(tr_label("Layers"), kOpen)) layers_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Point"), kOpen)) roomy_point_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Effects"), kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Export"), kOpen)) export_panel(state);
     ImGui::End();
-}
-
-scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit) {
-    const auto width = static_cast<float>(kPanel_px * px_a_unit);
-    const glm::vec2 sides = state.side_panel_px.value_or(glm::vec2(kBeside_px, kBeside_px + width));
-    if (sides.x == sides.y) return {};
-    scene::Insets insets;
-    if (sides.x + sides.y < size_px.x)
-        insets.left = std::max(0.0f, (sides.y + kBeside_px) / size_px.x);
-    else
-        insets.right = std::max(0.0f, 1 - (sides.x - kBeside_px) / size_px.x);
-    return std::max(insets.left, insets.right) > 0.5 ? scene::Insets() : insets;
 }
 
 void status_line(const State& state, const std::string& work) {
@@ -107,30 +88,54 @@ void status_line(const State& state, const std::string& work) {
     if (!work.empty()) text += "   " + work;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - state.bar_px - extent.y - 10};
+    const Area& picture = state.layout.picture;
+    const ImVec2 at{picture.at.x + 12, picture.end().y - extent.y - 10};
     list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
                        IM_COL32(0, 0, 0, 150), 4);
     list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
 }
 
-void waiting_text(const scene::Scene& scene) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({size.x / 2, 20 + ImGui::GetFrameHeight()}, ImGuiCond_Always,
-                            {0.5f, 0});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 20, size.y});
+void draw_no_picture() {
+    ImGui::GetBackgroundDrawList()->AddRectFilledMultiColor({0, 0}, ImGui::GetIO().DisplaySize,
+                                                            kDusk, kDusk, kDawn, kDawn);
+}
+
+void opening_card(const State& state, const scene::Scene& scene, double since_s) {
+    const Area& free = state.layout.picture;
+    const float em = ImGui::GetFontSize(), width = std::min(26 * em, free.size.x - 2 * em);
+    ImGui::SetNextWindowPos({free.at.x + free.size.x / 2, free.at.y + free.size.y / 2},
+                            ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, free.size.y});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::SetWindowFontScale(1.75f);
+    ImGui::TextUnformatted("Relevo");
+    ImGui::SetWindowFontScale(1);
+    ImGui::PushTextWrapPos();
     ImGui::TextUnformatted(tr_format("opening {} ...", printable(scene.dems.front())).c_str());
+    ImGui::PopTextWrapPos();
+    // How much is left to do is not known.
+    constexpr double kTurn_s = 2.5;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = ImGui::GetContentRegionAvail().x, piece = 0.25f * room, high = 0.4f * em;
+    const auto turn = static_cast<float>(std::fmod(since_s, kTurn_s) / kTurn_s);
+    const float left = (room - piece) * (turn < 0.5f ? 2 * turn : 2 - 2 * turn);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(at, {at.x + room, at.y + high}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
+    list.AddRectFilled({at.x + left, at.y}, {at.x + left + piece, at.y + high},
+                       ImGui::GetColorU32(ImGuiCol_PlotHistogram), 3);
+    ImGui::Dummy({room, high});
     ImGui::End();
 }
 
-void message_box(State& state, glm::vec2 size_px, double px_a_unit) {
+void message_box(State& state, double px_a_unit) {
     if (state.message.empty()) return;
-    const float width = std::max(size_px.x - 2 * static_cast<float>((kPanel_px + 30) * px_a_unit),
-                                 std::min(size_px.x - 20, 420.0f));
-    ImGui::SetNextWindowPos({size_px.x / 2, ImGui::GetFrameHeight() + 10}, ImGuiCond_Always,
-                            {0.5f, 0});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {width, size_px.y / 2});
+    const Area& picture = state.layout.picture;
+    constexpr double kBeside = 80;  // for legend and north arrow
+    const float width = picture.size.x - static_cast<float>(2 * kBeside * px_a_unit);
+    ImGui::SetNextWindowPos({picture.at.x + picture.size.x / 2, picture.at.y + 10},
+                            ImGuiCond_Always, {0.5f, 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {width, picture.size.y / 2});
     ImGui::Begin("##message", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);

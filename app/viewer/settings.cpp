@@ -178,18 +178,23 @@ Memory::Memory(fs::path config, fs::path state)
     : config_(std::move(config)), state_(std::move(state)) {}
 
 Settings Memory::settings() const {
+    constexpr double kMostExtent = 10000;  // of a panel
     Settings settings;
     const json from = config_.empty() ? json() : read(config_ / "settings.json");
     std::string style, coordinates;
     double text_px = settings.text_px;
+    double panel_width = settings.panel_width, charts_height = settings.charts_height;
     take(from, "style", style);
     take(from, "text_px", text_px);
     take(from, "coordinates", coordinates);
     take(from, "panels", settings.panels);
     take(from, "charts", settings.charts);
-    take(from, "charts_are_docked", settings.charts_are_docked);
+    take(from, "panel_width", panel_width);
+    take(from, "charts_height", charts_height);
     settings.light_style = style == "light";
     settings.text_px = static_cast<int>(std::clamp<double>(text_px, kLeastText_px, kMostText_px));
+    settings.panel_width = static_cast<int>(std::clamp(panel_width, 0.0, kMostExtent));
+    settings.charts_height = static_cast<int>(std::clamp(charts_height, 0.0, kMostExtent));
     for (std::size_t i = 0; i < kCoordinates.size(); ++i)
         if (coordinates == kCoordinates[i]) settings.coordinates = static_cast<Coordinates>(i);
     return settings;
@@ -203,7 +208,8 @@ void Memory::write(const Settings& settings) const {
                  {"coordinates", kCoordinates[static_cast<std::size_t>(settings.coordinates)]},
                  {"panels", settings.panels},
                  {"charts", settings.charts},
-                 {"charts_are_docked", settings.charts_are_docked}});
+                 {"panel_width", settings.panel_width},
+                 {"charts_height", settings.charts_height}});
 }
 
 std::vector<RecentDem> Memory::recent() const {

@@ -24,9 +24,10 @@ struct Settings {
     bool light_style = false;
     int text_px = kUsualText_px;  ///< kLeastText_px to kMostText_px
     Coordinates coordinates = Coordinates::Utm;
-    bool panels = true;              ///< shows all panels
-    bool charts = true;              ///< the chosen point's horizon and year
-    bool charts_are_docked = false;  ///< at the lower edge
+    bool panels = true;     ///< shows all panels
+    bool charts = true;     ///< the chosen point's horizon and year
+    int panel_width = 360;  ///< of the side panel, in units of a layout for the usual text size
+    int charts_height = 0;  ///< the same of the charts; 0: by the window
 
     bool operator==(const Settings&) const = default;
 };

@@ -11,6 +11,7 @@
 #include "sun/moon_events.h"
 #include "viewer/command.h"
 #include "viewer/document.h"
+#include "viewer/layout.h"
 #include "viewer/measurement.h"
 #include "viewer/point_light.h"
 #include "viewer/scene_thread.h"
@@ -48,7 +49,7 @@ struct State {
     double hours_a_second = 1;
     std::string search, zone_text;   ///< text in input fields
     std::string zone_to_show;        ///< a request: "Europe/Zurich", "auto"; empty: none
-    int sensor = 0;                  ///< of the panel View
+    int sensor = 0;                  ///< of the panel Camera
     float dragged_exaggeration = 1;  ///< while its slider is dragged
     bool drags_exaggeration = false;
     bool chooses_exaggeration = false;  ///< by the DEM, as long as nobody sets it or moves the time
@@ -64,8 +65,8 @@ struct State {
     std::shared_ptr<const PointLight> point;  ///< its sunlight; null: not computed yet
     bool point_in_work = false;               ///< `point` is incomplete
     Measurement measurement;
-    bool can_undo = false, can_redo = false;
-    bool opens_menu = false;  ///< a request: the first menu
+    std::string undo_name, redo_name;  ///< what undo and redo would change; empty: nothing
+    bool opens_menu = false;           ///< a request: the first menu
 
     std::shared_ptr<const OverlayShown> overlay;  ///< on the ground; null: none
     std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
@@ -81,11 +82,8 @@ struct State {
     std::optional<RecentDem> recent_to_open;
     std::optional<std::size_t> view_to_go_to;  ///< of views
     bool views_changed = false;
-    /// Left and right edge of the side panel [px]; none: not drawn yet.
-    std::optional<glm::vec2> side_panel_px;
     float point_room_px = 0;  ///< height of the point's text
-    float docked_px = 0;      ///< height of what is docked above the status line
-    float bar_px = 0;         ///< height of the time bar at the lower edge; 0: hidden
+    Layout layout;            ///< of this frame
     glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
     bool sun_moves = false;   ///< the user drags a widget of the sun
     bool step = false;        ///< a change is complete: a step of undo
@@ -113,10 +111,8 @@ struct State {
 
 /// "September", in the user's language. @param month  1 to 12
 const char* month_name(int month);
-/// Height of the time bar, of the texts' height.
-inline constexpr double kBar = 2.75;
-/// Date, time and the day's light at the lower edge. @param size_px  of the window
-void time_bar(State& state, glm::vec2 size_px);
+/// Date, time and the day's light at the lower edge.
+void time_bar(State& state);
 void sun_panel(State& state);
 /// "azimuth 114.27°, height 65.13°": the sun's position at the DEM's centre.
 std::string sun_figures(const State& state);
@@ -125,19 +121,19 @@ std::string sun_figures(const State& state);
 void view_panel(State& state, double aspect);
 void effects_panel(State& state);
 void menu_bar(State& state);
-/// The panels of the scene, in one column.
+/// The panels of the scene, in one column, whose width the user can change.
 /// @param size_px    of the window
 /// @param px_a_unit  pixels per unit of a layout for the default text size
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
-/// The part of the window that it covers at a side; none if it covers more than half.
-scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit);
-/// The ground under the cursor, at the lower edge.
+/// The ground under the cursor, in the picture's lower left corner.
 /// @param work  in progress; empty: none
 void status_line(const State& state, const std::string& work);
-/// While the first scene opens.
-void waiting_text(const scene::Scene& scene);
-/// State::message, at the upper edge, also if panels are hidden.
-void message_box(State& state, glm::vec2 size_px, double px_a_unit);
+/// Before the first picture, in its place.
+void draw_no_picture();
+/// While the first scene opens. @param since_s  for so long
+void opening_card(const State& state, const scene::Scene& scene, double since_s);
+/// State::message, at the picture's upper edge, also if panels are hidden.
+void message_box(State& state, double px_a_unit);
 void point_panel(State& state);
 /// What can be done with the chosen point. @param opens  at the cursor
 void point_menu(State& state, bool opens);

@@ -338,7 +338,7 @@ const char* month_name(int month) {
     return tr(kMonthNames[static_cast<std::size_t>(month - 1)]);
 }
 
-void time_bar(State& state, glm::vec2 size_px) {
+void time_bar(State& state) {
     if (state.day.points.empty()) return;
     if (!state.moon) {  // once a frame, however often the day has changed
         const sun::Date date = state.day.date;
@@ -346,8 +346,9 @@ void time_bar(State& state, glm::vec2 size_px) {
         state.moon = days.empty() ? sun::MoonDay{} : days.front();
     }
     const float em = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({0, size_px.y}, ImGuiCond_Always, {0, 1});
-    ImGui::SetNextWindowSize({size_px.x, state.bar_px});
+    const Area& bar = state.layout.bar;
+    ImGui::SetNextWindowPos({bar.at.x, bar.at.y});
+    ImGui::SetNextWindowSize({bar.size.x, bar.size.y});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {kGap * em, kGap * em});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
@@ -364,10 +365,7 @@ void time_bar(State& state, glm::vec2 size_px) {
     steps(state, 1);
     clock(state);
     ImGui::SameLine();
-    if (ImGui::Button(tr_label("Now"))) {
-        state.set_utc(sun::Instant::now());
-        state.step = true;
-    }
+    if (ImGui::Button(tr_label("Now"))) state.commands.push_back(Command::Now);
     ImGui::SameLine();
     play(state);
     words(state);

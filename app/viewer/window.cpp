@@ -177,6 +177,7 @@ struct Window::Impl {
     std::vector<std::string> dropped;
     bool has_input = false;  // clicks, keys or wheel events
     bool closes_popup = false;
+    int frames = 0;  // until it is shown
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
@@ -192,6 +193,7 @@ struct Window::Impl {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+        glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);  // until its first frame is there
         // By it desktops find the entry of the program, with its icon.
         glfwWindowHintString(GLFW_X11_CLASS_NAME, "relevo");
         glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "relevo");
@@ -269,7 +271,7 @@ struct Window::Impl {
         style = ImGuiStyle();
         light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
         // Text is not read through text.
-        style.Colors[ImGuiCol_WindowBg].w = 0.97f;
+        style.Colors[ImGuiCol_WindowBg].w = 1;
         style.Colors[ImGuiCol_PopupBg].w = 1;
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
@@ -411,9 +413,18 @@ void Window::draw(const std::function<void()>& panels) {
                                                 IM_COL32(255, 255, 255, 200), 2);
     }
     ImGui::Render();
-    impl_->show(size);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    glfwSwapBuffers(impl_->handle);
+    const auto present = [&] {
+        impl_->show(size);
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+        glfwSwapBuffers(impl_->handle);
+    };
+    present();
+    // ImGui lays panels out before it draws them. A hidden window keeps no frame.
+    constexpr int kSettled = 3;
+    if (impl_->frames < kSettled && ++impl_->frames == kSettled) {
+        glfwShowWindow(impl_->handle);
+        present();
+    }
     gl::throw_if_lost();
 }
 

@@ -301,7 +301,11 @@ class Panorama {
                 label();
             }
         }
-        const int step = high_deg_ - low_deg_ > 50 ? 10 : high_deg_ - low_deg_ > 22 ? 5 : 2;
+        // As fine as its numbers have room for.
+        constexpr double kApart = 14;
+        int step = high_deg_ - low_deg_ > 50 ? 10 : high_deg_ - low_deg_ > 22 ? 5 : 2;
+        while (step < 30 && y(0) - y(radians(step)) < kApart)
+            step = step == 2 ? 5 : step == 5 ? 10 : step == 10 ? 20 : 30;
         for (int el = static_cast<int>(std::ceil(low_deg_ / step)) * step; el <= high_deg_;
              el += step) {
             drawing_->line({all.x - 5, y(radians(el))}, {all.x, y(radians(el))}, {.stroke = kSoft});

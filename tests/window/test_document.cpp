@@ -37,6 +37,26 @@ namespace {
 
 using testing::ElementsAre;
 
+TEST(History, NamesWhatUndoAndRedoWouldChange) {
+    History history;
+    Document document;
+    EXPECT_EQ(history.undo_name(&document), "");
+    history.add(document);
+    EXPECT_EQ(history.undo_name(&document), "");
+    document.scene.effects.switches.disable = {"haze"};
+    history.add(document);
+    document.scene.exaggeration = 2;
+    history.add(document);
+    EXPECT_EQ(history.undo_name(&document), "heights");
+    // What is no step yet is undone first.
+    document.utc = document.utc + 60;
+    EXPECT_EQ(history.undo_name(&document), "time");
+    EXPECT_EQ(history.undo_name(nullptr), "heights");
+    history.undo();
+    EXPECT_EQ(history.undo_name(nullptr), "effects");
+    EXPECT_EQ(history.redo_name(), "heights");
+}
+
 TEST(History, GoesBackAndForth) {
     History history;
     Document document;

@@ -84,8 +84,8 @@ class FilmWindow : public Viewer {
     }
 
     // Places of the panel in a window of 1280 x 800.
-    static constexpr int kButtons = 676, kTimeLine = 706, kPlay = 424, kBack = 504;
-    static constexpr int kSaveFilm = 433, kSaveJob = 530, kLength = 722, kLengthRow = 598;
+    static constexpr int kButtons = 676, kTimeLine = 706, kPlay = 414, kBack = 494;
+    static constexpr int kSaveFilm = 423, kSaveJob = 520, kLength = 712, kLengthRow = 598;
 };
 
 TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
@@ -98,9 +98,9 @@ TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
 
 TEST_F(FilmWindow, SoIsOneWhoseCameraMoves) {
     open_film();
-    click(520, 572);  // the films
+    click(510, 572);  // the films
     settles(3);
-    click(520, 659);  // a day in 15 s, half-way around
+    click(510, 659);  // a day in 15 s, half-way around
     settles();
     const scene::Shots film = frames_of_saved_job();
     ASSERT_EQ(film.shots.size(), 450u);

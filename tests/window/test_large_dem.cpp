@@ -162,12 +162,12 @@ TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
         << program_->output();
     // "Direct sun at this time", and its raster, before all posts are there.
     ASSERT_TRUE(wait([&] {
-        return count_near(display_.screen(), {326, 248, 18, 18}, {39, 73, 113}, 8) > 100;
+        return count_near(display_.screen(), {316, 216, 18, 18}, {39, 73, 113}, 8) > 100;
     }));
-    const glm::ivec4 arrow{326, 248, 18, 18}, choices{20, 272, 300, 140}, choice{20, 376, 200, 16};
-    ASSERT_TRUE(changes_in(arrow, [&] { act({"mousemove", "336", "257"}); }));
+    const glm::ivec4 arrow{316, 216, 18, 18}, choices{10, 240, 300, 140}, choice{10, 344, 200, 16};
+    ASSERT_TRUE(changes_in(arrow, [&] { act({"mousemove", "326", "225"}); }));
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
-    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "384"}); }));
+    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "352"}); }));
     ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
     act({"mousemove", "900", "500"});
     settles();

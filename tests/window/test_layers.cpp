@@ -319,12 +319,12 @@ TEST_F(LayersInWindow, AnOverlayOfAnotherTimeHasNoShadowsUnlessAskedFor) {
 // The panel: order, shadows, hidden and removed layers are those of the scene that is saved.
 TEST_F(LayersInWindow, AreSwitchedMovedAndRemovedInThePanel) {
     open_with_hours({"--overlay-opacity", "0.4", "--enable", "contours"});
-    constexpr int kSwitch = 29, kDown = 311, kRemove = 335;
-    constexpr int kFirst = 283, kSecond = 335, kShadows = 407;  // rows
+    constexpr int kSwitch = 19, kDown = 301, kRemove = 325;
+    constexpr int kFirst = 251, kSecond = 303, kShadows = 375;  // rows
     const auto saved = [&](const std::function<bool(const nlohmann::json&)>& holds) {
         return wait([&] { return holds(scene()); });
     };
-    ASSERT_TRUE(changes([&] { click(50, kShadows); }, 0.005));
+    ASSERT_TRUE(changes([&] { click(40, kShadows); }, 0.005));
     EXPECT_TRUE(saved([](const auto& s) { return s["overlay"]["cast_shadows"] == true; }));
     ASSERT_TRUE(changes([&] { click(kDown, kFirst); }, 0.005));
     EXPECT_TRUE(saved([](const auto& s) {

@@ -347,10 +347,10 @@ TEST_F(Viewer, AScenesOverlayIsThereAndCanBeTakenAway) {
     EXPECT_GT(orange(display_.screen()), 50000);
     EXPECT_EQ(scene()["overlay"]["title"], "H");
     // By the panel: its choice, the first entry.
-    const glm::ivec4 box{100, 248, 200, 18}, choice{100, 272, 200, 16};
-    ASSERT_TRUE(changes_in(box, [&] { act({"mousemove", "180", "257"}); }));
+    const glm::ivec4 box{90, 216, 200, 18}, choice{90, 240, 200, 16};
+    ASSERT_TRUE(changes_in(box, [&] { act({"mousemove", "170", "225"}); }));
     ASSERT_TRUE(changes_in(choice, [&] { act({"click", "1"}); }));
-    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "200", "280"}); }));
+    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "190", "248"}); }));
     ASSERT_TRUE(changes([&] { act({"click", "1"}); }));
     EXPECT_LT(orange(display_.screen()), 5000);
     EXPECT_FALSE(scene().contains("overlay"));

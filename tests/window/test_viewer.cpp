@@ -78,6 +78,20 @@ glm::ivec4 edges_of(const image::Image8& picture) {
     return box;
 }
 
+// Whatever the picture takes, the first thing on the screen says what is opened.
+TEST_F(Viewer, BeginsWithItsNameAndAProgressBar) {
+    start({dem_});
+    image::Image8 first;
+    ASSERT_TRUE(wait([&] {
+        first = display_.screen();
+        return count_near(first, {0, 0, 1280, 800}, {0, 0, 0}, 4) < 1000 * 800;
+    }));
+    // Letters, and a piece of the bar, which no panel covers.
+    constexpr glm::ivec4 kCard{580, 330, 500, 120};
+    EXPECT_GT(count_near(first, kCard, {255, 255, 255}, 30), 150);
+    EXPECT_GT(count_near(first, kCard, {230, 179, 0}, 20), 100);
+}
+
 TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     open({dem_, "--view", "az=165,el=28"});
     const auto taken = [&](int number) {
@@ -86,13 +100,13 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
         EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); }));
         return edges_of(image::read(name));
     };
-    // The panel ends 380 px from the left, the menu begins the ground's room 24 px from the top.
+    // The panel ends 360 px from the left, the menu 22 px from the top.
     const auto fills_the_room = [](const glm::ivec4& box) {
-        EXPECT_GE(box[0], 375);
+        EXPECT_GE(box[0], 358);
         EXPECT_LE(box[1], 1275);
         EXPECT_GE(box[2], 20);
-        EXPECT_LE(box[3], 736);
-        const double wide = (box[1] - box[0]) / 900.0, high = (box[3] - box[2]) / 700.0;
+        EXPECT_LE(box[3], 756);
+        const double wide = (box[1] - box[0]) / 920.0, high = (box[3] - box[2]) / 734.0;
         EXPECT_NEAR(std::max(wide, high), 0.95, 0.02) << wide << " " << high;
     };
     fills_the_room(taken(1));

@@ -157,7 +157,6 @@ class Viewer : public testing::Test {
     test::Display display_{1280, 800};
     std::optional<test::WindowedProgram> program_;
     int saved_ = 0;
-    static constexpr int tab_y_ = 433;  // of the tabs of the point's charts
 };
 
 /// What an area of the screen has of a colour, by less than `by` in each channel.
