@@ -11,12 +11,12 @@
 
 #include "sun/position.h"
 #include "viewer/image_texture.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
 
-constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 /// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -50,8 +50,8 @@ void ChartsPanel::horizon(State& state) {
     if (elevation_rad < axes.low_rad || elevation_rad > axes.high_rad) return;
     const ImVec2 at = at_screen(corner, axes.at(position.azimuth_rad, elevation_rad), px_a_unit);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddCircleFilled(at, 7, IM_COL32(255, 214, 90, 255));
-    list.AddCircle(at, 7.5f, kNow, 0, 2);
+    list.AddCircleFilled(at, 7, style::kChartSun);
+    list.AddCircle(at, 7.5f, style::kChartNow, 0, 2);
 }
 
 /// Marks the displayed day and time. A click sets another time.
@@ -67,8 +67,8 @@ void ChartsPanel::year(State& state) {
     const double y = plot.y + plot.height * (1 - now.minute / 1440.0);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddLine(at_screen(corner, {x, plot.y}, px_a_unit),
-                 at_screen(corner, {x, plot.y + plot.height}, px_a_unit), kNow, 1.5f);
-    list.AddCircle(at_screen(corner, {x, y}, px_a_unit), 5, kNow, 0, 2);
+                 at_screen(corner, {x, plot.y + plot.height}, px_a_unit), style::kChartNow, 1.5f);
+    list.AddCircle(at_screen(corner, {x, y}, px_a_unit), 5, style::kChartNow, 0, 2);
     if (!hovered) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double across = ((mouse.x - corner.x) / px_a_unit - plot.x) / plot.width;

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "viewer/film_fields.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -46,7 +47,7 @@ void message(const std::string& text, bool is_error) {
     if (text.empty()) return;
     ImGui::PushTextWrapPos();
     if (is_error)
-        ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%s", text.c_str());
+        ImGui::TextColored(style::error(), "%s", text.c_str());
     else
         ImGui::TextDisabled("%s", text.c_str());
     ImGui::PopTextWrapPos();
@@ -186,9 +187,8 @@ void draw_film_edges(double aspect, glm::vec2 size_px) {
     const float beside = (size_px.x - width) / 2;
     if (beside < 1) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
-    list.AddRectFilled({0, 0}, {beside, size_px.y}, kShade);
-    list.AddRectFilled({size_px.x - beside, 0}, {size_px.x, size_px.y}, kShade);
+    list.AddRectFilled({0, 0}, {beside, size_px.y}, style::kShade);
+    list.AddRectFilled({size_px.x - beside, 0}, {size_px.x, size_px.y}, style::kShade);
 }
 
 }  // namespace relevo::viewer

@@ -7,6 +7,7 @@
 #include <imgui.h>
 
 #include "viewer/overlay.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -15,8 +16,7 @@ namespace {
 constexpr int kSteps = 64;  // of a bar
 
 ImU32 packed(const chart::Color& color) {
-    return IM_COL32(color.rgb >> 16 & 255, color.rgb >> 8 & 255, color.rgb & 255,
-                    std::lround(255 * color.opacity));
+    return style::colour(color.rgb, static_cast<unsigned>(std::lround(255 * color.opacity)));
 }
 
 std::string unit_of(const chart::Legend& legend) {

@@ -10,13 +10,11 @@
 #include "base/units.h"
 #include "geo/format.h"
 #include "viewer/overlay.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
-
-constexpr ImU32 kPathLine = IM_COL32(255, 80, 60, 255), kHidden = IM_COL32(255, 80, 60, 80);
-constexpr ImU32 kPathInk = IM_COL32(255, 255, 255, 235);
 
 std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
                                 const glm::dvec3& point_m) {
@@ -61,8 +59,8 @@ std::vector<std::optional<Place>> places_of(const std::vector<glm::dvec3>& line_
 }
 
 void draw_dot(ImDrawList& list, ImVec2 at) {
-    list.AddCircleFilled(at, 5, kPathLine);
-    list.AddCircle(at, 6, IM_COL32_WHITE, 0, 1.5f);
+    list.AddCircleFilled(at, 5, style::kMark);
+    list.AddCircle(at, 6, style::kInk, 0, 1.5f);
 }
 
 /// Straight, from the last corner to the first.
@@ -70,7 +68,7 @@ void draw_closing_line(const Measurement& measurement, const Picture& picture, g
     if (measurement.corners_m.size() < 3) return;
     const auto a = at_window(picture, size_px, measurement.corners_m.front());
     const auto b = at_window(picture, size_px, measurement.corners_m.back());
-    if (a && b) ImGui::GetBackgroundDrawList()->AddLine(*a, *b, kHidden, 2);
+    if (a && b) ImGui::GetBackgroundDrawList()->AddLine(*a, *b, style::kFaintMark, 2);
 }
 
 }  // namespace
@@ -80,8 +78,9 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
     const auto places = places_of(measurement.line_m, picture, size_px);
     for (std::size_t i = 1; i < places.size(); ++i)
         if (places[i - 1] && places[i])
-            list.AddLine(places[i - 1]->at, places[i]->at,
-                         places[i - 1]->hidden || places[i]->hidden ? kHidden : kPathLine, 2);
+            list.AddLine(
+                places[i - 1]->at, places[i]->at,
+                places[i - 1]->hidden || places[i]->hidden ? style::kFaintMark : style::kMark, 2);
     draw_closing_line(measurement, picture, size_px);
     std::optional<ImVec2> last;
     for (const glm::dvec3& corner_m : measurement.corners_m) {
@@ -94,8 +93,8 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
     const std::string length = length_text(measurement.profile->level_m);
     const ImVec2 at{last->x + 12, last->y - 8}, extent = ImGui::CalcTextSize(length.c_str());
     list.AddRectFilled({at.x - 3, at.y - 1}, {at.x + extent.x + 3, at.y + extent.y + 1},
-                       IM_COL32(0, 0, 0, 110), 3);
-    list.AddText(at, kPathInk, length.c_str());
+                       style::kShade, 3);
+    list.AddText(at, style::kInk, length.c_str());
 }
 
 namespace {
@@ -159,7 +158,7 @@ void show_point(Measurement& measurement, ImDrawList& list, const Plot& plot) {
         ImGui::SetTooltip("%s", tr_format("after {}: no height", there).c_str());
         return;
     }
-    list.AddCircleFilled(plot.place(point.distance_m, point.place.height_m), 4, kPathLine);
+    list.AddCircleFilled(plot.place(point.distance_m, point.place.height_m), 4, style::kMark);
     ImGui::SetTooltip("%s", tr_format("after {}: {:.1f} m", there, point.place.height_m).c_str());
 }
 

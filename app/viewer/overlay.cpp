@@ -12,15 +12,11 @@
 #include "base/units.h"
 #include "geo/format.h"
 #include "geo/geodetic.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
-namespace {
-
-constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
-constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
-
-}  // namespace
+namespace {}  // namespace
 
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
@@ -42,9 +38,9 @@ void draw_sides(float line_px, float top_px) {
     const auto label = [&](const char* words, bool left) {
         const ImVec2 extent = ImGui::CalcTextSize(words);
         const ImVec2 at{left ? line_px - extent.x - 14 : line_px + 14, top_px + 8};
-        list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3}, kShade,
-                           4);
-        list.AddText(at, kInk, words);
+        list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3},
+                           style::kShade, 4);
+        list.AddText(at, style::kInk, words);
     };
     label(tr("as it was"), true);
     label(tr("as it is now"), false);
@@ -81,11 +77,12 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
     };
-    list.AddCircleFilled(middle, kNorthRadius_px, kShade);
-    list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
-    list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
+    list.AddCircleFilled(middle, kNorthRadius_px, style::kShade);
+    list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), style::kMark);
+    list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), style::kInk);
     const ImVec2 letter = tip(north, 26), letter_px = ImGui::CalcTextSize(compass_text(0));
-    list.AddText({letter.x - letter_px.x / 2, letter.y - letter_px.y / 2}, kInk, compass_text(0));
+    list.AddText({letter.x - letter_px.x / 2, letter.y - letter_px.y / 2}, style::kInk,
+                 compass_text(0));
     if (!middle_m) return;
     // A scale bar across the view, at the depth of the ground in the centre.
     const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);
@@ -97,11 +94,11 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const ImVec2 end{free.end().x - 24, free.end().y - 24};
     const float wide = std::max(width, extent.x), tall = extent.y + 10;
-    list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, kShade, 4);
-    list.AddLine({end.x - width, end.y}, end, kInk, 2);
-    list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, kInk, 2);
-    list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, kInk, 2);
-    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, kInk, text.c_str());
+    list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, style::kShade, 4);
+    list.AddLine({end.x - width, end.y}, end, style::kInk, 2);
+    list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, style::kInk, 2);
+    list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, style::kInk, 2);
+    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, style::kInk, text.c_str());
 }
 
 const char* compass_text(double azimuth_deg) {

@@ -8,13 +8,11 @@
 #include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
 #include "viewer/state.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
 namespace {
-
-/// Before the first picture.
-constexpr ImU32 kDusk = IM_COL32(22, 34, 58, 255), kDawn = IM_COL32(118, 96, 96, 255);
 
 void export_panel(State& state) {
     const auto button = [&](const char* name, Command command) {
@@ -86,18 +84,18 @@ void status_line(const State& state, const std::string& work) {
         text +=
             std::string("   ") + tr("reading all posts; terrain and shadows are coarse until then");
     if (!work.empty()) text += "   " + work;
-    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const Area& picture = state.layout.picture;
     const ImVec2 at{picture.at.x + 12, picture.end().y - extent.y - 10};
     list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
-                       IM_COL32(0, 0, 0, 150), 4);
-    list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
+                       style::kShade, 4);
+    list.AddText(at, style::kInk, text.c_str());
 }
 
 void draw_no_picture() {
-    ImGui::GetBackgroundDrawList()->AddRectFilledMultiColor({0, 0}, ImGui::GetIO().DisplaySize,
-                                                            kDusk, kDusk, kDawn, kDawn);
+    ImGui::GetBackgroundDrawList()->AddRectFilledMultiColor(
+        {0, 0}, ImGui::GetIO().DisplaySize, style::kDusk, style::kDusk, style::kDawn, style::kDawn);
 }
 
 void opening_card(const State& state, const scene::Scene& scene, double since_s) {

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "viewer/state.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -26,11 +27,6 @@ void go_to_edge(State& state, const char* name, sun::Instant utc) {
         state.step = true;
     }
     ImGui::SameLine();
-}
-
-ImVec4 colour_of(bool lit, bool on_light) {
-    if (on_light) return lit ? ImVec4(0.65f, 0.4f, 0, 1) : ImVec4(0.2f, 0.3f, 0.7f, 1);
-    return lit ? ImVec4(1, 0.85f, 0.4f, 1) : ImVec4(0.6f, 0.7f, 1, 1);
 }
 
 /// "in the sun until 15:03".
@@ -85,7 +81,7 @@ void doubts(const PointLight& point) {
 void light_of(State& state, const PointLight& point) {
     const sun::Zone& zone = state.document.zone;
     const bool lit = point.is_lit(state.document.utc);
-    ImGui::TextColored(colour_of(lit, state.settings.light_style), "%s",
+    ImGui::TextColored(lit ? style::lit() : style::shaded(), "%s",
                        light_words(point, state.document.utc, zone).c_str());
     for (const LitSpan& span : point.lit) {
         const std::string from = span.from_midnight ? tr("midnight") : clock_text(span.begin, zone);

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/state.h"
+#include "viewer/style.h"
 
 namespace relevo::viewer {
 namespace {
@@ -78,11 +79,13 @@ void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture
         const auto at = direction_at_window(picture, size_px, point.direction);
         if (minute % 60 != 0 || point.elevation_deg < kLowest_deg || !at) continue;
         const bool clear = is_sky(picture, size_px, *at);
-        list.AddCircleFilled(*at, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
+        list.AddCircleFilled(*at, 3, clear ? style::kSun : style::kHiddenSun);
         if (!clear) continue;
         const std::string hour = fmt::format("{}", minute / 60);
-        list.AddText({at->x + 7, at->y - 17}, IM_COL32(60, 40, 10, 230), hour.c_str());
-        list.AddText({at->x + 6, at->y - 18}, IM_COL32(255, 240, 200, 255), hour.c_str());
+        const ImVec2 text{at->x + 7, at->y - 19}, extent = ImGui::CalcTextSize(hour.c_str());
+        list.AddRectFilled({text.x - 3, text.y}, {text.x + extent.x + 3, text.y + extent.y},
+                           style::kShade, 3);
+        list.AddText(text, style::kInk, hour.c_str());
     }
 }
 
@@ -94,18 +97,16 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
         days.push_back(&extreme);
     fetch_depths(days, picture, size_px);
     for (const SunDay& extreme : state.extremes)
-        draw_way(extreme, picture, size_px, IM_COL32(255, 255, 255, 90),
-                 IM_COL32(255, 255, 255, 25), 1.5f);
-    draw_way(state.day, picture, size_px, IM_COL32(255, 214, 120, 220), IM_COL32(255, 214, 120, 70),
-             2.5f);
+        draw_way(extreme, picture, size_px, style::kSolstice, style::kHiddenSolstice, 1.5f);
+    draw_way(state.day, picture, size_px, style::kWay, style::kHiddenWay, 2.5f);
     draw_hours(state.day, state.document.zone, picture, size_px);
     const SunPoint now = sun_at(picture.utc, state.centre, state.air);
     const auto at = direction_at_window(picture, size_px, now.direction);
     if (!at || now.elevation_deg < kLowest_deg) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const bool clear = is_sky(picture, size_px, *at);
-    list.AddCircleFilled(*at, kSun_px, IM_COL32(255, 226, 130, clear ? 255 : 90));
-    list.AddCircle(*at, kSun_px + 1, IM_COL32(120, 80, 20, 200), 0, 1.5f);
+    list.AddCircleFilled(*at, kSun_px, clear ? style::kSun : style::kHiddenSun);
+    list.AddCircle(*at, kSun_px + 1, style::kSunRim, 0, 1.5f);
 }
 
 std::optional<sun::Instant> time_at(const State& state, const Picture& picture, glm::vec2 size_px,

@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "viewer/overlay.h"
 #include "viewer/state.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -35,13 +36,12 @@ Sky sky_at(const SunDay& day, sun::Instant utc, double elevation_deg) {
             spans, [&](const sun::TimeSpan& span) { return span.begin <= utc && utc < span.end; });
     };
     if (is_in(day.events.sun_up))
-        return is_in(day.events.golden_hour)
-                   ? Sky{IM_COL32(236, 160, 84, 255), tr_later("golden hour")}
-                   : Sky{IM_COL32(246, 220, 148, 255), tr_later("day")};
-    if (elevation_deg > -6) return {IM_COL32(112, 104, 168, 255), tr_later("civil twilight")};
-    if (elevation_deg > -12) return {IM_COL32(66, 74, 136, 255), tr_later("nautical twilight")};
-    if (elevation_deg > -18) return {IM_COL32(36, 46, 96, 255), tr_later("astronomical twilight")};
-    return {IM_COL32(14, 18, 38, 255), tr_later("night")};
+        return is_in(day.events.golden_hour) ? Sky{style::kGolden, tr_later("golden hour")}
+                                             : Sky{style::kDay, tr_later("day")};
+    if (elevation_deg > -6) return {style::kCivil, tr_later("civil twilight")};
+    if (elevation_deg > -12) return {style::kNautical, tr_later("nautical twilight")};
+    if (elevation_deg > -18) return {style::kAstronomical, tr_later("astronomical twilight")};
+    return {style::kNight, tr_later("night")};
 }
 
 /// The day from midnight to midnight along the strip.
@@ -89,13 +89,13 @@ class Strip {
             list.AddRectFilled({from, at_.y}, {end, at_.y + height_}, now.first);
             if (now.second)
                 list.AddRectFilled({from, at_.y + height_ / 2}, {end, at_.y + height_},
-                                   IM_COL32(70, 66, 74, 255));
+                                   style::kHiddenByGround);
             from = to;
             now = next;
         }
         for (const sun::TimeSpan& up : state_.moon->moon_up)
             list.AddRectFilled({x_of(up.begin), at_.y}, {x_of(up.end), at_.y + height_ / 6},
-                               IM_COL32(200, 214, 255, 255));
+                               style::kMoon);
         draw_hours(list);
     }
 
@@ -113,18 +113,16 @@ class Strip {
     /// Every third hour, and where the clocks change.
     void draw_hours(ImDrawList& list) const {
         const sun::Zone& zone = state_.document.zone;
-        constexpr ImU32 kTick = IM_COL32(128, 128, 128, 220);
         for (int hour = 3; hour < 24; hour += 3) {
             const float x = x_of(DayMinute{state_.day.date, hour * 60}.utc(zone));
-            list.AddLine({x, at_.y + height_ * 0.55f}, {x, at_.y + height_}, kTick);
+            list.AddLine({x, at_.y + height_ * 0.55f}, {x, at_.y + height_}, style::kTick);
         }
         const std::vector<SunPoint>& points = state_.day.points;
         for (std::size_t i = 0; i + 1 < points.size(); ++i)
             if (zone.local(points[i].utc).utc_offset_s !=
                 zone.local(points[i + 1].utc).utc_offset_s)
                 list.AddLine({x_of(points[i + 1].utc), at_.y},
-                             {x_of(points[i + 1].utc), at_.y + height_}, IM_COL32(255, 80, 60, 255),
-                             2);
+                             {x_of(points[i + 1].utc), at_.y + height_}, style::kMark, 2);
     }
 
     const State& state_;
@@ -175,7 +173,7 @@ void strip_row(State& state) {
     for (const ImGuiCol of : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
         ImGui::PushStyleColor(of, IM_COL32_BLACK_TRANS);
     for (const ImGuiCol of : {ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive})
-        ImGui::PushStyleColor(of, IM_COL32(255, 80, 60, 255));
+        ImGui::PushStyleColor(of, style::kMark);
     const sun::TimeSpan& span = state.day.events.span;
     const int last = static_cast<int>(span.length_s() / 60) - 1;
     int minute = static_cast<int>(std::floor((state.document.utc - span.begin) / 60));
@@ -231,7 +229,8 @@ void calendar(State& state, sun::Date date) {
     }
     for (int day = 1; day <= days_in_month(date.year, date.month); ++day) {
         const bool chosen = day == date.day;
-        if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.26f, 0.59f, 0.98f, 0.8f));
+        if (chosen)
+            ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(ImGuiCol_TextSelectedBg));
         if (ImGui::Button(fmt::format("{}##day", day).c_str(), cell)) {
             state.set_date({date.year, date.month, day});
             state.step = true;

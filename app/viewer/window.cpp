@@ -26,6 +26,7 @@
 #include "gl/framebuffer.h"
 #include "viewer/fonts.h"
 #include "viewer/scene_thread.h"
+#include "viewer/style.h"
 
 namespace relevo::viewer {
 namespace {
@@ -269,10 +270,7 @@ struct Window::Impl {
         scale *= static_cast<float>(text_px) / kText_px;
         ImGuiStyle& style = ImGui::GetStyle();
         style = ImGuiStyle();
-        light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
-        // Text is not read through text.
-        style.Colors[ImGuiCol_WindowBg].w = 1;
-        style.Colors[ImGuiCol_PopupBg].w = 1;
+        style::set_colours(style, light);
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
         style.FrameRounding = 3 * scale;
@@ -410,7 +408,7 @@ void Window::draw(const std::function<void()>& panels) {
     if (impl_->before.target) {
         const float x = impl_->line * ImGui::GetIO().DisplaySize.x;
         ImGui::GetBackgroundDrawList()->AddLine({x, 0}, {x, ImGui::GetIO().DisplaySize.y},
-                                                IM_COL32(255, 255, 255, 200), 2);
+                                                style::kDivider, 2);
     }
     ImGui::Render();
     const auto present = [&] {

@@ -162,7 +162,7 @@ TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
         << program_->output();
     // "Direct sun at this time", and its raster, before all posts are there.
     ASSERT_TRUE(wait([&] {
-        return count_near(display_.screen(), {316, 216, 18, 18}, {39, 73, 113}, 8) > 100;
+        return count_near(display_.screen(), {316, 216, 18, 18}, {45, 50, 58}, 4) > 100;
     }));
     const glm::ivec4 arrow{316, 216, 18, 18}, choices{10, 240, 300, 140}, choice{10, 344, 200, 16};
     ASSERT_TRUE(changes_in(arrow, [&] { act({"mousemove", "326", "225"}); }));

@@ -166,7 +166,7 @@ TEST_F(OpenedFiles, ADemOfTheCommandLineWithoutACrsIsAskedForOne) {
     constexpr glm::ivec4 kSheet{270, 160, 740, 480};
     const auto shows_sheet = [&] {
         return wait([&] {
-            return count_near(display_.screen(), kSheet, {15, 15, 15}, 8) > 100'000;
+            return count_near(display_.screen(), kSheet, {21, 23, 27}, 4) > 100'000;
         });
     };
     // Without an answer it ends as other commands do.

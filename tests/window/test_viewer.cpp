@@ -88,8 +88,8 @@ TEST_F(Viewer, BeginsWithItsNameAndAProgressBar) {
     }));
     // Letters, and a piece of the bar, which no panel covers.
     constexpr glm::ivec4 kCard{580, 330, 500, 120};
-    EXPECT_GT(count_near(first, kCard, {255, 255, 255}, 30), 150);
-    EXPECT_GT(count_near(first, kCard, {230, 179, 0}, 20), 100);
+    EXPECT_GT(count_near(first, kCard, {232, 234, 237}, 30), 100);
+    EXPECT_GT(count_near(first, kCard, {242, 184, 75}, 20), 100);
 }
 
 TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {

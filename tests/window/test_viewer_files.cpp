@@ -70,7 +70,7 @@ TEST_F(Viewer, ChartsTakeARowOfTheirOwnAndTheSidesOfABlockAreNoGround) {
     ASSERT_TRUE(settles());
     // Their upper edge can be dragged. It is where it was after the panels were hidden.
     const auto is_higher = [&] {
-        return count_near(display_.screen(), {500, 505, 700, 10}, {15, 15, 15}, 4) > 6000;
+        return count_near(display_.screen(), {500, 505, 700, 10}, {21, 23, 27}, 3) > 6000;
     };
     EXPECT_FALSE(is_higher());
     drag(1, 800, 597, 0, -100);
