@@ -30,6 +30,7 @@ enum class Command {
     StandHere,  ///< at the chosen point
     LookThere,  ///< to the chosen point
     LookToMoon,
+    SunOverPoint,  ///< when it next stands over the chosen point, seen from here
     SaveView,
     Measure,  ///< begins or ends a line
     EndMeasuring,

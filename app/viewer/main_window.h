@@ -24,6 +24,7 @@
 #include "viewer/overlay_panel.h"
 #include "viewer/point_query.h"
 #include "viewer/state.h"
+#include "viewer/sun_over.h"
 #include "viewer/window.h"
 #include "viewer/window_style.h"
 
@@ -150,6 +151,8 @@ class MainWindow {
     /// Stands on the chosen point, or looks at it.
     void move_to_point(Command command);
     void look_to_moon();
+    void ask_sun_over_point();
+    void poll_sun_over();
     /// The whole DEM, from its side and from above.
     Whole whole_views() const;
     void save_view();
@@ -209,6 +212,7 @@ class MainWindow {
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<Comparison> comparison_;
     std::unique_ptr<PointQuery> point_;
+    SunOver sun_over_;
     std::unique_ptr<OverlayController> overlay_;
     std::unique_ptr<FilmController> film_;
     std::unique_ptr<WindowStyle> style_;

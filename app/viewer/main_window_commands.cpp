@@ -152,6 +152,8 @@ void MainWindow::run_scene_command(Command command) {
                 messages_.report(
                     with_overlay_note(save_job(whole_scene(), state_.day, state_.document.zone)));
             });
+        case Command::SunOverPoint:
+            return ask_sun_over_point();
         case Command::SaveView:
             return save_view();
         case Command::Measure:
@@ -271,6 +273,29 @@ void MainWindow::look_to_moon() {
             tr("the moon is below the horizon; the line above the day says when it is up"));
     pose.heading_deg = degrees(moon.azimuth_rad);
     pose.pitch_deg = degrees(elevation_rad);
+}
+
+void MainWindow::ask_sun_over_point() {
+    const geo::Geodetic eye = view_of(state_.document.pose, state_.land).eye->place;
+    if (!state_.chosen || opening_->is_preview()) return;
+    if (std::isnan(state_.land.height_m(eye)))
+        return messages_.note(tr("the eye is outside the DEM: right click, Stand here, then ask"));
+    const Opened& opened = *opening_->opened();
+    sun_over_.ask(
+        {opened.dem, opened.scene, eye, *state_.chosen, state_.document.utc, state_.document.zone});
+}
+
+void MainWindow::poll_sun_over() {
+    messages_.try_to([&] {
+        const std::optional<SunOverAnswer> answer = sun_over_.poll();
+        if (!answer) return;
+        if (answer->utc) {
+            state_.set_utc(*answer->utc);
+            state_.step = true;
+        }
+        messages_.note(answer->words);
+        pacing_.need_frames(3);
+    });
 }
 
 void MainWindow::measure() {

@@ -100,6 +100,7 @@ void MainWindow::poll_threads() {
     if (point_->poll()) pacing_.need_frames(2);
     if (film_->poll()) pacing_.need_frames(2);
     poll_picture_export();
+    if (is_open()) poll_sun_over();
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }
 

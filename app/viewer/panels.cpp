@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -52,6 +53,9 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (const float width = ImGui::GetWindowWidth(); width != side.size.x)
         state.settings.panel_width = static_cast<int>(std::lround(width / px_a_unit));
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
+    // A double click edits a slider's number, as Ctrl and a click do.
+    bool& control = ImGui::GetIO().KeyCtrl;
+    const bool was_down = std::exchange(control, control || ImGui::IsMouseDoubleClicked(0));
     state.measurement.marked.reset();
     if (state.measurement.profile && ImGui::CollapsingHeader(tr_label("Measured line"), kOpen))
         measurement_panel(state);
@@ -62,6 +66,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (ImGui::CollapsingHeader(tr_label("Point"), kOpen)) roomy_point_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Effects"), kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Export"), kOpen)) export_panel(state);
+    control = was_down;
     ImGui::End();
 }
 

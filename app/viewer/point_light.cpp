@@ -83,7 +83,9 @@ class PointWork::Worker {
         for (const light::LitInterval& interval : day_->lit)
             to.lit.push_back({{interval.begin.utc, interval.end.utc},
                               interval.begin.midnight,
-                              interval.end.midnight});
+                              interval.end.midnight,
+                              ridge_at(interval.begin.azimuth_rad),
+                              ridge_at(interval.end.azimuth_rad)});
         to.lit_s = day_->lit_s;
         to.not_known_s = day_->not_known_s;
         to.flat_s = day_->flat.day_length_s;
@@ -137,6 +139,10 @@ class PointWork::Worker {
         if (!horizon_) horizon_.emplace(*posts_, wanted_.place);
         if (!light_) light_.emplace(*horizon_, light_options(wanted_, horizon_->place()));
         return *light_;
+    }
+    Ridge ridge_at(double azimuth_rad) const {
+        const light::HorizonPoint at = horizon_->at(azimuth_rad);
+        return {degrees(azimuth_rad), degrees(at.elevation_rad), at.distance_m};
     }
     const std::vector<light::HorizonPoint>& profile() {
         if (profile_.empty()) profile_ = horizon_->profile(kDirections);

@@ -47,9 +47,16 @@ struct YearPicture {
     std::pair<sun::Date, sun::Date> dark;  ///< first and last day of dark_row, if any
 };
 
+/// Ground behind which the sun stands.
+struct Ridge {
+    double azimuth_deg = 0, elevation_deg = 0;  ///< of the ground, apparent
+    double distance_m = 0;                      ///< NaN: the level horizon
+};
+
 /// A period of sun within a day. At midnight the day may cut it off.
 struct LitSpan : sun::TimeSpan {
     bool from_midnight = false, to_midnight = false;
+    Ridge begins_over, ends_over;
 };
 
 /// Direct sun at a point of the ground on a day.

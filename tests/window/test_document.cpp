@@ -30,6 +30,7 @@
 #include "viewer/settings.h"
 #include "viewer/state.h"
 #include "viewer/sun_model.h"
+#include "viewer/sun_over.h"
 #include "window/display.h"
 
 namespace relevo::viewer::test_document {
@@ -143,6 +144,48 @@ std::shared_ptr<const session::LoadedDem> jacksboro() {
     dem::Heightfield field = dem::load(source, dem::LoadOptions{}.memory);
     return std::make_shared<const session::LoadedDem>(session::LoadedDem{
         std::make_shared<const dem::Source>(std::move(source)), std::move(field)});
+}
+
+// The figures are those of `relevo sun when --at 36.25,-84.28 --eye-height 2`.
+TEST(SunOver, IsTheNextPassageInSight) {
+    SunOverQuestion question{.dem = jacksboro(),
+                             .scene = {},
+                             .eye = geo::geodetic_deg(36.25, -84.28, 457),
+                             .target = geo::geodetic_deg(36.22333333, -84.2275, 2100),
+                             .after = sun::parse_time("2026-06-21T12:00:00Z").utc,
+                             .zone = sun::Zone::named("America/New_York")};
+    const auto next = [&] { return sun_over(question); };
+    const SunOverAnswer first = next();
+    ASSERT_TRUE(first.utc) << first.words;
+    EXPECT_LT(std::abs(*first.utc - sun::parse_time("2026-10-30T13:32:51.277Z").utc), 1);
+    question.after = *first.utc;
+    const SunOverAnswer second = next();
+    ASSERT_TRUE(second.utc);
+    EXPECT_LT(std::abs(*second.utc - sun::parse_time("2026-10-31T13:32:48.283Z").utc), 1);
+    // The ridge itself is hidden by ground nearer by, and the sun never stands in the north.
+    question.target.height_m = 986;
+    EXPECT_FALSE(next().utc);
+    question.target = geo::geodetic_deg(36.40, -84.28, 3000);
+    EXPECT_FALSE(next().utc);
+    // Not within the DEM.
+    question.eye = geo::geodetic_deg(40, -84.28, 457);
+    EXPECT_THROW(next(), Error);
+}
+
+TEST(PointWork, KnowsTheGroundBehindWhichTheSunRises) {
+    PointWanted wanted;
+    wanted.dem = jacksboro();
+    wanted.refraction = "standard";
+    wanted.place = geo::geodetic_deg(36.25, -84.28, 0);
+    wanted.date = {2026, 2, 10};
+    wanted.zone = sun::Zone::named("America/New_York");
+    PointWork work([] {});
+    work.want(wanted);
+    ASSERT_TRUE(test::WindowedProgram::wait([&] { return work.is_done(); }));
+    const LitSpan& first = work.answer()->lit.front();
+    EXPECT_NEAR(first.begins_over.azimuth_deg, 120.7, 0.3);
+    EXPECT_NEAR(first.begins_over.elevation_deg, 14.96, 0.05);
+    EXPECT_NEAR(first.begins_over.distance_m, 2004, 15);
 }
 
 TEST(PointWork, GivesUpWhatIsNotWantedAnyMoreAndNeverHoldsItsCallerUp) {

@@ -1,0 +1,58 @@
+#include "viewer/sun_over.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "base/units.h"
+#include "light/point/alignment.h"
+#include "light/point/refraction_at.h"
+#include "viewer/translation.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+
+SunOverAnswer sun_over(const SunOverQuestion& question) {
+    const dem::Heightfield& field = question.dem->field;
+    const dem::Posts posts = field.reduction == 1
+                                 ? dem::Posts(field)
+                                 : dem::Posts::load(question.scene.dems, question.scene.dem);
+    const light::TerrainHorizon horizon(
+        posts, question.eye,
+        {.eye_height_m = question.eye.height_m, .eye_above_ground = false, .few_directions = true});
+    const sun::Date first = question.zone.local(question.after).wall.date;
+    const sun::Date last = std::min(sun::add_days(first, 366), sun::Date{sun::kLastYear, 12, 31});
+    light::AlignmentOptions options;
+    options.refraction = light::refraction_at(question.scene.refraction, horizon.place());
+    const light::Alignments found =
+        light::alignments(horizon, question.target, first, last, question.zone, options);
+    if (!found.sight.visible) return {{}, tr("ground hides that point from here")};
+    const auto next = std::ranges::find_if(found.passages, [&](const light::Alignment& passage) {
+        return passage.sun_visible && passage.utc > question.after;
+    });
+    if (next == found.passages.end())
+        return {{}, tr("within a year the sun does not stand over that point, seen from here")};
+    const double right_deg = degrees(next->right_rad);
+    return {next->utc,
+            tr_format("the sun stands over the point, {:.2f}° {} and {:.2f}° {} it",
+                      std::abs(right_deg), right_deg < 0 ? tr("to the left") : tr("to the right"),
+                      std::abs(degrees(next->above_rad)),
+                      next->above_rad < 0 ? tr("below") : tr("above"))};
+}
+
+void SunOver::ask(SunOverQuestion question) {
+    answer_ = std::async(std::launch::async, [question = std::move(question)] {
+        SunOverAnswer answer = sun_over(question);
+        Window::wake();
+        return answer;
+    });
+}
+
+std::optional<SunOverAnswer> SunOver::poll() {
+    using namespace std::chrono_literals;
+    if (!answer_.valid() || answer_.wait_for(0s) != std::future_status::ready) return std::nullopt;
+    return answer_.get();
+}
+
+}  // namespace relevo::viewer
