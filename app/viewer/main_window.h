@@ -146,6 +146,8 @@ class MainWindow {
     void measure();
     void save_profile();
     void toggle_overlay();
+    /// Undo or Redo.
+    void go_through_history(Command command);
     void restore(const Document& document);
     void move(Command command);
     /// Stands on the chosen point, or looks at it.

@@ -178,15 +178,20 @@ void MainWindow::run_scene_command(Command command) {
             state_.playing = !state_.playing;
             return;
         case Command::Undo:
-            history_.end_step(state_.document);
-            return history_.can_undo() ? restore(history_.undo())
-                                       : messages_.note(tr("nothing to undo"));
         case Command::Redo:
-            return history_.can_redo() ? restore(history_.redo())
-                                       : messages_.note(tr("nothing to redo"));
+            return go_through_history(command);
         default:
             move(command);
     }
+}
+
+void MainWindow::go_through_history(Command command) {
+    if (command == Command::Undo) {
+        history_.end_step(state_.document);
+        return history_.can_undo() ? restore(history_.undo())
+                                   : messages_.note(tr("nothing to undo"));
+    }
+    history_.can_redo() ? restore(history_.redo()) : messages_.note(tr("nothing to redo"));
 }
 
 void MainWindow::close_dialogs() {
