@@ -52,7 +52,7 @@ constexpr Row kLight[] = {{ImGuiCol_Text, 0x1b1e23},
                           {ImGuiCol_TextDisabled, 0x525a65},
                           {ImGuiCol_WindowBg, 0xf4f5f7},
                           {ImGuiCol_PopupBg, 0xffffff},
-                          {ImGuiCol_Border, 0xc3c8d0},
+                          {ImGuiCol_Border, 0xa9b1bc},
                           {ImGuiCol_MenuBarBg, 0xe2e5ea},
                           {ImGuiCol_TitleBg, 0xe2e5ea},
                           {ImGuiCol_TitleBgActive, 0xd5dbe3},
@@ -110,6 +110,7 @@ void set_colours(ImGuiStyle& of, bool light) {
     light ? ImGui::StyleColorsLight(&of) : ImGui::StyleColorsDark(&of);
     for (const auto& [what, rgb] : light ? std::span<const Row>(kLight) : std::span(kDark))
         of.Colors[what] = ImGui::ColorConvertU32ToFloat4(colour(rgb));
+    of.FrameBorderSize = light ? 1 : 0;
 }
 
 }  // namespace relevo::viewer::style
