@@ -27,10 +27,7 @@ void play(State& state, double passed_s) {
 }  // namespace
 
 MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
-    : device_name_(device),
-      device_(device, presentation_of_environment()),
-      zone_(scene.time.zone),
-      is_cached_(scene.dem.cached) {
+    : device_name_(device), device_(device, presentation_of_environment()), zone_(scene.time.zone) {
     state_.document.scene = scene;
     state_.time_is_pinned = !scene.time.at.empty();
     Window::check_display();
@@ -47,7 +44,16 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     comparison_ = std::make_unique<Comparison>(device_, *window_, messages_, discard_);
     point_ = std::make_unique<PointQuery>(state_);
     overlay_ = std::make_unique<OverlayController>(state_, messages_, discard_);
+    moves_ = std::make_unique<CameraMoves>(CameraMoves::Parts{
+        *window_, state_, *hand_, history_, messages_, pacing_, *point_, *opening_});
+    saver_ = std::make_unique<SceneSaver>(
+        SceneSaver::Parts{*window_, state_, messages_, pacing_, *overlay_, *opening_},
+        device_name_);
     film_ = make_film();
+    opener_ = std::make_unique<FileOpener>(
+        FileOpener::Parts{*window_, state_, *hand_, history_, messages_, pacing_, *opening_,
+                          *moves_, *film_, [this] { return first_wanted(); }},
+        scene.dem.cached);
     state_.effects = EffectsModel::of(scene.effects);
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
@@ -56,7 +62,7 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
 }
 
 scene::Scene MainWindow::scene() const {
-    return is_open() ? whole_scene() : state_.document.scene;
+    return is_open() ? saver_->whole_scene() : state_.document.scene;
 }
 
 Clock::duration MainWindow::shown_for() const {
@@ -73,17 +79,18 @@ void MainWindow::run() {
         const bool was_woken = wait_s >= kIdle_s && seconds_since(waits_from) < wait_s;
         if (window_->take_input() || was_woken) pacing_.need_frames(3);
         const double passed_s = pacing_.begin_pass();
+        state_.layout = layout();
         poll_threads();
         process_keys();
         if (is_open()) {
             process_mouse(std::min(passed_s, 0.1));
-            fit_home();
+            if (!film_->shows_frame()) moves_->fit_home();
             process_film(passed_s);
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
         }
-        open_requested_files();
-        if (opening_->is_refused() && !import_sheet_.is_open()) opening_->throw_refusal();
+        opener_->open_requested_files();
+        if (opening_->is_refused() && !opener_->is_asking()) opening_->throw_refusal();
         check_files();
         if (is_open() && pacing_.still_s() > kStep_s && !hand_->is_busy() && !state_.playing &&
             !film_->shows_frame())
@@ -109,10 +116,8 @@ bool MainWindow::is_drawing() const {
 void MainWindow::leave() {
     window_->hide();
     remember_settings();
-    if (picture_export_) {
-        log::info("view: the ordered picture is drawn before the end");
-        picture_export_.reset();
-    }
+    if (saver_->is_exporting()) log::info("view: the ordered picture is drawn before the end");
+    saver_->finish();
     film_.reset();  // ends a film without a file
     discard_.take(std::move(comparison_));
     discard_.take(std::move(opening_));
@@ -164,7 +169,7 @@ void MainWindow::draw_panels() {
     if (shows_card()) opening_card(state_, opening_->scene(), seconds_since(began_at_));
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        import_sheet_.draw(size());
+        opener_->draw(size());
         return;
     }
     if (picture_) draw_over_image();
@@ -188,12 +193,9 @@ void MainWindow::draw_panels() {
                                                        : "Relevo");
     if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
-    open_dialog_.draw(size());
-    import_sheet_.draw(size());
+    opener_->draw(size());
     find_sheet_.draw(size(), state_.effects.get());
-    if (export_sheet_.is_open() && !film_->shows_frame())
-        export_sheet_.draw(size(), scene_to_export(), state_.document.utc, state_.document.zone,
-                           picture_export_ != nullptr);
+    if (!film_->shows_frame()) saver_->draw_sheet();
     status_line(state_, work_in_progress());
     message_box(state_, unit());
     if (sheet_) help_sheet(*sheet_, window_->context().info().renderer);
@@ -203,7 +205,7 @@ std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return tr_format("opening {} ...   Esc cancels", short_name(opening_->next_scene().dems));
     if (const std::string film = film_->progress(); !film.empty()) return film;
-    if (picture_export_) return tr("drawing the picture ...");
+    if (saver_->is_exporting()) return tr("drawing the picture ...");
     return is_drawing() ? tr("drawing ...") : "";
 }
 
@@ -250,10 +252,10 @@ void MainWindow::hand_over_scene() {
     want_view();
     if (state_.compare_is_wanted && !comparison_->thread()) {
         window_->set_line(free_middle().x / size().x);
-        comparison_->start(whole_scene(), opened, wanted_now());
+        comparison_->start(saver_->whole_scene(), opened, wanted_now());
     }
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
-    if (takes_picture_ && is_image_complete()) take_picture();
+    saver_->poll(saver_->awaits_image() && is_image_complete() ? picture_ : nullptr);
 }
 
 void MainWindow::check_files() {

@@ -27,11 +27,12 @@ bool only_looks(Command command) {
 std::unique_ptr<FilmController> MainWindow::make_film() {
     return std::make_unique<FilmController>(
         state_, messages_, device_name_,
-        FilmSource{
-            .scene = [this](const Document& document, bool is_centred,
-                            double aspect) { return scene_for(document, is_centred, aspect); },
-            .pose_of = [this](const scene::View& view) { return pose_in(view); },
-            .missing_overlay = [this] { return overlay_->missing_note(); }});
+        FilmSource{.scene =
+                       [this](const Document& document, bool is_centred, double aspect) {
+                           return saver_->scene_for(document, is_centred, aspect);
+                       },
+                   .pose_of = [this](const scene::View& view) { return moves_->pose_in(view); },
+                   .missing_overlay = [this] { return overlay_->missing_note(); }});
 }
 
 bool MainWindow::ends() {

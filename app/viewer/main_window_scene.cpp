@@ -50,7 +50,7 @@ void MainWindow::clear_scene() {
     state_.chooses_exaggeration = std::exchange(scene.chooses_exaggeration, false);
     scene.exaggeration = opening_->opened()->scene.exaggeration;
     scene.exposure_ev = opening_->opened()->scene.exposure_ev;
-    export_sheet_.take_scene(state_.document.scene);
+    saver_->sheet().take_scene(state_.document.scene);
     point_->clear();
     overlay_->clear();
     film_->forget();
@@ -99,8 +99,7 @@ void MainWindow::poll_threads() {
     }
     if (point_->poll()) pacing_.need_frames(2);
     if (film_->poll()) pacing_.need_frames(2);
-    poll_picture_export();
-    if (is_open()) poll_sun_over();
+    moves_->poll_sun_over();
     if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
 }
 
@@ -122,7 +121,7 @@ void MainWindow::poll_opening() {
             return opening_->go_back(first_wanted());
         case Opening::Event::Failed:
             pacing_.need_frames(3);
-            ask_how_to_read();
+            opener_->ask_after_failure();
             return;
     }
 }
@@ -165,8 +164,8 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
     }
     const sun::Zone zone_before = document.zone;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
-    document.pose = pose_in(view.value_or(scene.view));
-    view ? home_.reset() : note_home();
+    document.pose = moves_->pose_in(view.value_or(scene.view));
+    view ? moves_->forget_home() : moves_->note_home();
     const bool has_time = is_first || !opening_->scene().time.at.empty();
     state_.set_utc(view ? document.utc : has_time ? opened.utc : time_from(zone_before));
     first_utc_ = document.utc;
@@ -217,7 +216,7 @@ void MainWindow::complete_scene(const Opened& before) {
     const bool is_unchanged = !history_.can_undo() && !history_.differs(document);
     use_dem();
     if (is_unchanged) {
-        document.pose = pose_in(opened.scene.view);
+        document.pose = moves_->pose_in(opened.scene.view);
         if (document.utc == before.utc) document.utc = opened.utc;
         history_ = {};
         history_.add(document);
@@ -267,26 +266,6 @@ bool MainWindow::is_image_of_now() const {
 
 bool MainWindow::is_image_complete() const {
     return is_image_of_now() && picture_->sharp && overlay_->is_complete();
-}
-
-void MainWindow::note_home() {
-    home_ = state_.document.pose;
-    home_size_ = size();
-}
-
-void MainWindow::fit_home() {
-    if (home_size_ == size() || film_->shows_frame()) return;
-    const bool is_home = home_ == state_.document.pose;
-    home_size_ = size();
-    if (!is_home) return;
-    state_.document.pose = pose_in(opening_->home_view());
-    note_home();
-    pacing_.moved();
-}
-
-Pose MainWindow::pose_in(const scene::View& view) const {
-    const double aspect = static_cast<double>(size().x) / size().y;
-    return pose_of(opening_->opened()->camera(view, aspect, panel_insets()), state_.land);
 }
 
 }  // namespace relevo::viewer

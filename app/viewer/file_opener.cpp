@@ -1,4 +1,5 @@
-// Files that are dropped on the window or opened, by their kinds.
+#include "viewer/file_opener.h"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +10,7 @@
 
 #include "base/allowed_name.h"
 #include "base/error.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "overlay/camera_photo.h"
 #include "scene/exaggeration.h"
@@ -16,7 +18,6 @@
 #include "session/record.h"
 #include "session/trust.h"
 #include "viewer/file_kind.h"
-#include "viewer/main_window.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -44,26 +45,49 @@ scene::Scene scene_of_job(const std::string& path) {
 
 }  // namespace
 
-void MainWindow::open_requested_files() {
-    std::vector<std::string> files = window_->take_dropped_files();
-    if (std::vector<std::string> chosen = open_dialog_.take(); !chosen.empty())
+void FileOpener::ask_which() {
+    const std::string& file = parts_.opening.requested_file();
+    // The folder of the bundled DEM has no files of the user's.
+    dialog_.open(file.starts_with(share_dir().string()) ? "" : file);
+}
+
+void FileOpener::ask_how() {
+    if (!parts_.opening.opened()) return;
+    const scene::Scene& scene = parts_.state.document.scene;
+    refused_.reset();
+    sheet_.open({scene.dems, scene.dem, scene.holes}, "");
+}
+
+void FileOpener::draw(glm::vec2 window_px) {
+    dialog_.draw(window_px);
+    sheet_.draw(window_px);
+}
+
+void FileOpener::close() {
+    dialog_.close();
+    sheet_.close();
+}
+
+void FileOpener::open_requested_files() {
+    std::vector<std::string> files = parts_.window.take_dropped_files();
+    if (std::vector<std::string> chosen = dialog_.take(); !chosen.empty())
         files = std::move(chosen);
-    const std::vector<std::string> dems = std::exchange(state_.files_to_open, {});
-    std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
-    const std::optional<RecentDem> imported = import_sheet_.take();
-    if (!is_open()) {
+    const std::vector<std::string> dems = std::exchange(parts_.state.files_to_open, {});
+    std::optional<RecentDem> recent = std::exchange(parts_.state.recent_to_open, std::nullopt);
+    const std::optional<RecentDem> imported = sheet_.take();
+    if (!parts_.opening.opened()) {
         if (imported) open_imported(*imported);
         return;
     }
-    if (const std::string track = film_->take_track(); !track.empty()) files.push_back(track);
-    if (imported || recent || !dems.empty() || !files.empty()) film_->end_preview();
+    if (const std::string track = parts_.film.take_track(); !track.empty()) files.push_back(track);
+    if (imported || recent || !dems.empty() || !files.empty()) parts_.film.end_preview();
     if (imported) return open_imported(*imported);
     if (recent) return open_dem(*recent);
     if (!dems.empty()) return open_dem({.files = dems});
     if (!files.empty()) open_files(files);
 }
 
-void MainWindow::open_files(const std::vector<std::string>& files) {
+void FileOpener::open_files(const std::vector<std::string>& files) {
     RecentDem dem;
     for (const std::string& file : absolute_names(files)) {
         allow_name(file);
@@ -71,14 +95,14 @@ void MainWindow::open_files(const std::vector<std::string>& files) {
         if (kind == FileKind::Dem)
             dem.files.push_back(file);
         else
-            messages_.try_to([&] { open_file(kind, file); });
+            parts_.messages.try_to([&] { open_file(kind, file); });
     }
     if (!dem.files.empty()) open_dem(dem);
 }
 
-void MainWindow::open_dem(const RecentDem& dem) {
+void FileOpener::open_dem(const RecentDem& dem) {
     // Options of the last DEM do not apply, except for the window's limit of memory.
-    scene::Scene scene = state_.document.scene;
+    scene::Scene scene = parts_.state.document.scene;
     const MemoryBudget memory = scene.dem.memory;
     scene.dems = dem.files;
     std::ranges::for_each(scene.dems, allow_name);
@@ -90,17 +114,18 @@ void MainWindow::open_dem(const RecentDem& dem) {
     scene.land_cover = {};
     scene.time.at.clear();
     scene.time.date.clear();
-    if (state_.chooses_exaggeration) {
+    if (parts_.state.chooses_exaggeration) {
         scene.exaggeration = 1;
         scene.chooses_exaggeration = scene::may_exaggerate(scene);
         // Not what was chosen for the snow of the DEM before.
-        if (is_open() && scene.exposure_ev == opening_->opened()->scene.exposure_ev)
-            scene.exposure_ev = opening_->scene().exposure_ev;
+        if (parts_.opening.opened() &&
+            scene.exposure_ev == parts_.opening.opened()->scene.exposure_ev)
+            scene.exposure_ev = parts_.opening.scene().exposure_ev;
     }
     open_scene(std::move(scene));
 }
 
-void MainWindow::open_imported(const RecentDem& dem) {
+void FileOpener::open_imported(const RecentDem& dem) {
     if (!refused_) return open_dem(dem);
     scene::Scene scene = *std::exchange(refused_, std::nullopt);
     scene.dem = dem.options;
@@ -108,22 +133,22 @@ void MainWindow::open_imported(const RecentDem& dem) {
     open_scene(std::move(scene));
 }
 
-void MainWindow::open_scene(scene::Scene scene) {
-    state_.message.clear();
-    import_sheet_.close();
+void FileOpener::open_scene(scene::Scene scene) {
+    parts_.state.message.clear();
+    sheet_.close();
     scene.dem.cached = is_cached_;
-    opening_->open(std::move(scene), first_wanted());
-    pacing_.need_frames(3);
+    parts_.opening.open(std::move(scene), parts_.first_wanted());
+    parts_.pacing.need_frames(3);
 }
 
-void MainWindow::open_file(FileKind kind, const std::string& path) {
+void FileOpener::open_file(FileKind kind, const std::string& path) {
     switch (kind) {
         case FileKind::Scene:
             return open_named_scene(scene::read_scene(path), path, session::NamedBy::File);
         case FileKind::Job:
             open_named_scene(scene_of_job(path), path, session::NamedBy::File);
-            if (!state_.message.empty()) return;  // a warning
-            return messages_.note(
+            if (!parts_.state.message.empty()) return;  // a warning
+            return parts_.messages.note(
                 tr_format("the scene of {}; relevo run draws its pictures", name_of(path)));
         case FileKind::Picture:
             return open_named_scene(scene_in_picture(path), path, session::NamedBy::Picture);
@@ -139,9 +164,9 @@ void MainWindow::open_file(FileKind kind, const std::string& path) {
     }
 }
 
-void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
+void FileOpener::open_named_scene(scene::Scene scene, const std::string& path,
                                   session::NamedBy by) {
-    const scene::Scene& now = state_.document.scene;
+    const scene::Scene& now = parts_.state.document.scene;
     session::Trust trusted({.plugin_folders = now.effects.plugin_path}, name_of(path), by);
     trusted.check_names(scene);
     trusted.keep_folders(scene.effects);
@@ -151,32 +176,32 @@ void MainWindow::open_named_scene(scene::Scene scene, const std::string& path,
     }
     open_scene(std::move(scene));
     if (const std::vector<std::string> warnings = trusted.warnings(); !warnings.empty())
-        messages_.show(fmt::format("{}", fmt::join(warnings, "\n")));
+        parts_.messages.show(fmt::format("{}", fmt::join(warnings, "\n")));
 }
 
-void MainWindow::show_features(FileKind kind, const std::string& path) {
-    const std::string address = file_text_for(kind, state_.effects->registry);
+void FileOpener::show_features(FileKind kind, const std::string& path) {
+    const std::string address = file_text_for(kind, parts_.state.effects->registry);
     if (address.empty()) bad_input(tr_format("no installed effect shows {}", name_of(path)));
     const std::string id = address.substr(0, address.find('.'));
-    state_.set_effects(
-        switched(with_value(state_.document.scene.effects, address, path), id, true));
-    state_.message.clear();
-    state_.take_effects(/*is_step=*/true);
-    if (!state_.message.empty()) return;  // why the effect is not on
-    messages_.note(tr_format("{}: shown by the effect {}", name_of(path), id));
+    parts_.state.set_effects(
+        switched(with_value(parts_.state.document.scene.effects, address, path), id, true));
+    parts_.state.message.clear();
+    parts_.state.take_effects(/*is_step=*/true);
+    if (!parts_.state.message.empty()) return;  // why the effect is not on
+    parts_.messages.note(tr_format("{}: shown by the effect {}", name_of(path), id));
 }
 
-void MainWindow::lay_over(const std::string& path) {
-    state_.document.scene.overlay = scene::Overlay{.file = path};
-    state_.document.overlay = choice_of(*state_.document.scene.overlay);
-    state_.step = true;
-    pacing_.need_frames(3);
+void FileOpener::lay_over(const std::string& path) {
+    parts_.state.document.scene.overlay = scene::Overlay{.file = path};
+    parts_.state.document.overlay = choice_of(*parts_.state.document.scene.overlay);
+    parts_.state.step = true;
+    parts_.pacing.need_frames(3);
 }
 
-void MainWindow::stand_where_taken(const std::string& path) {
+void FileOpener::stand_where_taken(const std::string& path) {
     const overlay::CameraPhoto photo = overlay::camera_photo(path).value();
     const geo::Geodetic place{photo.place->lat_rad, photo.place->lon_rad, 0};
-    const double ground_m = state_.land.aim_m(place);
+    const double ground_m = parts_.state.land.aim_m(place);
     if (std::isnan(ground_m))
         bad_input(tr_format("{}: taken at {}, where the DEM has no ground", name_of(path),
                             coordinates_text(place, Coordinates::Degrees)));
@@ -186,24 +211,25 @@ void MainWindow::stand_where_taken(const std::string& path) {
     scene::View view;
     view.eye = scene::Standpoint{place, /*above_ground=*/!flies};
     view.eye->place.height_m = flies ? photo.place->height_m : kWalk_m;
-    view.heading_deg = photo.heading_deg.value_or(state_.document.pose.heading_deg);
-    view.fov_y_rad = state_.document.pose.fov_y_rad;
+    view.heading_deg = photo.heading_deg.value_or(parts_.state.document.pose.heading_deg);
+    view.fov_y_rad = parts_.state.document.pose.fov_y_rad;
     if (photo.focal_length_mm)
         view.fov_y_rad = scene::fov_y_of_focal_length(
             *photo.focal_length_mm, static_cast<double>(photo.width_px) / photo.height_px);
     std::optional<sun::Instant> taken;
     try {
-        if (!photo.time.empty()) taken = sun::parse_time(photo.time, state_.document.zone).utc;
+        if (!photo.time.empty())
+            taken = sun::parse_time(photo.time, parts_.state.document.zone).utc;
     } catch (const Error&) {
         // A camera whose clock was not set.
     }
-    history_.end_step(state_.document);
-    hand_->rest();
-    state_.document.pose = pose_in(view);
-    if (taken) state_.set_utc(*taken);
-    pacing_.moved();
-    state_.step = true;
-    messages_.note(
+    parts_.history.end_step(parts_.state.document);
+    parts_.hand.rest();
+    parts_.state.document.pose = parts_.moves.pose_in(view);
+    if (taken) parts_.state.set_utc(*taken);
+    parts_.pacing.moved();
+    parts_.state.step = true;
+    parts_.messages.note(
         fmt::format("{}: {}{}{}{}", name_of(path),
                     flies ? tr("from the air") : tr("from eye height at its place"),
                     photo.heading_deg ? "" : tr(", which way it looks is not known"),
@@ -211,15 +237,26 @@ void MainWindow::stand_where_taken(const std::string& path) {
                     taken ? "" : tr(", without a time")));
 }
 
-void MainWindow::ask_how_to_read() {
-    const std::optional<Opening::Failure> failure = opening_->take_failure();
+void FileOpener::open_neighbour(int step) {
+    const std::string& file = parts_.opening.requested_file();
+    if (file.empty()) return;
+    if (const std::string next = neighbour_in_folder(file, step); !next.empty())
+        parts_.state.files_to_open = {next};
+    else
+        parts_.messages.show(tr("no other DEM in this folder"));
+}
+
+void FileOpener::ask_after_failure() {
+    const std::optional<Opening::Failure> failure = parts_.opening.take_failure();
     if (!failure || !is_raster_file(failure->scene.dems.front())) return;
     const scene::Scene& scene = failure->scene;
     // Without an open scene the sheet is alone in the window; it mends nothing else.
-    if (!is_open() && preview_of({scene.dems, scene.dem, 4})->error != failure->reason) return;
-    state_.message.clear();
+    if (!parts_.opening.opened() &&
+        preview_of({scene.dems, scene.dem, 4})->error != failure->reason)
+        return;
+    parts_.state.message.clear();
     refused_ = failure->scene;
-    import_sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason);
+    sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason);
 }
 
 }  // namespace relevo::viewer

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "viewer/frame_pacing.h"
+#include "viewer/hand.h"
+#include "viewer/history.h"
+#include "viewer/messages.h"
+#include "viewer/opening.h"
+#include "viewer/point_query.h"
+#include "viewer/state.h"
+#include "viewer/sun_over.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+
+/// Views and times that commands go to: the whole DEM, places, saved views, the moon. Changes the
+/// document's pose and time.
+class CameraMoves {
+  public:
+    /// What it acts on; all outlive it.
+    struct Parts {
+        Window& window;
+        State& state;
+        Hand& hand;
+        History& history;
+        Messages& messages;
+        FramePacing& pacing;
+        PointQuery& point;
+        const Opening& opening;
+    };
+    explicit CameraMoves(const Parts& parts) : parts_(parts) {}
+
+    /// The pose of a view that leaves room for the panels.
+    Pose pose_in(const scene::View& view) const;
+    /// Notes that the camera shows the whole DEM in this window.
+    void note_home();
+    void forget_home() { home_.reset(); }
+    /// After the window was resized: the whole DEM stays in view if the camera shows that.
+    void fit_home();
+
+    /// Carries out a command that moves the camera or the time; ignores others.
+    void move(Command command);
+    void choose_point(const glm::dvec3& point_m);
+    /// @param i  of State::views
+    void go_to_view(std::size_t i);
+    /// Looks at a place of the ground, and chooses it.
+    void go_to_place(geo::Geodetic place);
+    /// When the sun next stands over the chosen point: goes there once it is known.
+    void ask_sun_over_point();
+    void poll_sun_over();
+
+  private:
+    /// Stands on the chosen point, or looks at it.
+    void move_to_point(Command command);
+    void look_to_moon();
+    /// The whole DEM, from its side and from above.
+    Whole whole_views() const;
+
+    Parts parts_;
+    SunOver sun_over_;
+    std::optional<Pose> home_;  // of the whole DEM,
+    glm::vec2 home_size_{0};    // in a window of this size
+};
+
+}  // namespace relevo::viewer
