@@ -84,8 +84,9 @@ def reference():
         parts.append(f"## {name}\n\n{comment}\n\n{table(members(body))}\n")
     frame = (LIB / "frame.glsl").read_text()
     block = re.search(r"uniform Frame \{\n(.*?)\n\} frame;", frame, re.S).group(1)
-    parts.append("## frame\n\nValues that are the same for every pixel of a frame: `frame.sun_direction`. Every hook can read them.\n\n"
-                 + table(members(block)) + "\n")
+    parts.append("## frame\n\nValues that are the same for every pixel of a frame: `frame.sun_direction`. Every hook can read them.\n")
+    for name, comment, body in re.findall(r"^ */// (\w+): (.*)\n((?:(?! */// ).*\n?)*)", block, re.M):
+        parts.append(f"**{name}**: {comment}\n\n{table(members(body))}\n")
     parts.append("## Library\n\nA file is included by a line of its own, `//@ include lib/NAME.glsl`.\n")
     for file in sorted(LIB.glob("*.glsl")):
         if file.name in CORE_ONLY:

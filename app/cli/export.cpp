@@ -1,13 +1,8 @@
 #include "cli/export.h"
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/contains.h"
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "cli/commands.h"
@@ -26,12 +21,6 @@ void ExportArguments::add_to(Verb verb, const std::vector<std::string>& endings_
     holes.add_to(verb, scene::option("--holes"));
 }
 
-std::string ExportArguments::ending() const {
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    return ending.empty() ? ending : ending.substr(1);
-}
-
 scene::Scene ExportArguments::scene() const {
     scene::Scene scene;
     holes.apply_to(scene);
@@ -40,11 +29,7 @@ scene::Scene ExportArguments::scene() const {
 }
 
 void ExportArguments::open(FilesInUse& files, bool scale_file) {
-    if (!contains(endings, ending()))
-        bad_usage(
-            fmt::format("-o: {}: no format that this command writes, expected a name that "
-                        "ends in {}",
-                        path, fmt::join(endings, ", ")));
+    check_ending();
     if (scene().holes == dem::Holes::Mark)
         bad_usage("--holes: mark paints pictures, expected fill or cut");
     dem::add_named(dem.paths, files);

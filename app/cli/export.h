@@ -13,16 +13,11 @@
 namespace relevo::cli {
 
 /// DEM..., -o, --overwrite, --holes, --exaggerate.
-struct ExportArguments {
+struct ExportArguments : ResultArguments {
     DemArguments dem;
     OptionArguments holes, exaggeration;
-    std::string path;
-    bool overwrite = false;
-    std::vector<std::string> endings;  ///< that the verb writes
 
     void add_to(Verb verb, const std::vector<std::string>& endings_of_verb);
-    /// Of the result, in lower case: "glb".
-    std::string ending() const;
     /// Opens the result, before any work is done.
     /// @param scale_file  whether a JSON file with the scale is opened too
     /// @throws Error (Usage) for an unknown ending and --holes mark, and as FilesInUse

@@ -11,7 +11,6 @@
 #include "base/text.h"
 #include "cli/job_run.h"
 #include "film/film.h"
-#include "session/batch.h"
 #include "session/film_batch.h"
 
 namespace relevo::cli {
@@ -32,13 +31,7 @@ class FilmRun {
     void run() {
         refuse_options();
         check_frames();
-        session::settle(work_.shots, work_.times, work_.inputs);
-        for (const scene::Shot& shot : work_.shots)
-            work_.inputs.add_to(work_.files, shot.scene);
-        work_.files.check_planned({output_}, "run");
-        const std::string refusal = taken_name(output_, arguments_.overwrite);
-        if (arguments_.dry_run) return tell(refusal);
-        if (!refusal.empty()) bad_input(refusal);
+        if (!work_.begin_file(output_, arguments_, "a film of " + length())) return;
         make_folder_of(output_, "run");
         draw();
     }
@@ -91,14 +84,6 @@ class FilmRun {
         const double frames = static_cast<double>(work_.shots.size());
         return fmt::format("{} frame{}, {:.3g} s", work_.shots.size(), frames == 1 ? "" : "s",
                            frames / settings_.fps);
-    }
-
-    void tell(const std::string& refusal) const {
-        fmt::print("{}\n", output_.string());
-        const std::string time = work_.estimated_time(arguments_.device);
-        work_.notices.release();
-        log::info(fmt::format("a film of {} would take {}", length(), time));
-        if (!refusal.empty()) log::warning("would be refused: " + refusal);
     }
 
     void draw() const {

@@ -100,18 +100,31 @@ void JobRun::read(const JobArguments& arguments) {
     shots = std::move(drawn_up.shots);
 }
 
-std::string JobRun::estimated_time(const std::string& device) {
-    try {
-        return "some " + duration_text(session::time_batch(shots, {.device = device}, times));
-    } catch (const Error& error) {
-        return fmt::format("an unknown time ({})", error.what());
+bool JobRun::begin_file(const std::filesystem::path& output, const JobArguments& arguments,
+                        const std::string& what) {
+    session::settle(shots, times, inputs);
+    for (const scene::Shot& shot : shots)
+        inputs.add_to(files, shot.scene);
+    files.check_planned({output}, "run");
+    const bool taken = !arguments.overwrite && is_taken(output);
+    const std::string refusal =
+        fmt::format("run: {}: exists; pass --overwrite to replace it", printable(output.string()));
+    if (!arguments.dry_run) {
+        if (taken) bad_input(refusal);
+        return true;
     }
-}
-
-std::string taken_name(const std::filesystem::path& output, bool overwrite) {
-    if (overwrite || !is_taken(output)) return {};
-    return fmt::format("run: {}: exists; pass --overwrite to replace it",
-                       printable(output.string()));
+    fmt::print("{}\n", output.string());
+    std::string time;
+    try {
+        time = "some " +
+               duration_text(session::time_batch(shots, {.device = arguments.device}, times));
+    } catch (const Error& error) {
+        time = fmt::format("an unknown time ({})", error.what());
+    }
+    notices.release();
+    log::info(fmt::format("{} would take {}", what, time));
+    if (taken) log::warning("would be refused: " + refusal);
+    return false;
 }
 
 }  // namespace relevo::cli

@@ -48,8 +48,12 @@ struct JobRun {
     /// Reads the job and draws up its pictures.
     /// @throws Error as scene::read_job() and scene::shots_of()
     void read(const JobArguments& arguments);
-    /// "some 5 min", or why it is not known: for --dry-run.
-    std::string estimated_time(const std::string& device);
+    /// Settles a job whose result is one file, and reports on it for --dry-run.
+    /// @param what  "a film of 30 frames"
+    /// @returns false for --dry-run: nothing is to be drawn
+    /// @throws Error (BadInput) if a file has its name, and as FilesInUse::check_planned
+    bool begin_file(const std::filesystem::path& output, const JobArguments& arguments,
+                    const std::string& what);
 
   private:
     /// Hashes the files of a scene, so that changes after they were read are noticed.
@@ -58,9 +62,6 @@ struct JobRun {
     /// Gives a map its size, as its file allows.
     void fit(scene::Shot& shot);
 };
-
-/// Why a job's one file cannot be made: one of its name exists. Empty if it can.
-std::string taken_name(const std::filesystem::path& output, bool overwrite);
 
 /// Checks, draws and encodes the film of a job.
 void run_film(const JobArguments& arguments, JobRun& work);

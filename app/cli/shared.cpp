@@ -3,18 +3,33 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "geo/geodetic.h"
 
 namespace relevo::cli {
+
+std::string ResultArguments::ending() const {
+    const std::string ending = lower(std::filesystem::path(path).extension().string());
+    return ending.empty() ? ending : ending.substr(1);
+}
+
+void ResultArguments::check_ending() const {
+    if (!contains(endings, ending()))
+        bad_usage(
+            fmt::format("-o: {}: no format that this command writes, expected a name that "
+                        "ends in {}",
+                        path, fmt::join(endings, ", ")));
+}
 
 void OptionArguments::add_to(Verb verb, const scene::Option& option) {
     using Kind = scene::Option::Kind;

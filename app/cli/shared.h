@@ -25,6 +25,18 @@
 /// core's from what was given.
 namespace relevo::cli {
 
+/// -o and --overwrite of a verb that writes a file of one of several formats.
+struct ResultArguments {
+    std::string path;
+    bool overwrite = false;
+    std::vector<std::string> endings;  ///< that the verb writes
+
+    /// Of `path`, in lower case: "glb"; empty without one.
+    std::string ending() const;
+    /// @throws Error (Usage) for an ending that the verb does not write
+    void check_ending() const;
+};
+
 /// Options of scene::options(), and what was given of them.
 class OptionArguments {
   public:

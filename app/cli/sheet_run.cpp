@@ -9,7 +9,6 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/job_run.h"
-#include "session/batch.h"
 #include "session/contact_sheet.h"
 
 namespace relevo::cli {
@@ -35,14 +34,7 @@ class SheetRun {
                 .size_px();
         image::check_encoding(output_, arguments_.format.encoding(),
                               {.width_px = size.x, .height_px = size.y});
-        session::settle(work_.shots, work_.times, work_.inputs);
-        for (const scene::Shot& shot : work_.shots)
-            work_.inputs.add_to(work_.files, shot.scene);
-        work_.files.check_planned({output_}, "run");
-        const std::string refusal = taken_name(output_, arguments_.overwrite);
-        if (arguments_.dry_run) return tell(size, refusal);
-        if (!refusal.empty()) bad_input(refusal);
-        draw();
+        if (work_.begin_file(output_, arguments_, "a contact sheet of " + size_text(size))) draw();
     }
 
   private:
@@ -66,14 +58,6 @@ class SheetRun {
 
     std::string size_text(const glm::ivec2& size) const {
         return fmt::format("{} pictures on {} x {} px", work_.shots.size(), size.x, size.y);
-    }
-
-    void tell(const glm::ivec2& size, const std::string& refusal) const {
-        fmt::print("{}\n", output_.string());
-        const std::string time = work_.estimated_time(arguments_.device);
-        work_.notices.release();
-        log::info(fmt::format("a contact sheet of {} would take {}", size_text(size), time));
-        if (!refusal.empty()) log::warning("would be refused: " + refusal);
     }
 
     /// With the job, if the format has room for it.

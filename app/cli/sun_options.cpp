@@ -317,21 +317,9 @@ void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_
     verb.add_flag("--json", json, "One JSON object on standard output").excludes(csv_flag);
 }
 
-std::string OutputArguments::ending() const {
-    if (path.empty()) return {};
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    return ending.empty() ? ending : ending.substr(1);
-}
-
 OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
     if (path.empty()) return nullptr;
-    if (!contains(endings, ending()))
-        bad_usage(
-            fmt::format("-o: {}: no format that this command writes, expected a name that "
-                        "ends in {}",
-                        path, fmt::join(endings, ", ")));
+    check_ending();
     dem::add_named(dem.paths, files);
     OutputFile& file = files.open_output(path, overwrite, "-o");
     dem::add_all(dem.paths, files);

@@ -133,19 +133,15 @@ struct Forms {
 };
 
 /// -o, --overwrite, --scale, --csv, --json.
-struct OutputArguments {
-    std::string path;
-    std::vector<std::string> endings;  ///< that the verb writes
+struct OutputArguments : ResultArguments {
     double scale = 1.5;
-    bool overwrite = false, csv = false, json = false;
+    bool csv = false, json = false;
 
     void add_to(Verb verb, const std::vector<std::string>& endings_of_verb);
     /// Opens the file that -o names, before any work is done. Null without -o.
     /// @param dem  what the verb reads besides
     /// @throws Error (Usage) for an unknown ending, and as FilesInUse
     OutputFile* open(FilesInUse& files, const DemArguments& dem) const;
-    /// "svg"; empty without -o.
-    std::string ending() const;
     bool is_drawing() const { return ending() == "svg" || ending() == "png"; }
 
     /// Writes the file that -o names, and on standard output what --csv or --json ask for; without

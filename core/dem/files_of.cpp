@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/parallel_for.h"
@@ -142,16 +144,16 @@ std::optional<std::vector<fs::path>> local_files_of(std::span<const std::string>
     return collector.take();
 }
 
-void add_named(std::span<const std::string> paths, FilesInUse& files) {
+void add_named(std::span<const std::string> paths, FilesInUse& files, std::string_view what) {
     for (const std::string& path : paths)
-        files.add_input(path, "the DEM");
+        files.add_input(path, what);
 }
 
-void add_all(std::span<const std::string> paths, FilesInUse& files) {
-    add_named(paths, files);
+void add_all(std::span<const std::string> paths, FilesInUse& files, std::string_view what) {
+    add_named(paths, files, what);
     if (!files.replaces_any()) return;
     for (const std::filesystem::path& path : files_of(paths))
-        files.add_input(path, "a file that the DEM is read from,");
+        files.add_input(path, fmt::format("a file that {} is read from,", what));
 }
 
 }  // namespace relevo::dem

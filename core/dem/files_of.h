@@ -23,10 +23,13 @@ std::optional<std::vector<std::filesystem::path>> local_files_of(
     std::span<const std::string> rasters);
 
 /// Adds the rasters that are named to what a run reads. @throws Error as FilesInUse::add_input
-void add_named(std::span<const std::string> paths, FilesInUse& files);
+void add_named(std::span<const std::string> paths, FilesInUse& files,
+               std::string_view what = "the DEM");
 
 /// Adds files_of() too, where an output replaces a file: finding them takes time.
+/// @param what  as FilesInUse::add_input
 /// @throws Error as FilesInUse::add_input
-void add_all(std::span<const std::string> paths, FilesInUse& files);
+void add_all(std::span<const std::string> paths, FilesInUse& files,
+             std::string_view what = "the DEM");
 
 }  // namespace relevo::dem

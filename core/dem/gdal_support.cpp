@@ -12,6 +12,7 @@
 #include "dem/gdal.h"
 #include "dem/gdal_module.h"
 #include "dem/guard.h"
+#include "dem/interpret.h"
 #include "dem/regular_files.h"
 
 namespace relevo::dem {
@@ -123,6 +124,11 @@ std::string GdalMessages::failure(const std::string& path) const {
     while (line.ends_with('.'))
         line.remove_suffix(1);
     return std::string(line);
+}
+
+void GdalMessages::refuse(const std::string& path, std::string_view what) const {
+    const std::string reason = failure(path);
+    dem::refuse(path, fmt::format("{}, {}{}", what, reason, remedy_for(path, reason)));
 }
 
 std::string wkt_of(void* crs) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace relevo::dem {
@@ -60,6 +61,8 @@ class GdalMessages {
     /// The last failure, on one line, without the name of the file, which our own message has;
     /// empty where there was none. It is the outermost one and says where in the file.
     std::string failure(const std::string& path) const;
+    /// Throws the last failure: `path: what, failure; remedy`. @throws Error (BadInput)
+    [[noreturn]] void refuse(const std::string& path, std::string_view what) const;
     bool any_failure() const { return !failures_.empty(); }
     void clear() { failures_.clear(); }
 

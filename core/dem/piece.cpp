@@ -362,9 +362,7 @@ Dataset Piece::open() const {
                                    driver.data(), siblings.list());
     if (!dataset) {
         refuse_unreadable(path.text());
-        const std::string reason = messages.failure(path.text());
-        refuse(path.text(), fmt::format("cannot be opened again, {}{}", reason,
-                                        remedy_for(path.text(), reason)));
+        messages.refuse(path.text(), "cannot be opened again");
     }
     return dataset;
 }
@@ -392,11 +390,8 @@ void Piece::read(void* dataset, const Resolution& level, const Window& w, float*
         const CPLErr result = GDALRasterIO(from, GF_Read, w.column, w.row, w.columns, w.rows, to,
                                            w.columns, w.rows, type, 0, 0);
         // Some drivers say that a block is broken, fill it and carry on.
-        if (result != CE_None || messages.any_failure()) {
-            const std::string reason = messages.failure(path.text());
-            refuse(path.text(), fmt::format("its heights cannot be read, {}{}", reason,
-                                            remedy_for(path.text(), reason)));
-        }
+        if (result != CE_None || messages.any_failure())
+            messages.refuse(path.text(), "its heights cannot be read");
     };
     const GDALRasterBandH band = band_of(about.band);
     if (encoding != Encoding::None) {

@@ -171,13 +171,14 @@ bool is_plan(const fs::path& path) {
     return head.find(kVersionKey) != std::string::npos;
 }
 
-/// Whether a file is one of write_heights().
-bool has_heights_of_plan(const fs::path& path) {
+/// A file of write_heights(); null for others.
+dem::Dataset open_heights(const fs::path& path) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    const dem::Dataset dataset =
+    dem::Dataset dataset =
         dem::open_by_gdal(AllowedName(path.string()), GDAL_OF_RASTER, kGeoTiff.data());
-    return dataset && GDALGetMetadataItem(dataset.get(), kHeightsKey, nullptr);
+    if (dataset && !GDALGetMetadataItem(dataset.get(), kHeightsKey, nullptr)) dataset.reset();
+    return dataset;
 }
 
 /// Has all of a folder's files follow one rule: what this program has made for itself is replaced.
@@ -265,7 +266,7 @@ std::vector<fs::path> foreign_plan_files(const fs::path& folder) {
     std::vector<fs::path> foreign;
     for (const fs::path& path : plan_files(folder)) {
         if (!is_taken(path)) continue;
-        if (!(path.filename() == kPlanFile ? is_plan(path) : has_heights_of_plan(path)))
+        if (!(path.filename() == kPlanFile ? is_plan(path) : open_heights(path) != nullptr))
             foreign.push_back(path);
     }
     return foreign;
@@ -300,21 +301,15 @@ void write_plan(const fs::path& folder, const TilePlan& plan) {
 
 std::optional<Array2d<float>> read_heights(const fs::path& file) {
     const std::string path = file.string();
-    if (!is_taken(file) || !has_heights_of_plan(file)) return std::nullopt;
-    dem::prepare_gdal();
+    const dem::Dataset dataset = is_taken(file) ? open_heights(file) : nullptr;
+    if (!dataset) return std::nullopt;
     const dem::GdalMessages messages;
-    const dem::Dataset dataset =
-        dem::open_by_gdal(AllowedName(path), GDAL_OF_RASTER, kGeoTiff.data());
-    const auto refuse = [&] {
-        bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
-                              printable(path), messages.failure(path)));
-    };
-    if (!dataset) refuse();
     Array2d<float> height_m(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()));
     if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, 0, height_m.width(),
                      height_m.height(), height_m.data(), height_m.width(), height_m.height(),
                      GDT_Float32, 0, 0) != CE_None)
-        refuse();
+        bad_input(fmt::format("plan: {}: cannot be read, {}; remove it, and plan again",
+                              printable(path), messages.failure(path)));
     return height_m;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -37,11 +38,8 @@ Cells read_cells(GDALRasterBandH band, const std::string& path) {
                     double{1} * rows / cells.values.height()};
     const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, cells.values.data(), cells.values.width(),
-                     cells.values.height(), GDT_Float32, 0, 0) != CE_None) {
-        const std::string reason = messages.failure(path);
-        dem::refuse(path,
-                    fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path, reason)));
-    }
+                     cells.values.height(), GDT_Float32, 0, 0) != CE_None)
+        messages.refuse(path, "cannot be read");
     int has_nodata = 0;
     const auto nodata = static_cast<float>(GDALGetRasterNoDataValue(band, &has_nodata));
     int has_scale = 0, has_offset = 0;
@@ -109,6 +107,25 @@ std::vector<std::array<std::uint8_t, 4>> colors_of(GDALRasterBandH band) {
     return colors;
 }
 
+dem::Georeference placed(const std::string& path, const std::string& opened, GDALDatasetH dataset) {
+    std::array<double, 6> transform{};
+    if (GDALGetGeoTransform(dataset, transform.data()) != CE_None && GDALGetGCPCount(dataset) == 0)
+        dem::refuse(
+            path,
+            "the raster has no georeference, its place on the ground is unknown; add one with "
+            "gdal_translate -a_srs EPSG:n -a_ullr W N E S");
+    dem::Description unused;
+    if (GDALGetSpatialRef(dataset)) return dem::georeference(opened, dataset, {}, unused);
+    try {
+        return dem::georeference(opened, dataset, {}, unused);
+    } catch (const Error&) {
+        if (GDALGetGCPCount(dataset) > 0) throw;
+        dem::refuse(path,
+                    "the raster names no coordinate system and is not in degrees; add one with "
+                    "gdal_translate -a_srs EPSG:n");
+    }
+}
+
 GDALRasterBandH band_of(const dem::Dataset& dataset, const std::string& path, int number) {
     const int bands = GDALGetRasterCount(dataset.get());
     if (number < 1 || number > bands)
@@ -169,21 +186,20 @@ std::vector<BandInFile> bands_of(const std::string& path) {
 dem::Grid grid_of_raster(const std::string& path) {
     AllowedName opened(path);
     const dem::Dataset dataset = dem::open_dataset(opened);
-    dem::Description unused;
-    const dem::Georeference where = dem::georeference(opened.text(), dataset.get(), {}, unused);
-    return {GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()), where.affine,
-            where.crs};
+    return grid_of_raster(path, opened.text(), dataset.get());
+}
+
+dem::Grid grid_of_raster(const std::string& path, const std::string& opened, void* dataset) {
+    const dem::Georeference where = placed(path, opened, dataset);
+    return {GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset), where.affine, where.crs};
 }
 
 BandOver read_band_over(const dem::Grid& grid, const std::string& path, int number) {
     AllowedName opened(path);
     const dem::Dataset dataset = dem::open_dataset(opened);
     const GDALRasterBandH band = band_of(dataset, path, number);
-    dem::Description unused;
-    const dem::Georeference where = dem::georeference(opened.text(), dataset.get(), {}, unused);
+    const dem::Grid raster = grid_of_raster(path, opened.text(), dataset.get());
     const Cells cells = read_cells(band, path);
-    const dem::Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
-                           where.affine, where.crs);
     BandOver over;
     over.name = GDALGetDescription(band);
     over.unit = GDALGetRasterUnitType(band);

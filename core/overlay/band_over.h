@@ -39,8 +39,11 @@ struct BandInFile {
 /// @throws Error (BadInput) as Source::open()
 std::vector<BandInFile> bands_of(const std::string& path);
 
-/// The cells of any raster that GDAL opens. @throws Error (BadInput) as Source::open()
+/// The cells of any raster that GDAL opens.
+/// @throws Error (BadInput) as Source::open(), and if its place on the ground is unknown
 dem::Grid grid_of_raster(const std::string& path);
+/// The same of an open one. @param opened  the name that opened it
+dem::Grid grid_of_raster(const std::string& path, const std::string& opened, void* dataset);
 
 /// Values of more posts than these are means or picks of fewer [posts].
 inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;

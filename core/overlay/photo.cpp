@@ -12,10 +12,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "base/error.h"
 #include "base/units.h"
 #include "dem/gdal.h"
 #include "dem/gdal_support.h"
+#include "overlay/band_over.h"
 #include "overlay/photo_pixels.h"
 
 namespace relevo::overlay {
@@ -40,25 +40,6 @@ PhotoKind kind_of(GDALDatasetH dataset) {
         return PhotoKind::Palette;
     if (bytes && (bands == 3 || bands == 4 || named)) return PhotoKind::Colours;
     return named ? PhotoKind::Deep : PhotoKind::None;
-}
-
-dem::Georeference placed(const std::string& path, const std::string& opened, GDALDatasetH dataset) {
-    std::array<double, 6> transform{};
-    if (GDALGetGeoTransform(dataset, transform.data()) != CE_None && GDALGetGCPCount(dataset) == 0)
-        dem::refuse(
-            path,
-            "the raster has no georeference, its place on the ground is unknown; add one with "
-            "gdal_translate -a_srs EPSG:n -a_ullr W N E S");
-    dem::Description unused;
-    if (GDALGetSpatialRef(dataset)) return dem::georeference(opened, dataset, {}, unused);
-    try {
-        return dem::georeference(opened, dataset, {}, unused);
-    } catch (const Error&) {
-        if (GDALGetGCPCount(dataset) > 0) throw;
-        dem::refuse(path,
-                    "the raster names no coordinate system and is not in degrees; add one with "
-                    "gdal_translate -a_srs EPSG:n");
-    }
 }
 
 bool is_in(const dem::Grid& grid, const glm::dvec2& at) {
@@ -241,11 +222,8 @@ std::bitset<256> classes_of(const std::string& path) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(wide) * static_cast<unsigned>(high));
     const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, 0, 0, columns, rows, bytes.data(), wide, high, GDT_Byte, 0,
-                     0) != CE_None) {
-        const std::string reason = messages.failure(path);
-        dem::refuse(path,
-                    fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path, reason)));
-    }
+                     0) != CE_None)
+        messages.refuse(path, "cannot be read");
     std::vector<std::uint8_t> mask(bytes.size(), 255);
     if (GDALRasterIO(GDALGetMaskBand(band), GF_Read, 0, 0, columns, rows, mask.data(), wide, high,
                      GDT_Byte, 0, 0) != CE_None)
@@ -259,9 +237,7 @@ std::bitset<256> classes_of(const std::string& path) {
 std::unique_ptr<Photo::Impl> Photo::Impl::open(const std::string& path, const std::string& opened,
                                                dem::Dataset dataset, const dem::Grid& dem,
                                                std::vector<std::uint32_t> palette) {
-    const dem::Georeference where = placed(path, opened, dataset.get());
-    const dem::Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
-                           where.affine, where.crs);
+    const dem::Grid raster = grid_of_raster(path, opened, dataset.get());
     auto impl = std::make_unique<Impl>(path, std::move(dataset), raster, dem, std::move(palette));
     impl->find_extent(path);
     impl->find_density();

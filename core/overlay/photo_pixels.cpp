@@ -152,10 +152,8 @@ const PhotoPixels::Level& PhotoPixels::level_for(double most) const {
 void PhotoPixels::read_bytes(void* band, const Window& rows, std::uint8_t* bytes) {
     const dem::GdalMessages messages;
     if (GDALRasterIO(band, GF_Read, rows.column, rows.row, rows.columns, rows.rows, bytes,
-                     rows.columns, rows.rows, GDT_Byte, 0, 0) == CE_None)
-        return;
-    const std::string reason = messages.failure(path_);
-    dem::refuse(path_, fmt::format("cannot be read, {}{}", reason, dem::remedy_for(path_, reason)));
+                     rows.columns, rows.rows, GDT_Byte, 0, 0) != CE_None)
+        messages.refuse(path_, "cannot be read");
 }
 
 std::uint32_t PhotoPixels::texel(const std::uint8_t* bytes, std::size_t at, std::size_t count,

@@ -140,7 +140,7 @@ AirLight air_light(const FrameInputs& inputs, const glm::dvec3& eye_up) {
     return light;
 }
 
-void AirTextures::update(const sky::Air& air, const AirView& view, FrameBlock& block) {
+void AirTextures::update(const sky::Air& air, const AirView& view, SkyBlock& block) {
     const double eye_height_m = std::max(view.height_m, 0.0);
     Of wanted{air, view};
     wanted.view.height_m = sky::nearest_eye_height_m(eye_height_m);

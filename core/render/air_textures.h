@@ -53,7 +53,7 @@ class AirTextures {
     /// Computes them again if the air, the eye's height or the light have changed noticeably
     /// (sky::nearest_eye_height_m()), and writes their coordinates into the block. 10 ms on two
     /// processors for both parts, 20 at night with the moon.
-    void update(const sky::Air& air, const AirView& view, FrameBlock& block);
+    void update(const sky::Air& air, const AirView& view, SkyBlock& block);
 
     /// Null for another name, and before update().
     const gl::Texture* texture(std::string_view name) const;

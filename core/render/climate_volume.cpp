@@ -124,7 +124,7 @@ climate::Growing ClimateVolume::growing(const geo::Geodetic& place, float height
     return growing;
 }
 
-void ClimateVolume::write(FrameBlock& block) const {
+void ClimateVolume::write(GroundBlock& block) const {
     block.climate_place = place_;
     block.climate_height = height_;
 }

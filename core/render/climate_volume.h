@@ -43,7 +43,7 @@ class ClimateVolume {
     /// set_day().
     climate::Growing growing(const geo::Geodetic& place, float height_m) const;
     /// Writes the texture's mapping from places and heights.
-    void write(FrameBlock& block) const;
+    void write(GroundBlock& block) const;
 
   private:
     climate::CoverTable table_;

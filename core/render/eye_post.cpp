@@ -25,7 +25,7 @@ glm::dmat2 metres_per_post(const dem::Grid& grid, const glm::dvec2& post) {
     return metres;
 }
 
-void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, FrameBlock& block) {
+void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, EyeBlock& block) {
     block.eye_post = block.eye_axes = glm::vec4(0);
     const glm::dvec2 post = grid.post(eye);
     // Elsewhere floats of posts are as good.

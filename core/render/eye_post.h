@@ -14,6 +14,6 @@ namespace relevo::render {
 glm::dmat2 metres_per_post(const dem::Grid& grid, const glm::dvec2& post);
 
 /// Writes the eye's place on the DEM's grid: eye_post and eye_axes.
-void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, FrameBlock& block);
+void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, EyeBlock& block);
 
 }  // namespace relevo::render

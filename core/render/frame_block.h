@@ -33,6 +33,10 @@ struct SunLight {
     glm::dvec3 direction{0, 0, 1};  ///< unit vector towards the geometric sun, in the local frame
     /// Refraction at a geometric elevation [rad]; empty without refraction.
     std::function<double(double elevation_rad)> refraction_rad;
+    /// The same; 0 without refraction.
+    double lift_rad(double elevation_rad) const {
+        return refraction_rad ? refraction_rad(elevation_rad) : 0.0;
+    }
     double ground_height_m = 0;  ///< of the lit ground, above sea level: its middle
     double highest_m = 0;        ///< height of the highest ground
     /// Range of the sine of the sun's geometric elevation over the DEM.
@@ -167,6 +171,14 @@ inline constexpr double kEyeAnchorFrom_m = 8192;
 /// Steps from the DEM's centre to the anchor of an eye, east and north.
 glm::dvec2 eye_anchor(const glm::dvec2& eye_m);
 
+/// Elevation by its sine, which rounding may have moved beyond 1 [rad].
+double elevation_of(double sine);
+
+/// xyz: a geometric direction as an eye sees it. w: its apparent elevation [rad].
+/// @param bent  refraction at the eye, as a fraction of that in `air`
+glm::dvec4 seen_from(const glm::dvec3& up, const glm::dvec3& direction, const SunLight& air,
+                     double bent);
+
 /// From positions relative to the eye to camera space: right, up, forward.
 glm::dmat4 view_matrix(const scene::Camera& camera);
 
@@ -176,10 +188,7 @@ glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int heig
 /// Size of the picture that a frame of some size belongs to [px].
 glm::ivec2 picture_px(const FrameInputs& inputs, int width_px, int height_px);
 
-/// From clip space of a whole picture to that of a frame of some size that shows a part of it.
-glm::dmat4 part_matrix(const PicturePart& part, int width_px, int height_px);
-
-/// The frame block except its page tables, which the terrain fills in.
+/// The frame block except for the members that Terrain, GroundLight, AirTextures and others know.
 /// @param footprint_limit  see frame.glsl
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit);

@@ -30,7 +30,7 @@ scene::Camera GroundProbe::camera_below(const scene::Camera& camera, const geo::
     return {camera.eye_m, -axes.up, axes.north, fov_y_rad};
 }
 
-void GroundProbe::aim(const FrameInputs& inputs, const Ground& ground, FrameBlock& block) {
+void GroundProbe::aim(const FrameInputs& inputs, const Ground& ground, EyeBlock& block) {
     const geo::Geodetic eye = ground.frame.to_geodetic(inputs.camera.eye_m);
     const geo::Axes axes = ground.frame.axes(eye.lat_rad, eye.lon_rad);
     const auto [lowest_m, highest_m] =

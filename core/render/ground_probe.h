@@ -22,7 +22,7 @@ class GroundProbe {
                                       double tolerance, double pixel_error);
 
     /// Sets an orthographic projection of the vertical through the eye, with heights as depths.
-    void aim(const FrameInputs& inputs, const Ground& ground, FrameBlock& block);
+    void aim(const FrameInputs& inputs, const Ground& ground, EyeBlock& block);
 
     /// Calls `draw` with the pixel as target. @returns height of the highest ground [m],
     /// ellipsoidal and exaggerated; accurate to 1 cm within a height range of 20 km

@@ -14,17 +14,13 @@
 namespace relevo::render {
 namespace {
 
-double elevation_of(double sine) {
-    return std::asin(std::clamp(sine, -1.0, 1.0));
-}
-
 /// Linear sRGB; colours outside of it lose their negative part.
 glm::dvec3 colour(const sky::Spectrum& light) {
     return glm::max(sky::colour_of(light), glm::dvec3(0));
 }
 
 bool bends(const SunLight& light) {
-    return light.refraction_rad && light.refraction_rad(0) != 0;
+    return light.lift_rad(0) != 0;
 }
 
 }  // namespace
@@ -37,8 +33,7 @@ HeightLight::HeightLight(const FrameInputs& inputs, double height_m)
 glm::dvec3 HeightLight::passed(const SunLight& light, double sine, double bent) const {
     const double elevation = elevation_of(sine);
     if (rays_) return colour(inputs_.atmosphere->sunlight(*rays_, elevation));
-    const double lift = light.refraction_rad ? bent * light.refraction_rad(elevation) : 0.0;
-    return sun::direct_transmittance(elevation + lift, height_m_);
+    return sun::direct_transmittance(elevation + bent * light.lift_rad(elevation), height_m_);
 }
 
 glm::dvec3 HeightLight::direct(const SunLight& light, double sine, double bent) const {

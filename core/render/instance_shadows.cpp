@@ -96,7 +96,7 @@ void InstanceShadows::prepare(const Terrain& terrain, const FrameInputs& inputs,
     write(inputs.camera.eye_m, block);
 }
 
-void InstanceShadows::write(const glm::dvec3& eye_m, FrameBlock& block) const {
+void InstanceShadows::write(const glm::dvec3& eye_m, SunBlock& block) const {
     block.instance_shadow_px = kSide_px;
     block.instance_shadow_weight = 1;
     for (std::size_t i = 0; i < 3; ++i)

@@ -69,7 +69,7 @@ class InstanceShadows {
         glm::dvec3 eye_m{0};     ///< when it was drawn
         double half_side_m = 1;
     };
-    void write(const glm::dvec3& eye_m, FrameBlock& block) const;
+    void write(const glm::dvec3& eye_m, SunBlock& block) const;
     glm::dvec2 across(const glm::dvec3& position_m) const {
         return {dot(axes_[0], position_m), dot(axes_[1], position_m)};
     }

@@ -17,29 +17,16 @@
 namespace relevo::render {
 namespace {
 
-double refracted_rad(const SunLight& light, double elevation_rad) {
-    return elevation_rad + (light.refraction_rad ? light.refraction_rad(elevation_rad) : 0.0);
-}
-
 /// Whether a part of its disc is above the horizon of the sea from the highest ground.
 bool shines(const SunLight& light) {
     constexpr double kSemidiameter_rad = radians(0.2666);
-    const double highest_rad = std::asin(std::clamp(light.highest_sine, -1.0, 1.0));
-    return refracted_rad(light, highest_rad) + kSemidiameter_rad >
+    const double highest_rad = elevation_of(light.highest_sine);
+    return highest_rad + light.lift_rad(highest_rad) + kSemidiameter_rad >
            std::asin(sky::horizon_sine(light.highest_m));
 }
 
 double luminance(const glm::dvec3& rgb) {
     return dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
-/// A geometric direction as the eye sees it.
-glm::dvec3 lifted(const glm::dvec3& direction, const SunLight& air, const glm::dvec3& up,
-                  double bent) {
-    const double elevation_rad = std::asin(std::clamp(dot(direction, up), -1.0, 1.0));
-    const double lift = bent * (refracted_rad(air, elevation_rad) - elevation_rad);
-    const double cosine = std::cos(elevation_rad + lift);
-    return normalize(direction + (cosine > 1e-6 ? std::sin(lift) / cosine : 0) * up);
 }
 
 }  // namespace
@@ -73,8 +60,8 @@ void choose_direct_light(FrameInputs& inputs, SunLight moonlight) {
 
 double moonlight_lux(const FrameInputs& inputs) {
     if (!inputs.moonlight) return 0;
-    const double elevation_rad = std::asin(std::clamp(inputs.moonlight->direction.z, -1.0, 1.0));
-    const double apparent_rad = refracted_rad(*inputs.moonlight, elevation_rad);
+    const double elevation_rad = elevation_of(inputs.moonlight->direction.z);
+    const double apparent_rad = elevation_rad + inputs.moonlight->lift_rad(elevation_rad);
     const glm::dvec3 direct = inputs.moon->light * sun::direct_transmittance(apparent_rad, 0) *
                               std::max(0.0, std::sin(apparent_rad));
     return sun::kSolarIlluminance_lux *
@@ -82,15 +69,13 @@ double moonlight_lux(const FrameInputs& inputs) {
 }
 
 void write_moon(const FrameInputs& inputs, const HeightLight& at_eye, const glm::dvec3& eye_up,
-                double bent, FrameBlock& block) {
+                double bent, double horizon_sine, SkyBlock& block) {
     if (!inputs.moon) return;
     const Moon& moon = *inputs.moon;
-    const glm::dvec3 seen = lifted(moon.direction, inputs.sun, eye_up, bent);
-    const double elevation_rad = std::asin(std::clamp(dot(seen, eye_up), -1.0, 1.0));
-    const double horizon_rad = std::asin(static_cast<double>(block.eye_up.w));
-    if (elevation_rad + moon.semidiameter_rad < horizon_rad) return;
+    const glm::dvec4 seen = seen_from(eye_up, moon.direction, inputs.sun, bent);
+    if (seen.w + moon.semidiameter_rad < std::asin(horizon_sine)) return;
     const glm::dvec3 air = at_eye.passed(inputs.sun, dot(moon.direction, eye_up), bent);
-    block.eye_moon = glm::vec4(seen, moon.semidiameter_rad);
+    block.eye_moon = glm::vec4(glm::dvec3(seen), moon.semidiameter_rad);
     block.eye_moon_light = glm::vec4(moon.light * air, inputs.moonlight ? 1 : 0);
     block.moon_to_sun = glm::vec4(moon.to_sun, 0);
     block.moon_axis = glm::vec4(moon.axis, 0);

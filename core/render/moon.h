@@ -36,11 +36,12 @@ void choose_direct_light(FrameInputs& inputs, SunLight moonlight);
 /// light [lux]; else 0.
 double moonlight_lux(const FrameInputs& inputs);
 
-/// Writes the moon's part of the frame block, after all others.
+/// Writes the moon's part of the frame block.
 /// @param at_eye  light at the eye's height
 /// @param eye_up  vertical at the eye
 /// @param bent    refraction at the eye, as a fraction of that in inputs.sun
+/// @param horizon_sine  of the horizon's elevation at the eye
 void write_moon(const FrameInputs& inputs, const HeightLight& at_eye, const glm::dvec3& eye_up,
-                double bent, FrameBlock& block);
+                double bent, double horizon_sine, SkyBlock& block);
 
 }  // namespace relevo::render

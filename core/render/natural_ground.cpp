@@ -150,14 +150,14 @@ void NaturalGround::make_climate() {
                      [this](const geo::Geodetic& place) { return mean_height_m(place); });
 }
 
-void NaturalGround::update_climate(int day, FrameBlock& block) {
+void NaturalGround::update_climate(int day, GroundBlock& block) {
     if (!climate_) make_climate();
     finish_land();  // which reads the tables
     climate_->set_day(day);
     climate_->write(block);
 }
 
-void NaturalGround::update_land(FrameBlock& block) {
+void NaturalGround::update_land(GroundBlock& block) {
     if (!has_land_) {
         has_land_ = true;
         country_m_ = block.beyond_m;

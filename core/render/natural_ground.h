@@ -42,9 +42,9 @@ class NaturalGround {
     const climate::ClimateMap& climate_map();
 
     /// Updates the climate's tables to the snow of a day, 0 to 364, and writes where they are.
-    void update_climate(int day, FrameBlock& block);
+    void update_climate(int day, GroundBlock& block);
     /// Begins to make the textures of land cover, in the background, and writes where they are.
-    void update_land(FrameBlock& block);
+    void update_land(GroundBlock& block);
     /// By the sampler's name; null for others, and before the updates. Waits for the background.
     const gl::Texture* texture(std::string_view name) const;
 

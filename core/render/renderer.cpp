@@ -249,9 +249,6 @@ struct Renderer::Impl : FrameServices {
         update_air(inputs, block);
         if (reads(kClimateTexture)) terrain.natural().update_climate(day_of(inputs.unix_s), block);
         if (reads(kLandAroundTexture)) terrain.natural().update_land(block);
-        const dem::Pyramid& posts = terrain.pyramid();
-        block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
-                       1.0F / static_cast<float>(posts.rows())};
     }
 
     /// Makes the tables of the air that programs read. Of a block the sky is seen in water alone,

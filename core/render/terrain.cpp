@@ -210,7 +210,9 @@ int Terrain::raster_slots() const {
                     options_.max_array_layers);
 }
 
-void Terrain::write(FrameBlock& block) const {
+void Terrain::write(GroundBlock& block) const {
+    const glm::vec2 posts(pyramid_.columns(), pyramid_.rows());
+    block.posts = glm::vec4(posts, 1.0F / posts);
     block.normal_levels = static_cast<float>(normal_levels_);
     block.normal_texels_per_m = static_cast<float>(1 / normal_spacing_m_);
     const RasterPlace overlay = overlay_.place("overlay");

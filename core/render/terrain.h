@@ -184,8 +184,8 @@ class Terrain {
     /// rows.
     bool winds_counterclockwise();
     double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest normal pages
-    /// Writes the page layers' part of the block.
-    void write(FrameBlock& block) const;
+    /// Writes the members of the posts, of the page layers and of the overlay.
+    void write(GroundBlock& block) const;
 
   private:
     TileSelection select_in_background(const LodView& view);

@@ -289,6 +289,16 @@ bool names_file(std::string_view name_or_path) {
     return name_or_path.find_first_of("/.") != std::string_view::npos;
 }
 
+std::vector<Layer> layers_of(const Scene& scene) {
+    const auto file = [](const std::string& table) { return names_file(table) ? table : ""; };
+    std::vector<Layer> layers;
+    if (const LandCover& cover = scene.land_cover; !cover.file.empty())
+        layers.push_back({cover.file, file(cover.classes), "the land cover", "the classes"});
+    if (const std::optional<Overlay>& overlay = scene.overlay)
+        layers.push_back({overlay->file, file(overlay->colours), "the overlay", "the colours"});
+    return layers;
+}
+
 std::string scene_line(const Scene& scene) {
     return whole_scene_line(with_absolute_paths(scene));
 }

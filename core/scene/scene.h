@@ -127,6 +127,15 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 
+/// A raster that a scene lays on the ground, and the file of its colours or classes.
+struct Layer {
+    std::string raster, table;         ///< table: empty without a file
+    const char *role, *role_of_table;  ///< "the overlay", "the colours"
+};
+
+/// The land cover and the overlay, if a scene has them.
+std::vector<Layer> layers_of(const Scene& scene);
+
 inline constexpr int kMaxSide_px = 65536;
 inline constexpr int kMaxSamples = 64;
 

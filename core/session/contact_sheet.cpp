@@ -16,19 +16,12 @@
 #include "session/image_parts.h"
 #include "session/shot_session.h"
 #include "session/srgb16.h"
+#include "session/stamps.h"
 
 namespace relevo::session {
 namespace {
 
 constexpr chart::Color kInk{0x202020};
-
-/// "2026-06-21 10:12 UTC+02:00".
-std::string clock_text(const scene::Shot& shot) {
-    const std::string iso = sun::to_iso(shot.utc, shot.zone);  // such as 2026-06-21T10:12:00+02:00
-    const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
-    return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
-                       seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);
-}
 
 /// Of a channel of a pixel, over white paper.
 float light_of(const image::Image8& image, int x, int y, int channel) {
@@ -142,7 +135,8 @@ std::vector<std::string> captions_of(const std::vector<scene::Shot>& shots) {
                 // Names say what they are; values of parameters do not.
                 parts.push_back(
                     printable(key.find('.') == std::string::npos ? value : key + " " + value));
-        if (times.size() > 1 || parts.empty()) parts.insert(parts.begin(), clock_text(shot));
+        if (times.size() > 1 || parts.empty())
+            parts.insert(parts.begin(), clock_text(shot.utc, shot.zone));
         captions.push_back(fmt::format("{}", fmt::join(parts, ", ")));
     }
     return captions;

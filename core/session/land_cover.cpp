@@ -1,7 +1,5 @@
 #include "session/land_cover.h"
 
-#include <span>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,7 +7,6 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "climate/land_cover.h"
-#include "dem/files_of.h"
 
 namespace relevo::session {
 namespace {
@@ -60,12 +57,6 @@ std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& as
         return nullptr;
     }
     return overlay::Photo::open_classes(asked.file, grid, table_of(asked).texels());
-}
-
-void add_files(const scene::LandCover& asked, FilesInUse& files) {
-    if (asked.file.empty()) return;
-    dem::add_all(std::span(&asked.file, 1), files);
-    if (scene::names_file(asked.classes)) files.add_input(asked.classes, "the classes");
 }
 
 }  // namespace relevo::session

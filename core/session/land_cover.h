@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "base/files_in_use.h"
 #include "overlay/photo.h"
 #include "scene/scene.h"
 
@@ -19,8 +18,5 @@ namespace relevo::session {
 ///     several of the program's tables have all of its classes, and for classes without a map
 std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& asked,
                                                       const dem::Grid& grid);
-
-/// Adds its files to the inputs of a run.
-void add_files(const scene::LandCover& asked, FilesInUse& files);
 
 }  // namespace relevo::session

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -13,7 +12,6 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
-#include "dem/files_of.h"
 #include "overlay/band_over.h"
 #include "overlay/photo.h"
 
@@ -173,11 +171,6 @@ std::optional<chart::Legend> dated_legend(const Overlay& overlay, const std::str
     if (const std::string when = clock_text(*overlay.time, zone, middle); !when.empty())
         legend->title += ", " + when;
     return legend;
-}
-
-void add_files(const scene::Overlay& overlay, FilesInUse& files) {
-    dem::add_all(std::span(&overlay.file, 1), files);
-    if (scene::names_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
 }
 
 }  // namespace relevo::session

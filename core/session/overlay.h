@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "base/array2d.h"
-#include "base/files_in_use.h"
 #include "chart/legend.h"
 #include "dem/grid.h"
 #include "image/image.h"
@@ -57,8 +56,5 @@ std::optional<sun::Instant> instant_of_overlay(const scene::Scene& scene);
 /// chart::named_ramp() and
 ///     read_ramp(), and for colours of more than 8 bits
 Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
-
-/// Adds the files of an overlay to the inputs of a run.
-void add_files(const scene::Overlay& overlay, FilesInUse& files);
 
 }  // namespace relevo::session

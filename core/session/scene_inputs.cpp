@@ -148,13 +148,8 @@ const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::st
 SceneInputs::Key SceneInputs::key_of(const scene::Scene& scene) {
     Key key{.dems = &raster_files(scene.dems), .effects = &of(scene.effects)};
     if (!scene.forecast.empty()) key.forecast = &raster_files({scene.forecast});
-    if (!scene.land_cover.file.empty()) {
-        key.land_cover = &raster_files({scene.land_cover.file});
-        key.classes = scene.land_cover.classes;
-    }
-    if (!scene.overlay) return key;
-    key.overlay = &raster_files({scene.overlay->file});
-    if (scene::names_file(scene.overlay->colours)) key.colours = scene.overlay->colours;
+    for (const scene::Layer& layer : scene::layers_of(scene))
+        key.layers.emplace_back(layer.role, &raster_files({layer.raster}), layer.table);
     return key;
 }
 
@@ -166,17 +161,10 @@ void SceneInputs::add_to(FilesInUse& files, const scene::Scene& scene) {
     if (!scene.forecast.empty())
         for (const fs::path& file : raster_files({scene.forecast}))
             files.add_input(file, "the weather");
-    if (!scene.land_cover.file.empty()) {
-        for (const fs::path& file : raster_files({scene.land_cover.file}))
-            files.add_input(file, "the land cover");
-        if (scene::names_file(scene.land_cover.classes))
-            files.add_input(scene.land_cover.classes, "the classes");
-    }
-    if (scene.overlay) {
-        for (const fs::path& file : raster_files({scene.overlay->file}))
-            files.add_input(file, "the overlay");
-        if (scene::names_file(scene.overlay->colours))
-            files.add_input(scene.overlay->colours, "the colours");
+    for (const scene::Layer& layer : scene::layers_of(scene)) {
+        for (const fs::path& file : raster_files({layer.raster}))
+            files.add_input(file, layer.role);
+        if (!layer.table.empty()) files.add_input(layer.table, layer.role_of_table);
     }
     const OfEffects& effects = of(scene.effects);
     for (const fs::path& file : effects.presets)
@@ -278,8 +266,8 @@ std::vector<HashedFile> SceneInputs::hashed_dem(const scene::Scene& scene) {
 
 std::vector<std::string> SceneInputs::remote_names(const scene::Scene& scene) {
     std::vector<std::string> names = scene.dems, remote;
-    if (scene.overlay) names.push_back(scene.overlay->file);
-    if (!scene.land_cover.file.empty()) names.push_back(scene.land_cover.file);
+    for (const scene::Layer& layer : scene::layers_of(scene))
+        names.push_back(layer.raster);
     for (const std::string& name : names)
         if (raster_files({name}).empty()) remote.push_back(name);
     return remote;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/files_in_use.h"
@@ -67,11 +68,9 @@ class SceneInputs {
     /// Identifies a scene's files: addresses of cached lists, and the names of tables.
     struct Key {
         const void* dems = nullptr;
-        const void* overlay = nullptr;
         const void* forecast = nullptr;
-        const void* land_cover = nullptr;
         const void* effects = nullptr;
-        std::string colours, classes;
+        std::vector<std::tuple<std::string, const void*, std::string>> layers;  // role, table
 
         auto operator<=>(const Key&) const = default;
     };

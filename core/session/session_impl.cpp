@@ -39,9 +39,11 @@ std::shared_ptr<const LoadedDem> load(const scene::Scene& scene,
 Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     : options(std::move(o)), state(std::move(given), options.format.has_value()) {
     const scene::Scene& scene = state.scene;
-    add_files(scene.land_cover, files);
+    for (const scene::Layer& layer : scene::layers_of(scene)) {
+        dem::add_all(std::span(&layer.raster, 1), files, layer.role);
+        if (!layer.table.empty()) files.add_input(layer.table, layer.role_of_table);
+    }
     if (scene.overlay) {
-        add_files(*scene.overlay, files);
         overlay_time = time_of(*scene.overlay);
         laid.without_shadows = overlay_time && !scene.overlay->shadows;
     }
@@ -54,7 +56,8 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     std::shared_ptr<const LoadedDem> loaded;
     if (!scene.weather.empty() || !scene.forecast.empty()) {  // its clouds need the ground
         loaded = loading.get();
-        if (!scene.forecast.empty()) dem::add_all(std::span(&scene.forecast, 1), files);
+        if (!scene.forecast.empty())
+            dem::add_all(std::span(&scene.forecast, 1), files, "the weather");
         state.weather = weather_of(scene, *loaded);
     }
     open_device(files);

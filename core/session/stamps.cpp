@@ -187,8 +187,11 @@ std::optional<geo::Geodetic> observer_of(const geo::LocalFrame& frame, const sce
 }
 
 std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geodetic& middle) {
-    const sun::ChosenZone chosen = sun::choose_zone(zone, middle);
-    const std::string iso = sun::to_iso(utc, chosen.zone);  // such as 2026-06-21T10:12:00+02:00
+    return clock_text(utc, sun::choose_zone(zone, middle).zone);
+}
+
+std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
+    const std::string iso = sun::to_iso(utc, zone);  // such as 2026-06-21T10:12:00+02:00
     const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
     return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
                        seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);

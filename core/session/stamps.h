@@ -53,5 +53,6 @@ std::optional<geo::Geodetic> observer_of(const geo::LocalFrame& frame, const sce
 /// @param zone    as sun::choose_zone
 /// @param middle  centre of the DEM
 std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geodetic& middle);
+std::string clock_text(sun::Instant utc, const sun::Zone& zone);
 
 }  // namespace relevo::session

@@ -196,6 +196,15 @@ TEST_F(RunFiles, NoPictureReplacesWhatAnotherIsMadeOf) {
         "\"shots\": [{\"name\": \"laid\"}, {\"name\": \"b\", \"dem\": {\"files\": "
         "[\"far.tif\"]}, \"overlay\": {\"file\": \"laid.tif\"}}], \"output\": \"{shot}.tif\"",
         "the overlay", "laid.tif", "laid.tif");
+    write("table.png.json", "0 0 0 0\n");
+    refused(
+        "\"shots\": [{\"name\": \"table\"}, {\"name\": \"b\", \"overlay\": {\"file\": "
+        "\"laid.tif\", \"colours\": \"table.png.json\"}}], \"output\": \"{shot}.png\"",
+        "the colours", "table.png.json", "table.png.json");
+    refused(
+        "\"shots\": [{\"name\": \"table\"}, {\"name\": \"b\", \"land_cover\": \"laid.tif\", "
+        "\"land_cover_classes\": \"table.png.json\"}], \"output\": \"{shot}.png\"",
+        "the classes", "table.png.json", "table.png.json");
     // By a link, and where another part of the job reads it.
     fs::create_symlink("laid.tif", dir_ / "link.tif");
     refused(

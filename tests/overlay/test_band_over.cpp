@@ -194,6 +194,12 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
               "exit 3: " + empty + ": the raster has no value anywhere on this DEM");
     EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 2); }),
               "exit 3: " + far + ": band 2: expected 1 to 1");
+    const std::string nowhere =
+        write_raster(folder() / "nowhere.tif", {.geotransform = {}, .crs = ""});
+    EXPECT_EQ(error_of([&] { read_band_over(grid(), nowhere, 1); }),
+              "exit 3: " + nowhere +
+                  ": the raster has no georeference, its place on the ground is unknown; add one "
+                  "with gdal_translate -a_srs EPSG:n -a_ullr W N E S");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "render/height_light.h"
 #include "sun/daylight.h"
 #include "sun/refraction.h"
+#include "support/gpu_snippet.h"
 #include "support/support.h"
 
 namespace relevo::render::test_frame_block {
@@ -27,6 +28,28 @@ FrameInputs inputs_at(const glm::dvec3& eye_m) {
     inputs.sun.lowest_sine = 0.6;
     inputs.sun.highest_sine = 0.8;
     return inputs;
+}
+
+TEST(FrameBlock, EachPartIsWhereTheShadersReadIt) {
+    test::GpuSnippet gpu("");
+    FrameBlock& frame = gpu.frame();
+    frame.eye_above_ground = 1;
+    frame.sun_direction.w = 2;
+    frame.instance_shadow_weight = 3;
+    frame.eye_sun.w = 4;
+    frame.corona.w = 5;
+    frame.height_range.w = 6;
+    frame.beyond_m = 7;
+    frame.viewport.w = 8;
+    frame.time_of_year = 9;
+    const auto read = gpu.run(
+        "result = x == 0 ? vec4(frame.eye_above_ground, frame.sun_direction.w,\n"
+        "                       frame.instance_shadow_weight, frame.eye_sun.w)\n"
+        "                : vec4(frame.corona.w, frame.height_range.w, frame.beyond_m,\n"
+        "                       10.0 * frame.viewport.w + frame.time_of_year);",
+        2, 1);
+    EXPECT_EQ(read[0], glm::vec4(1, 2, 3, 4));
+    EXPECT_EQ(read[1], glm::vec4(5, 6, 7, 89));
 }
 
 TEST(FrameBlock, UpIsTheNormalOfTheEllipsoidEverywhere) {
