@@ -37,7 +37,7 @@
 #include <stdint.h>
 
 #define RELEVO_VERSION_MAJOR 0
-#define RELEVO_VERSION_MINOR 1
+#define RELEVO_VERSION_MINOR 2
 #define RELEVO_VERSION_PATCH 0
 
 #if defined(_WIN32)
@@ -59,7 +59,7 @@ typedef int32_t relevo_result;
 #define RELEVO_RESULT_CANCELLED 5 /* by relevo_progress */
 #define RELEVO_RESULT_OUT_OF_MEMORY 6
 
-/* Version of the library that is loaded: "0.1.0". */
+/* Version of the library that is loaded: "0.2.0". */
 RELEVO_API const char* relevo_version(void);
 
 /* Why the last call that failed on this thread did; "" before any. Lasts until the next failure. */
@@ -136,6 +136,10 @@ RELEVO_API relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size
 /* The height at a place, bilinear between posts; NaN in a void and outside of the DEM. */
 RELEVO_API relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
                                            double* height_m);
+
+/* Heights at `count` places. Since 0.2. */
+RELEVO_API relevo_result relevo_dem_heights(relevo_dem* dem, const double* lat_deg,
+                                            const double* lon_deg, size_t count, double* height_m);
 
 /* ---- the sun ---- */
 

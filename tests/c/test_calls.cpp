@@ -34,6 +34,7 @@ TEST(BadCalls, NullIsAnError) {
         relevo_dem_wkt(nullptr, nullptr),
         relevo_dem_read(nullptr, nullptr, 0),
         relevo_dem_height(nullptr, 0, 0, nullptr),
+        relevo_dem_heights(nullptr, nullptr, nullptr, 0, nullptr),
         relevo_sun_position(nullptr, nullptr, 1, nullptr, nullptr, nullptr, nullptr),
         relevo_sun_events(nullptr, nullptr, nullptr, nullptr, 1, nullptr),
         relevo_horizon(nullptr, nullptr, nullptr, nullptr, 1, nullptr, nullptr),

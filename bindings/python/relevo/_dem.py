@@ -99,12 +99,13 @@ class Dem:
 
         lat, lon: degrees of WGS 84, numbers or arrays. Returns a float, or an array of their shape.
         """
-        places = numpy.broadcast_arrays(numpy.asarray(lat, numpy.float64), numpy.asarray(lon, numpy.float64))
-        latitudes, longitudes = (numpy.ascontiguousarray(array).ravel() for array in places)
-        heights = numpy.empty(latitudes.shape, dtype=numpy.float64)
+        lat, lon = numpy.asarray(lat, numpy.float64, "C"), numpy.asarray(lon, numpy.float64, "C")
+        if lat.shape != lon.shape:
+            lat, lon = (numpy.array(degrees) for degrees in numpy.broadcast_arrays(lat, lon))
+        heights = numpy.empty(lat.shape)
         with messages():
-            self._handle.height(latitudes, longitudes, heights)
-        return float(heights[0]) if places[0].ndim == 0 else heights.reshape(places[0].shape)
+            self._handle.height(lat, lon, heights)
+        return float(heights) if heights.ndim == 0 else heights
 
     def view(
         self,
