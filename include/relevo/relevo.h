@@ -79,7 +79,10 @@ RELEVO_API relevo_result relevo_set_message(relevo_message message, void* user);
 typedef struct relevo_progress {
     size_t size;
     void* user;
-    int32_t (*done)(void* user, double share);
+    int32_t (*done)(void* user, double share); /* may be null */
+    /* Since 0.2, for callers that poll from another thread instead; each may be null. */
+    int32_t* cancel; /* anything but 0 in it cancels the work */
+    double* share;   /* receives the share */
 } relevo_progress;
 
 /* ---- DEMs ---- */

@@ -254,6 +254,28 @@ TEST(Progress, RisesToOneAndCancels) {
     expect_ok(hours());
 }
 
+TEST(Progress, IsPolledToo) {
+    const DemHandle dem = open_bundled();
+    std::vector<float> values(posts_of(dem.get()));
+    std::int32_t cancel = 0;
+    double share = 0;
+    auto progress = sized<relevo_progress>();
+    progress.cancel = &cancel;
+    progress.share = &share;
+    const auto sky_view = [&] {
+        return relevo_sky_view(dem.get(), R"({"directions": 8})", values.data(), values.size(),
+                               &progress, nullptr);
+    };
+    expect_ok(sky_view());
+    EXPECT_NEAR(share, 1, 1e-6);
+    cancel = 1;
+    expect_error(sky_view(), RELEVO_RESULT_CANCELLED, "relevo_sky_view: cancelled");
+    EXPECT_LT(share, 0.5);
+    progress.size = 24;  // of callers of 0.1, which have neither
+    progress.cancel = reinterpret_cast<std::int32_t*>(1);
+    expect_ok(sky_view());
+}
+
 TEST(Messages, GoWhereTheCallerWantsThem) {
     std::vector<std::string> texts;
     expect_ok(relevo_set_message(

@@ -1,7 +1,7 @@
 """librelevo, and how it is called: results become exceptions, arrays addresses; long work runs on a thread of its own.
 
-By ctypes: one build serves every Python, and calls cost about what those of a compiled module do. Its callbacks take the
-GIL; they are short, and no thread holds the GIL while it waits for the library.
+By ctypes: one build serves every Python, and calls cost about what those of a compiled module do. The only callback is
+that of messages, because one takes the GIL, for which work would wait where another thread is busy.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pathlib
 import re
 import time
 from collections.abc import Callable
-from ctypes import CFUNCTYPE, POINTER, addressof, c_char, c_char_p, c_double, c_int32, c_size_t, c_void_p
+from ctypes import CFUNCTYPE, POINTER, addressof, byref, c_char, c_char_p, c_double, c_int32, c_size_t, c_void_p, pointer
 from typing import Any, NamedTuple, Optional
 
 import numpy
@@ -32,12 +32,11 @@ class Structure(ctypes.Structure):
         super().__init__(size=ctypes.sizeof(self), **values)
 
 
-_DONE = CFUNCTYPE(c_int32, c_void_p, c_double)
 _MESSAGE = CFUNCTYPE(None, c_void_p, c_int32, c_char_p)
 
 
 class _Progress(Structure):
-    _fields_ = [("size", c_size_t), ("user", c_void_p), ("done", _DONE)]
+    _fields_ = [("size", c_size_t), ("user", c_void_p), ("done", c_void_p), ("cancel", POINTER(c_int32)), ("share", POINTER(c_double))]
 
 
 PROGRESS = POINTER(_Progress)
@@ -75,7 +74,7 @@ _error = function("relevo_error", result=c_char_p)
 _user = 0  # the process that has used the library; 0: none yet
 _ending = False  # Python ends
 _calls: list[None] = []  # an element for each short call under way
-_works: dict[int, _Work] = {}  # long ones under way, by id(), also those that nobody waits for any more
+_works: set[_Work] = set()  # long ones under way, also those that nobody waits for any more
 
 
 def is_fork() -> bool:
@@ -115,37 +114,29 @@ class _Work:
     """A call on a thread of its own."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
-        self.cancelled, self.share, self.result = False, 0.0, None
+        self.cancelled, self.share, self.result = c_int32(0), c_double(0), None
         self.error: Optional[BaseException] = None
         self.running = _thread.allocate_lock()  # released at the end; this module takes a third of threading's time
         self.running.acquire()
         self._does = work
 
     def start(self) -> None:
-        _works[id(self)] = self
+        _works.add(self)
         try:
             _begin()
             _thread.start_new_thread(self._run, ())
         except BaseException:
-            del _works[id(self)]
+            _works.discard(self)
             raise
 
     def _run(self) -> None:
         try:
-            self.result = self._does(ctypes.byref(_Progress(user=id(self), done=_done)))
+            self.result = self._does(byref(_Progress(cancel=pointer(self.cancelled), share=pointer(self.share))))
         except BaseException as error:
             self.error = error
-        del self._does, _works[id(self)]
+        del self._does
+        _works.discard(self)
         self.running.release()
-
-
-def _report(user: int, share: float) -> int:
-    work = _works[user]
-    work.share = share
-    return work.cancelled or _ending
-
-
-_done = _DONE(_report)
 
 
 def call_long(work: Callable[[Any], Any], progress: Progress = None) -> Any:
@@ -162,11 +153,12 @@ def call_long(work: Callable[[Any], Any], progress: Progress = None) -> Any:
     try:
         one.start()
         while not one.running.acquire(timeout=0.03):
-            if progress is not None and one.share > shown:
-                shown = one.share
-                one.cancelled = one.cancelled or progress(shown) is False
+            if progress is not None and one.share.value > shown:
+                shown = one.share.value
+                if progress(shown) is False:
+                    one.cancelled.value = 1
     except BaseException:
-        one.cancelled = True
+        one.cancelled.value = 1
         raise
     if one.error is None:
         return one.result
@@ -182,6 +174,8 @@ def _finish() -> None:
     global _ending
     _ending = True
     while not is_fork() and (_calls or _works):
+        for work in list(_works):
+            work.cancelled.value = 1
         time.sleep(0.01)
     if not is_fork():
         _set_message(ctypes.cast(0, _MESSAGE), None)
