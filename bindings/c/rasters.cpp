@@ -69,6 +69,9 @@ class RasterCall {
         for (const output::RasterBand& band : bands)
             json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (beyond) json["beyond"] = beyond->text(figure.would());
+        for (const auto& [key, value] : figure::metadata_of(figure, posts(), RELEVO_VERSION, made,
+                                                            figure::whole_window(dem_->grid())))
+            json["metadata"][key] = value;
         *about_ = returned_text(json.dump());
     }
 

@@ -8,9 +8,7 @@
 #include <fmt/format.h>
 
 namespace relevo::figure {
-namespace {
 
-/// Metadata common to all figures.
 output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
                                    const std::string& version, const PartMade& made,
                                    const dem::Window& window) {
@@ -32,8 +30,11 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
             "CLIP",
             fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", window.column,
                         window.end_column() - 1, window.row, window.end_row() - 1));
+    std::ranges::copy(figure.metadata(posts), std::back_inserter(about));
     return about;
 }
+
+namespace {
 
 dem::Grid grid_of(const dem::Grid& grid, const dem::Window& window) {
     return window == whole_window(grid) ? grid : grid.part(window, window.columns, window.rows);
@@ -113,7 +114,6 @@ RasterFile::RasterFile(OutputFile& file, const Figure& figure, const dem::Posts&
 void RasterFile::finish(const std::string& version, const PartMade& made,
                         const output::RasterMetadata& more) {
     output::RasterMetadata about = metadata_of(figure_, posts_, version, made, window_);
-    std::ranges::copy(figure_.metadata(posts_), std::back_inserter(about));
     std::ranges::copy(more, std::back_inserter(about));
     writer_.finish(about);
 }

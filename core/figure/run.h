@@ -41,6 +41,14 @@ struct Raster {
 Raster raster_of(const Figure& figure, const dem::Posts& posts,
                  const std::function<void(double)>& done = {});
 
+/// What a raster says of itself: of all figures, then of this one.
+/// @param version  of Relevo
+/// @param made     sums over all parts
+/// @param window   of the posts of the whole DEM
+output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
+                                   const std::string& version, const PartMade& made,
+                                   const dem::Window& window);
+
 /// A GeoTIFF of a figure.
 class RasterFile {
   public:

@@ -197,8 +197,8 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
  * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard"), "highest" [m]: what
  * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post).
  * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
- * "unit"}], "1" for plain numbers), and where ground beyond the DEM could change values
- * "beyond". `progress` may be null. */
+ * "unit"}], "1" for plain numbers), where ground beyond the DEM could change values "beyond", and
+ * "metadata": those of the program's GeoTIFF (since 0.2). `progress` may be null. */
 
 /* Light and shade at a time: 1 lit, 0 in the shadow of the ground.
  * @param options  "time" ("2026-06-21T18:30+02:00", "sunset-30min at 47.2,11.4"), "date", "zone" as

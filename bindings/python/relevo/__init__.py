@@ -14,6 +14,7 @@ from __future__ import annotations
 import sys
 
 from . import sun
+from ._again import again
 from ._dem import Dem, open
 from ._errors import BadCall, BadInput, Cancelled, Error, NoDevice, OutOfMemory, Warning
 from ._raster import Raster
@@ -37,6 +38,7 @@ __all__ = [
     "Transform",
     "View",
     "Warning",
+    "again",
     "open",
     "sun",
 ]

@@ -83,9 +83,12 @@ class SunOverDem:
         if isinstance(step, datetime.timedelta):
             step = step.total_seconds()
         return self._raster(
-            "sun_hours", names, alone, progress, **{"date": date, "from": start, "to": end}, year=year, zone=zone,
-            bands=names, step=step, linke=linke, albedo=albedo, terrestrial_refraction=terrestrial_refraction,
-            refraction=refraction, highest=highest,
+            "sun_hours", names, alone, progress,
+            {
+                "date": date, "from": start, "to": end, "year": year, "zone": zone, "bands": names, "step": step,
+                "linke": linke, "albedo": albedo, "terrestrial_refraction": terrestrial_refraction,
+                "refraction": refraction, "highest": highest,
+            },
         )
 
     def shadow(
@@ -106,8 +109,11 @@ class SunOverDem:
         soft: the visible fraction of the solar disc instead
         """
         return self._raster(
-            "shadow", ["shadow"], True, progress, time=time_text(time, zone), date=date, zone=zone, soft=soft,
-            terrestrial_refraction=terrestrial_refraction, refraction=refraction, highest=highest,
+            "shadow", ["shadow"], True, progress,
+            {
+                "time": time_text(time, zone), "date": date, "zone": zone, "soft": soft,
+                "terrestrial_refraction": terrestrial_refraction, "refraction": refraction, "highest": highest,
+            },
         )
 
     def sky_view(
@@ -125,8 +131,11 @@ class SunOverDem:
         level: of a level plane instead of the ground as it is inclined
         """
         return self._raster(
-            "sky_view", ["sky_view"], True, progress, directions=directions, level=level,
-            terrestrial_refraction=terrestrial_refraction, highest=highest,
+            "sky_view", ["sky_view"], True, progress,
+            {
+                "directions": directions, "level": level, "terrestrial_refraction": terrestrial_refraction,
+                "highest": highest,
+            },
         )
 
     def horizon(
@@ -154,13 +163,15 @@ class SunOverDem:
             azimuth = numpy.arange(int(numpy.ceil(round(360 / step, 6)))) * step
         azimuths = numpy.ascontiguousarray(numpy.atleast_1d(azimuth), dtype=numpy.float64)
         elevation, distance = numpy.empty_like(azimuths), numpy.empty_like(azimuths)
-        options = options_text("horizon", eye_height=eye_height, terrestrial_refraction=terrestrial_refraction)
+        options = options_text(
+            "horizon", {"eye_height": eye_height, "terrestrial_refraction": terrestrial_refraction}
+        )
         with messages():
             self._dem._handle.horizon(float(lat), float(lon), options, azimuths, elevation, distance)
         return Horizon(azimuths, elevation, distance)
 
     def _raster(
-        self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], **options: Any
+        self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], options: dict[str, Any]
     ) -> Raster:
         """A figure by its function of the library."""
         for key, text in (("date", date_text), ("from", date_text), ("to", date_text), ("zone", zone_text)):
@@ -168,9 +179,12 @@ class SunOverDem:
                 options[key] = text(options[key])
         values = empty(None if alone else len(names), *self._dem.shape)
         fill = getattr(self._dem._handle, figure)
+        asked = options_text(figure.removeprefix("sun_"), options)
         with messages():
-            about = json.loads(fill(options_text(figure.removeprefix("sun_"), **options), values, progress))
+            about = json.loads(fill(asked, values, progress))
         described = about.pop("bands")
+        told = {key.lower().removeprefix("tifftag_"): value for key, value in about.pop("metadata").items()}
+        about = {**told, **about, **self._dem.provenance(), "figure": figure, "options": asked}
         titles = tuple(band["name"] for band in described)
         units = tuple(band["unit"] for band in described)
         return self._dem._raster(values, tuple(names), titles, units, about)
