@@ -76,9 +76,8 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
     return sum;
 }
 
-PartMade make_all(const Figure& figure, const dem::Posts& posts, const MemoryBudget& memory,
-                  Put put, const std::function<void(double)>& done) {
-    const dem::Window all = whole_window(posts.grid());
+PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
+                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done) {
     double share = 1;  // of a call
     const PartMaker make = figure.maker({.posts = posts,
                                          .window = all,
@@ -99,7 +98,7 @@ Raster raster_of(const Figure& figure, const dem::Posts& posts,
     const auto put = [&](std::size_t, const dem::Window&, Array2d<float> values) {
         raster.values = std::move(values);
     };
-    raster.made = make_all(figure, posts, {}, put, done);
+    raster.made = make_all(figure, posts, whole_window(posts.grid()), {}, put, done);
     return raster;
 }
 
@@ -127,7 +126,7 @@ void write_raster(OutputFile& file, const Figure& figure, const dem::Posts& post
     const auto put = [&](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
         raster.put(band, part.column, part.row, values);
     };
-    const PartMade made = whole ? whole->made : make_all(figure, posts, memory, put, done);
+    const PartMade made = whole ? whole->made : make_all(figure, posts, all, memory, put, done);
     output::RasterMetadata more;
     if (const auto beyond = figure.beyond(posts, all))
         more.emplace_back("BEYOND_DEM", beyond->text(figure.would()));

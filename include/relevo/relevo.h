@@ -195,7 +195,9 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
  * other. Values are those that the program writes, to the bit.
  *
  * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard"), "highest" [m]: what
- * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post).
+ * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post);
+ * "clip": "W,S,E,N" in the DEM's CRS or "clip_crs": only posts in it, shaded by the whole DEM, NaN
+ * elsewhere (since 0.2).
  * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
  * "unit"}], "1" for plain numbers), where ground beyond the DEM could change values "beyond", and
  * "metadata": those of the program's GeoTIFF (since 0.2). `progress` may be null. */

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from ._errors import BadInput, messages
+from ._inputs import crs_text
 from ._options import options_text
 from ._raster import Raster, band_list, empty
 from ._times import Date, Time, Zone, date_text, time_text, zone_text
@@ -20,6 +21,21 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float], object]
 """Is called with the share that is done, 0 to 1, on the thread that has called. False from it cancels."""
+
+
+def _clip_text(clip: Union[str, Sequence[float]]) -> str:
+    if isinstance(clip, str):
+        return clip  # of a raster that is made again
+    try:
+        west, south, east, north = (float(edge) for edge in clip)
+    except (TypeError, ValueError):
+        raise BadInput(f"clip: expected (west, south, east, north) but got {clip!r}") from None
+    return f"{west!r},{south!r},{east!r},{north!r}"
+
+
+_TEXTS: dict[str, Callable[[Any], str]] = {
+    "date": date_text, "from": date_text, "to": date_text, "zone": zone_text, "clip": _clip_text, "clip_crs": crs_text,
+}
 
 
 class Horizon(NamedTuple):
@@ -43,6 +59,8 @@ class SunOverDem:
     terrestrial_refraction: curvature of a line of sight in units of the Earth's (0.13)
     refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"; not of the sky view
     highest: what no terrain outside of the DEM exceeds [m] (the DEM's highest post)
+    clip: (west, south, east, north) in `clip_crs` (the DEM's CRS): only posts in it are computed, in the shade of the
+        whole DEM; others are NaN
 
     and warn (relevo.Warning) where terrain outside of the DEM could change values.
     """
@@ -65,6 +83,8 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Hours of direct sun, and what belongs to them.
@@ -87,7 +107,7 @@ class SunOverDem:
             {
                 "date": date, "from": start, "to": end, "year": year, "zone": zone, "bands": names, "step": step,
                 "linke": linke, "albedo": albedo, "terrestrial_refraction": terrestrial_refraction,
-                "refraction": refraction, "highest": highest,
+                "refraction": refraction, "highest": highest, "clip": clip, "clip_crs": clip_crs,
             },
         )
 
@@ -101,6 +121,8 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
@@ -112,7 +134,7 @@ class SunOverDem:
             "shadow", ["shadow"], True, progress,
             {
                 "time": time_text(time, zone), "date": date, "zone": zone, "soft": soft,
-                "terrestrial_refraction": terrestrial_refraction, "refraction": refraction, "highest": highest,
+                "terrestrial_refraction": terrestrial_refraction, "refraction": refraction, "highest": highest, "clip": clip, "clip_crs": clip_crs,
             },
         )
 
@@ -123,6 +145,8 @@ class SunOverDem:
         level: bool = False,
         terrestrial_refraction: Optional[float] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """The sky-view factor, 0 to 1.
@@ -134,7 +158,7 @@ class SunOverDem:
             "sky_view", ["sky_view"], True, progress,
             {
                 "directions": directions, "level": level, "terrestrial_refraction": terrestrial_refraction,
-                "highest": highest,
+                "highest": highest, "clip": clip, "clip_crs": clip_crs,
             },
         )
 
@@ -174,7 +198,7 @@ class SunOverDem:
         self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], options: dict[str, Any]
     ) -> Raster:
         """A figure by its function of the library."""
-        for key, text in (("date", date_text), ("from", date_text), ("to", date_text), ("zone", zone_text)):
+        for key, text in _TEXTS.items():
             if options.get(key) is not None:
                 options[key] = text(options[key])
         values = empty(None if alone else len(names), *self._dem.shape)

@@ -30,8 +30,8 @@ def to_dataarray(raster: Raster) -> Any:
     if transform.b == 0 and transform.d == 0:
         crs = _crs(raster)
         axes = {} if crs is None else {axis["axis"].lower(): axis for axis in crs.cs_to_cf()}
-        coords["y"] = ("y", transform.f + transform.e * row, axes.get("y"))
-        coords["x"] = ("x", transform.c + transform.a * column, axes.get("x"))
+        coords["y"] = ("y", transform.f + transform.e * row, axes.get("y"), {"_FillValue": None})
+        coords["x"] = ("x", transform.c + transform.a * column, axes.get("x"), {"_FillValue": None})
     dims: tuple[str, ...] = ("y", "x")
     if raster.values.ndim == 3:
         dims = ("band", *dims)
@@ -44,7 +44,7 @@ def _spatial_ref(raster: Raster) -> Any:
     geotransform = " ".join(repr(number) for number in raster.transform.to_gdal())
     found = {"crs_wkt": raster.wkt, "spatial_ref": raster.wkt, "GeoTransform": geotransform}
     crs = _crs(raster)
-    return xarray.Variable((), 0, found if crs is None else {**crs.to_cf(), **found})
+    return xarray.Variable((), numpy.int32(0), found if crs is None else {**crs.to_cf(), **found})
 
 
 def _crs(raster: Raster) -> Any:
