@@ -67,6 +67,7 @@ relevo_package(python3-relevo
     DEPENDS "librelevo0 ${exact}, python3 (>= 3.9), python3-numpy" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
 set(CPACK_DEBIAN_RELEVO-DATA_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON3-RELEVO_PACKAGE_SHLIBDEPS OFF)
 
 # Programs that are linked later get their dependency from the library's own file.
 set(CPACK_DEBIAN_LIBRELEVO0_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers

@@ -191,6 +191,14 @@ void sky_view(RasterCall& call, json::ObjectReader& reader) {
     call.run(figure);
 }
 
+void horizons(RasterCall& call, json::ObjectReader& reader) {
+    figure::Horizons figure;
+    figure.directions = static_cast<int>(number(reader, figure::kHorizonDirections, true));
+    call.take_common(reader, figure);
+    reader.finish();
+    call.run(figure);
+}
+
 /// @param function  of the interface
 template <auto make>
 relevo_result raster(const char* function, relevo_dem* dem, const char* text, float* values,
@@ -221,4 +229,10 @@ relevo_result relevo_sun_hours(relevo_dem* dem, const char* options, float* valu
 relevo_result relevo_sky_view(relevo_dem* dem, const char* options, float* share, size_t count,
                               const relevo_progress* progress, const char** about) {
     return c::raster<c::sky_view>("relevo_sky_view", dem, options, share, count, progress, about);
+}
+
+relevo_result relevo_horizons(relevo_dem* dem, const char* options, float* elevation_deg,
+                              size_t count, const relevo_progress* progress, const char** about) {
+    return c::raster<c::horizons>("relevo_horizons", dem, options, elevation_deg, count, progress,
+                                  about);
 }

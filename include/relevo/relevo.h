@@ -225,6 +225,14 @@ RELEVO_API relevo_result relevo_sky_view(relevo_dem* dem, const char* options, f
                                          size_t count, const relevo_progress* progress,
                                          const char** about);
 
+/* The horizon of each post [degrees], a band for each direction, evenly spread from north. Since
+ * 0.2.
+ * @param options  "directions" (36). No "refraction".
+ * @param count    columns * rows * directions */
+RELEVO_API relevo_result relevo_horizons(relevo_dem* dem, const char* options, float* elevation_deg,
+                                         size_t count, const relevo_progress* progress,
+                                         const char** about);
+
 /* ---- pictures ---- */
 
 /* A scene on a device: what the program draws. It has a thread of its own. */

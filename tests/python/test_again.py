@@ -18,6 +18,8 @@ MADE = {
     "a band of several": lambda sun: sun.hours("2026-12-21", bands=["hours", "spells"])["spells"],
     "shadow": lambda sun: sun.shadow("2026-12-21T14:00Z", terrestrial_refraction=0.2),
     "soft shadow of an event": lambda sun: sun.shadow("sunset-30min", date="2026-03-20", soft=True, highest=1200),
+    "horizons": lambda sun: sun.horizons(4, highest=1500),
+    "one of the horizons": lambda sun: sun.horizons(8, terrestrial_refraction=0)["45"],
     "sky view": lambda sun: sun.sky_view(8, level=True),
 }
 
@@ -101,7 +103,7 @@ def test_again_of_another_dem(path, tmp_path, dem):
         ({"dem_files": '["/etc/passwd"]'}, "passwd is missing"),
         ({"dem_files": '[".."]'}, "is missing"),
         ({"dem_files": '["/vsicurl/http://example.org/a.tif"]'}, "a.tif is missing"),
-        ({"dem_options": '{"transform": 1}'}, "dem_options: expected some of band"),
+        ({"dem_options": '{"transform": 1}'}, "options: expected some of band"),
         ({"dem_sha256": "0"}, "are not those that the raster was made of"),
     ],
 )

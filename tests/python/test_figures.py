@@ -160,6 +160,7 @@ def test_repr(dem):
         (["hours", "--date", "2026-06-21"], lambda sun, **clip: sun.hours("2026-06-21", **clip)),
         (["shadow", "--time", "2026-12-21T13:30Z"], lambda sun, **clip: sun.shadow("2026-12-21T13:30Z", **clip)),
         (["sky-view", "--directions", "8"], lambda sun, **clip: sun.sky_view(8, **clip)),
+        (["horizons", "--directions", "1"], lambda sun, **clip: sun.horizons(1, **clip)["0"]),
     ],
 )
 def test_clip(dem, path, written, words, make):
@@ -188,3 +189,17 @@ def test_clip_in_another_crs(dem):
     ):
         with pytest.raises(relevo.BadInput, match=message):
             dem.sun.sky_view(8, **wrong)
+
+
+def test_horizons(dem, written):
+    horizons = dem.sun.horizons(8)
+    numpy.testing.assert_array_equal(horizons, written("sun", "horizons", dem.name, "--directions", 8))
+    assert horizons.bands[:3] == ("0", "45", "90") and horizons.unit == "deg"
+    assert horizons["45"].name == "horizon towards azimuth 45"
+    row, column = 100, 200
+    x, y = dem.transform.apply(column + 0.5, row + 0.5)
+    exact = dem.sun.horizon(y, x, step=45).elevation
+    assert horizons.values[:, row, column] == pytest.approx(exact, abs=0.2)
+    for wrong in (0, 721, 2.5, True, "8", 10**30):
+        with pytest.raises(relevo.BadInput, match="^directions: expected a whole number from 1 to 720"):
+            dem.sun.horizons(wrong)

@@ -11,8 +11,8 @@ from ._dem import Dem, open
 from ._errors import BadInput
 from ._raster import Raster
 
-_FIGURES = ("shadow", "sky_view", "sun_hours")
-_DEM_OPTIONS = {"band", "bounds", "crop", "crs", "encoding", "holes", "memory_mib", "nodata", "unit"}
+_FIGURES = ("horizons", "shadow", "sky_view", "sun_hours")
+_DEM_OPTIONS = ("band", "bounds", "crop", "crs", "encoding", "holes", "memory_mib", "nodata", "unit")
 
 
 def again(
@@ -37,16 +37,26 @@ def again(
         return _made(dem, figure, options, alone)
     files = _files(about, None if trust else folder)
     how = _object(about, "dem_options")
-    if not _DEM_OPTIONS.issuperset(how):
-        raise BadInput(f"dem_options: expected some of {', '.join(sorted(_DEM_OPTIONS))}")
-    with open(files, **how) as opened:
+    with open(files, **_keywords(how, *_DEM_OPTIONS)) as opened:
         if opened.provenance()["dem_sha256"] != about.get("dem_sha256"):
             raise BadInput(f"dem: heights of {files[0]} are not those that the raster was made of; dem= takes others")
         return _made(opened, figure, options, alone)
 
 
 def _made(dem: Dem, figure: str, options: dict[str, Any], alone: bool) -> Raster:
-    return dem.sun._raster(figure, options.get("bands", [figure]), alone, None, options)
+    if figure != "horizons":
+        return dem.sun._raster(figure, options.get("bands", [figure]), alone, None, options)
+    band = options.pop("bands", [])
+    every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
+    if band and band[0] not in every.bands:
+        raise BadInput(f"options: bands: expected one of {', '.join(every.bands)} but got {band[0]}")
+    return every[band[0]] if band else every
+
+
+def _keywords(options: dict[str, Any], *known: str) -> dict[str, Any]:
+    if not set(known).issuperset(options):
+        raise BadInput(f"options: expected some of {', '.join(known)}")
+    return options
 
 
 def _described(raster: Any) -> tuple[dict[str, Any], bool, Optional[pathlib.Path]]:

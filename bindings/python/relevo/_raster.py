@@ -82,7 +82,7 @@ class Raster:
         values = self.values if self.values.ndim == 2 else self.values[i]
         one = slice(i, i + 1)
         about = dict(self.about)
-        if len(self.bands) > 1:
+        if self.values.ndim == 3:
             about["options"] = json.dumps({**json.loads(about["options"]), "bands": [band]})
         return Raster(
             values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], about

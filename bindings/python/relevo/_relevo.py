@@ -64,9 +64,9 @@ _dem_heights = function("relevo_dem_heights", _HANDLE, _DATA, _DATA, c_size_t, _
 _sun_position = function("relevo_sun_position", POINTER(_Place), _DATA, c_size_t, _TEXT, _DATA, _DATA, _DATA)
 _sun_events = function("relevo_sun_events", POINTER(_Place), _TEXT, _TEXT, POINTER(_Event), c_size_t, POINTER(c_size_t))
 _horizon = function("relevo_horizon", _HANDLE, POINTER(_Place), _TEXT, _DATA, c_size_t, _DATA, _DATA)
-_shadow, _sun_hours, _sky_view = (
+_shadow, _sun_hours, _sky_view, _horizons = (
     function(f"relevo_{name}", _HANDLE, _TEXT, _DATA, c_size_t, PROGRESS, _SAID)
-    for name in ("shadow", "sun_hours", "sky_view")
+    for name in ("shadow", "sun_hours", "sky_view", "horizons")
 )
 _open = function("relevo_open", _TEXT, POINTER(_OpenOptions), _RECEIVED)
 _close = function("relevo_close", _HANDLE, result=None)
@@ -135,6 +135,9 @@ class Dem(Handle):
 
     def sky_view(self, options: str, share: Any, progress: Progress) -> str:
         return self._raster(_sky_view, options, share, progress)
+
+    def horizons(self, options: str, elevation_deg: Any, progress: Progress) -> str:
+        return self._raster(_horizons, options, elevation_deg, progress)
 
     def _raster(self, figure: Any, options: str, values: Any, progress: Progress) -> str:
         """A raster of light. Returns its `about`."""

@@ -162,6 +162,31 @@ class SunOverDem:
             },
         )
 
+    def horizons(
+        self,
+        directions: int = 36,
+        *,
+        terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
+        progress: Optional[Progress] = None,
+    ) -> Raster:
+        """The horizon of each post [degrees]: values of (directions, rows, columns), evenly spread from north.
+
+        directions: 1 to 720. Bands are named by their azimuths: `raster["90"]` is that to the east.
+        """
+        if isinstance(directions, bool) or directions not in range(1, 721):
+            raise BadInput(f"directions: expected a whole number from 1 to 720 but got {directions!r}")
+        names = [f"{360 * i / directions:.10g}" for i in range(directions)]
+        return self._raster(
+            "horizons", names, False, progress,
+            {
+                "directions": int(directions), "terrestrial_refraction": terrestrial_refraction, "highest": highest,
+                "clip": clip, "clip_crs": clip_crs,
+            },
+        )
+
     def horizon(
         self,
         lat: float,

@@ -18,7 +18,7 @@ from ._raster import Raster
 from ._sun_over_dem import Horizon
 
 
-_UDUNITS = {"kWh/m2": "kW h m-2"}
+_UDUNITS = {"deg": "degree", "kWh/m2": "kW h m-2"}
 
 
 def to_dataarray(raster: Raster) -> Any:
@@ -57,7 +57,8 @@ def _crs(raster: Raster) -> Any:
 
 
 def _described(array: Any, raster: Raster) -> Any:
-    array.name = raster.bands[0] if raster.values.ndim == 2 else "sun"
+    band = raster.bands[0] if raster.values.ndim == 2 else "sun"
+    array.name = band if band.isidentifier() else raster.about["figure"]
     array.attrs.update(raster.about)
     if raster.values.ndim == 2:
         array.attrs.update(long_name=raster.name, units=_UDUNITS.get(raster.unit, raster.unit))
