@@ -229,11 +229,12 @@ class SunOverDem:
         values = empty(None if alone else len(names), *self._dem.shape)
         fill = getattr(self._dem._handle, figure)
         asked = options_text(figure.removeprefix("sun_"), options)
+        of_dem = self._dem.provenance()  # before the figure, during which others may close the DEM
         with messages():
             about = json.loads(fill(asked, values, progress))
         described = about.pop("bands")
         told = {key.lower().removeprefix("tifftag_"): value for key, value in about.pop("metadata").items()}
-        about = {**told, **about, **self._dem.provenance(), "figure": figure, "options": asked}
+        about = {**told, **about, **of_dem, "figure": figure, "options": asked}
         titles = tuple(band["name"] for band in described)
         units = tuple(band["unit"] for band in described)
         return self._dem._raster(values, tuple(names), titles, units, about)
