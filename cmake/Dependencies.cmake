@@ -1,4 +1,11 @@
 # Every library of the project, all from Debian 12's packages (tools/packages.txt).
+if(SKBUILD)  # pip builds; ./run.sh installs packages itself
+    execute_process(COMMAND ${CMAKE_SOURCE_DIR}/tools/install_packages.sh --list OUTPUT_VARIABLE missing
+        OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(missing)
+        message(NOTICE "Relevo is built with packages of Debian that are not installed here: sudo apt install ${missing}")
+    endif()
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)

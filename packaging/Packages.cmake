@@ -2,11 +2,8 @@
 #
 # A Debian package a component. Dependencies on libraries are found by dpkg-shlibdeps.
 find_program(GZIP gzip)
-set(RELEVO_RELEASE_RFC "Thu, 26 Nov 2026 12:00:00 +0000")
-set(components relevo librelevo0 librelevo-dev relevo-data)
-if(TARGET relevo_python)
-    list(APPEND components python3-relevo)
-endif()
+set(RELEVO_RELEASE_RFC "Mon, 30 Nov 2026 12:00:00 +0000")
+set(components relevo librelevo0 librelevo-dev relevo-data python3-relevo)
 set(exact "(= ${PROJECT_VERSION})")
 set(CPACK_PACKAGE_VENDOR "The Relevo authors")
 set(RELEVO_MAINTAINER "The Relevo authors <relevo@example.org>" CACHE STRING "Who answers for the packages")
@@ -67,9 +64,10 @@ relevo_package(relevo-data
 relevo_package(python3-relevo
     SUMMARY "terrain and sun: Python package"
     TEXT "DEMs, figures of sunlight over them, and pictures as NumPy arrays."
-    DEPENDS "librelevo0 ${exact}, ${RELEVO_PYTHON_DEPENDS}" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
+    DEPENDS "librelevo0 ${exact}, python3 (>= 3.9), python3-numpy" RECOMMENDS "python3-rasterio, python3-xarray" SECTION python)
 set(CPACK_DEBIAN_RELEVO-DATA_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LIBRELEVO-DEV_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON3-RELEVO_PACKAGE_SHLIBDEPS OFF)
 
 # Programs that are linked later get their dependency from the library's own file.
 set(CPACK_DEBIAN_LIBRELEVO0_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers

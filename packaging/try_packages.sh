@@ -34,10 +34,8 @@ inside sh -c 'cp -r /usr/share/doc/librelevo-dev/examples/library /tmp && gcc -s
 inside sh -c 'echo "#include <relevo/plugin.h>
 RELEVO_PLUGIN_EXPORT const uint32_t relevo_plugin_abi = RELEVO_ABI_VERSION;
 relevo_status relevo_plugin_register(const relevo_host* host, relevo_module* module) { (void)host; module->id = \"quiet\"; return RELEVO_OK; }" > /tmp/quiet.c && gcc -shared -fPIC /tmp/quiet.c -o /tmp/quiet.so'
-if ls "$folder"/python3-relevo_* > /dev/null 2>&1; then
-    say "Python"
-    inside python3 -c "import relevo; print(relevo.open('$dem').capture(size=(64, 48)).shape)"
-fi
+say "Python"
+inside python3 -c "import relevo; print(relevo.open('$dem').capture(size=(64, 48)).shape)"
 say "man relevo"
 inside sh -c 'man relevo-sun-hours | grep -q "Hours of direct sun"'
 say "completion"

@@ -106,16 +106,6 @@ def check_plugins(root):
                 yield f"{path.relative_to(root)}:{number}: a plugin includes {name}"
 
 
-def check_python(root):
-    """The Python module is built on the C interface alone, as other languages are."""
-    for path in sorted((root / "bindings/python").rglob("*")):
-        if path.suffix not in {".h", ".cpp"}:
-            continue
-        for number, kind, name in includes(path):
-            if "/" in name and name != "relevo/relevo.h" and not name.startswith("pybind11/"):
-                yield f"{path.relative_to(root)}:{number}: the Python module includes {name}"
-
-
 def check_names(root):
     """Core, app and bindings name no plugin: adding or removing one edits nothing else."""
     ids = [path.parent.name for path in (root / "plugins").glob("*/plugin.json")]
@@ -133,7 +123,7 @@ def check_names(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    violations = [*check_core(root), *check_opens(root), *check_plugins(root), *check_python(root), *check_names(root)]
+    violations = [*check_core(root), *check_opens(root), *check_plugins(root), *check_names(root)]
     print("\n".join(violations) if violations else "layers: clean")
     return 1 if violations else 0
 

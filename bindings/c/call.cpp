@@ -1,5 +1,6 @@
 #include "call.h"
 
+#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -106,6 +107,8 @@ void check_count(const char* name, std::size_t count, std::size_t needed) {
 
 void Progress::add(double share) {
     done_ = std::min(1.0, done_ + share);
+    if (given_.share) std::atomic_ref(*given_.share) = done_;
+    if (given_.cancel && std::atomic_ref(*given_.cancel) != 0) throw Cancelled();
     if (!given_.done) return;
     bool cancelled = false;
     try {

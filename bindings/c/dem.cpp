@@ -182,3 +182,18 @@ relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
         *height_m = c::dems().get(dem, "dem")->source().height_at(c::place_of(&place));
     });
 }
+
+relevo_result relevo_dem_heights(relevo_dem* dem, const double* lat_deg, const double* lon_deg,
+                                 size_t count, double* height_m) {
+    return c::guarded("relevo_dem_heights", [&] {
+        const auto of = c::dems().get(dem, "dem");
+        if (count == 0) return;
+        c::need(lat_deg, "lat_deg");
+        c::need(lon_deg, "lon_deg");
+        c::need(height_m, "height_m");
+        for (size_t i = 0; i < count; ++i) {
+            const relevo_place place{sizeof place, lat_deg[i], lon_deg[i], 0};
+            height_m[i] = of->source().height_at(c::place_of(&place));
+        }
+    });
+}

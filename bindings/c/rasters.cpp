@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "dem.h"
+#include "dem/clip.h"
 #include "figure/horizons.h"
 #include "figure/hours.h"
 #include "figure/run.h"
@@ -21,11 +23,6 @@
 
 namespace relevo::c {
 namespace {
-
-void take_terrestrial(json::ObjectReader& reader, figure::Figure& figure) {
-    figure.terrestrial_refraction = number(reader, figure::kTerrestrialRefraction);
-    if (reader.has("highest")) figure.highest_m = number(reader, figure::kHighest_m);
-}
 
 std::string refraction_of(json::ObjectReader& reader) {
     return refraction_name(reader.string("refraction", "standard"), "options: ");
@@ -45,6 +42,17 @@ class RasterCall {
         if (about_) *about_ = nullptr;
     }
 
+    /// Takes the options that all figures have.
+    void take_common(json::ObjectReader& reader, figure::Figure& figure) {
+        figure.terrestrial_refraction = number(reader, figure::kTerrestrialRefraction);
+        if (reader.has("highest")) figure.highest_m = number(reader, figure::kHighest_m);
+        const std::string clip = reader.string("clip", ""), crs = reader.string("clip_crs", "");
+        if (!clip.empty()) clip_ = dem::parse_clip(clip, "options: clip");
+        if (!crs.empty() && !clip_)
+            reader.fail(reader.line_of("clip_crs"), "clip_crs", "needs clip");
+        if (!crs.empty()) clip_->crs = geo::Crs::parse(crs, "options: clip_crs");
+    }
+
     const dem::Posts& posts() { return dem_->posts(); }
     light::TerrainAccess terrain() {
         return {.middle = [this] { return dem_->grid().center(); },
@@ -55,11 +63,13 @@ class RasterCall {
     void run(const figure::Figure& figure) {
         const std::vector<output::RasterBand> bands = figure.bands();
         check_count("count", count_, band_size() * bands.size());
-        const std::optional<light::Beyond> beyond =
-            figure.beyond(posts(), figure::whole_window(dem_->grid()));
+        const dem::Window window = clip_ ? dem::window_of(dem_->grid(), *clip_, "options: clip")
+                                         : figure::whole_window(dem_->grid());
+        if (clip_) std::fill_n(values_, count_, std::nanf(""));
+        const std::optional<light::Beyond> beyond = figure.beyond(posts(), window);
         if (beyond) log::warning(beyond->advice());
         const figure::PartMade made = figure::make_all(
-            figure, posts(), dem_->named().dem.memory,
+            figure, posts(), window, dem_->named().dem.memory,
             [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
                 put(band, part, values);
             },
@@ -69,6 +79,9 @@ class RasterCall {
         for (const output::RasterBand& band : bands)
             json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (beyond) json["beyond"] = beyond->text(figure.would());
+        for (const auto& [key, value] :
+             figure::metadata_of(figure, posts(), RELEVO_VERSION, made, window))
+            json["metadata"][key] = value;
         *about_ = returned_text(json.dump());
     }
 
@@ -90,6 +103,7 @@ class RasterCall {
     std::size_t count_;
     Progress progress_;
     const char** about_;
+    std::optional<dem::Clip> clip_;
 };
 
 void shadow(RasterCall& call, json::ObjectReader& reader) {
@@ -99,7 +113,7 @@ void shadow(RasterCall& call, json::ObjectReader& reader) {
     spec.zone = reader.string("zone", "");
     figure::Shadow figure;
     figure.soft = reader.boolean("soft", false);
-    take_terrestrial(reader, figure);
+    call.take_common(reader, figure);
     figure.refraction = refraction_of(reader);
     reader.finish();
     const sun::ParsedTime when = session::parse(spec, call.terrain());
@@ -160,7 +174,7 @@ void sun_hours(RasterCall& call, json::ObjectReader& reader) {
                         "needs one of the bands global, beam, diffuse, reflected");
     figure.irradiation.linke = number(reader, figure::kLinke);
     figure.irradiation.albedo = number(reader, figure::kAlbedo);
-    take_terrestrial(reader, figure);
+    call.take_common(reader, figure);
     figure.refraction = refraction_of(reader);
     reader.finish();
     figure.zone = session::zone_of(zone, call.terrain().middle()).zone;
@@ -172,7 +186,15 @@ void sky_view(RasterCall& call, json::ObjectReader& reader) {
     figure::SkyView figure;
     figure.directions = static_cast<int>(number(reader, figure::kSkyDirections, true));
     figure.level = reader.boolean("level", false);
-    take_terrestrial(reader, figure);
+    call.take_common(reader, figure);
+    reader.finish();
+    call.run(figure);
+}
+
+void horizons(RasterCall& call, json::ObjectReader& reader) {
+    figure::Horizons figure;
+    figure.directions = static_cast<int>(number(reader, figure::kHorizonDirections, true));
+    call.take_common(reader, figure);
     reader.finish();
     call.run(figure);
 }
@@ -207,4 +229,10 @@ relevo_result relevo_sun_hours(relevo_dem* dem, const char* options, float* valu
 relevo_result relevo_sky_view(relevo_dem* dem, const char* options, float* share, size_t count,
                               const relevo_progress* progress, const char** about) {
     return c::raster<c::sky_view>("relevo_sky_view", dem, options, share, count, progress, about);
+}
+
+relevo_result relevo_horizons(relevo_dem* dem, const char* options, float* elevation_deg,
+                              size_t count, const relevo_progress* progress, const char** about) {
+    return c::raster<c::horizons>("relevo_horizons", dem, options, elevation_deg, count, progress,
+                                  about);
 }

@@ -8,9 +8,7 @@
 #include <fmt/format.h>
 
 namespace relevo::figure {
-namespace {
 
-/// Metadata common to all figures.
 output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
                                    const std::string& version, const PartMade& made,
                                    const dem::Window& window) {
@@ -32,8 +30,11 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
             "CLIP",
             fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", window.column,
                         window.end_column() - 1, window.row, window.end_row() - 1));
+    std::ranges::copy(figure.metadata(posts), std::back_inserter(about));
     return about;
 }
+
+namespace {
 
 dem::Grid grid_of(const dem::Grid& grid, const dem::Window& window) {
     return window == whole_window(grid) ? grid : grid.part(window, window.columns, window.rows);
@@ -75,9 +76,8 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
     return sum;
 }
 
-PartMade make_all(const Figure& figure, const dem::Posts& posts, const MemoryBudget& memory,
-                  Put put, const std::function<void(double)>& done) {
-    const dem::Window all = whole_window(posts.grid());
+PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
+                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done) {
     double share = 1;  // of a call
     const PartMaker make = figure.maker({.posts = posts,
                                          .window = all,
@@ -98,7 +98,7 @@ Raster raster_of(const Figure& figure, const dem::Posts& posts,
     const auto put = [&](std::size_t, const dem::Window&, Array2d<float> values) {
         raster.values = std::move(values);
     };
-    raster.made = make_all(figure, posts, {}, put, done);
+    raster.made = make_all(figure, posts, whole_window(posts.grid()), {}, put, done);
     return raster;
 }
 
@@ -113,7 +113,6 @@ RasterFile::RasterFile(OutputFile& file, const Figure& figure, const dem::Posts&
 void RasterFile::finish(const std::string& version, const PartMade& made,
                         const output::RasterMetadata& more) {
     output::RasterMetadata about = metadata_of(figure_, posts_, version, made, window_);
-    std::ranges::copy(figure_.metadata(posts_), std::back_inserter(about));
     std::ranges::copy(more, std::back_inserter(about));
     writer_.finish(about);
 }
@@ -127,7 +126,7 @@ void write_raster(OutputFile& file, const Figure& figure, const dem::Posts& post
     const auto put = [&](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
         raster.put(band, part.column, part.row, values);
     };
-    const PartMade made = whole ? whole->made : make_all(figure, posts, memory, put, done);
+    const PartMade made = whole ? whole->made : make_all(figure, posts, all, memory, put, done);
     output::RasterMetadata more;
     if (const auto beyond = figure.beyond(posts, all))
         more.emplace_back("BEYOND_DEM", beyond->text(figure.would()));

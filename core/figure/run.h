@@ -26,11 +26,12 @@ dem::Window whole_window(const dem::Grid& grid);
 PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts,
                     const std::function<void(const dem::Window& part)>& begin);
 
-/// Makes all of a DEM.
+/// Makes all of a window, shaded by the whole DEM.
 /// @param done  called with the fraction completed since its last call; an exception from it ends
 ///     the work
-PartMade make_all(const Figure& figure, const dem::Posts& posts, const MemoryBudget& memory,
-                  Put put, const std::function<void(double)>& done = {});
+PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
+                  const MemoryBudget& memory, Put put,
+                  const std::function<void(double)>& done = {});
 
 /// The first band of a whole DEM.
 struct Raster {
@@ -40,6 +41,14 @@ struct Raster {
 /// In one part. @param done  as make_all()
 Raster raster_of(const Figure& figure, const dem::Posts& posts,
                  const std::function<void(double)>& done = {});
+
+/// What a raster says of itself: of all figures, then of this one.
+/// @param version  of Relevo
+/// @param made     sums over all parts
+/// @param window   of the posts of the whole DEM
+output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
+                                   const std::string& version, const PartMade& made,
+                                   const dem::Window& window);
 
 /// A GeoTIFF of a figure.
 class RasterFile {

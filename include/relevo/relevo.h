@@ -37,7 +37,7 @@
 #include <stdint.h>
 
 #define RELEVO_VERSION_MAJOR 0
-#define RELEVO_VERSION_MINOR 1
+#define RELEVO_VERSION_MINOR 2
 #define RELEVO_VERSION_PATCH 0
 
 #if defined(_WIN32)
@@ -59,7 +59,7 @@ typedef int32_t relevo_result;
 #define RELEVO_RESULT_CANCELLED 5 /* by relevo_progress */
 #define RELEVO_RESULT_OUT_OF_MEMORY 6
 
-/* Version of the library that is loaded: "0.1.0". */
+/* Version of the library that is loaded: "0.2.0". */
 RELEVO_API const char* relevo_version(void);
 
 /* Why the last call that failed on this thread did; "" before any. Lasts until the next failure. */
@@ -79,7 +79,10 @@ RELEVO_API relevo_result relevo_set_message(relevo_message message, void* user);
 typedef struct relevo_progress {
     size_t size;
     void* user;
-    int32_t (*done)(void* user, double share);
+    int32_t (*done)(void* user, double share); /* may be null */
+    /* Since 0.2, for callers that poll from another thread instead; each may be null. */
+    int32_t* cancel; /* anything but 0 in it cancels the work */
+    double* share;   /* receives the share */
 } relevo_progress;
 
 /* ---- DEMs ---- */
@@ -137,6 +140,10 @@ RELEVO_API relevo_result relevo_dem_read(relevo_dem* dem, float* heights_m, size
 RELEVO_API relevo_result relevo_dem_height(relevo_dem* dem, double lat_deg, double lon_deg,
                                            double* height_m);
 
+/* Heights at `count` places. Since 0.2. */
+RELEVO_API relevo_result relevo_dem_heights(relevo_dem* dem, const double* lat_deg,
+                                            const double* lon_deg, size_t count, double* height_m);
+
 /* ---- the sun ---- */
 
 typedef struct relevo_place {
@@ -188,10 +195,12 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
  * other. Values are those that the program writes, to the bit.
  *
  * Options of all: "terrestrial_refraction" (0.13), "refraction" ("standard"), "highest" [m]: what
- * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post).
+ * no terrain outside of the DEM exceeds, for "beyond" and its warning (the DEM's highest post);
+ * "clip": "W,S,E,N" in the DEM's CRS or "clip_crs": only posts in it, shaded by the whole DEM, NaN
+ * elsewhere (since 0.2).
  * `about`, which may be null, receives JSON with "definition", "holes" and "bands" ([{"name",
- * "unit"}], "1" for plain numbers), and where ground beyond the DEM could change values
- * "beyond". `progress` may be null. */
+ * "unit"}], "1" for plain numbers), where ground beyond the DEM could change values "beyond", and
+ * "metadata": those of the program's GeoTIFF (since 0.2). `progress` may be null. */
 
 /* Light and shade at a time: 1 lit, 0 in the shadow of the ground.
  * @param options  "time" ("2026-06-21T18:30+02:00", "sunset-30min at 47.2,11.4"), "date", "zone" as
@@ -213,6 +222,14 @@ RELEVO_API relevo_result relevo_sun_hours(relevo_dem* dem, const char* options, 
  * @param options  "directions" (36), "level" (false): of a level plane instead of the ground as it
  *     is inclined. No "refraction". */
 RELEVO_API relevo_result relevo_sky_view(relevo_dem* dem, const char* options, float* share,
+                                         size_t count, const relevo_progress* progress,
+                                         const char** about);
+
+/* The horizon of each post [degrees], a band for each direction, evenly spread from north. Since
+ * 0.2.
+ * @param options  "directions" (36). No "refraction".
+ * @param count    columns * rows * directions */
+RELEVO_API relevo_result relevo_horizons(relevo_dem* dem, const char* options, float* elevation_deg,
                                          size_t count, const relevo_progress* progress,
                                          const char** about);
 

@@ -34,12 +34,14 @@ TEST(BadCalls, NullIsAnError) {
         relevo_dem_wkt(nullptr, nullptr),
         relevo_dem_read(nullptr, nullptr, 0),
         relevo_dem_height(nullptr, 0, 0, nullptr),
+        relevo_dem_heights(nullptr, nullptr, nullptr, 0, nullptr),
         relevo_sun_position(nullptr, nullptr, 1, nullptr, nullptr, nullptr, nullptr),
         relevo_sun_events(nullptr, nullptr, nullptr, nullptr, 1, nullptr),
         relevo_horizon(nullptr, nullptr, nullptr, nullptr, 1, nullptr, nullptr),
         relevo_shadow(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
         relevo_sun_hours(nullptr, R"({"date": "2026-06-21"})", nullptr, 0, nullptr, nullptr),
         relevo_sky_view(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
+        relevo_horizons(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
         relevo_open(nullptr, nullptr, nullptr),
         relevo_set(nullptr, nullptr),
         relevo_resize(nullptr, 1, 1),
@@ -251,6 +253,28 @@ TEST(Progress, RisesToOneAndCancels) {
                  "relevo_sun_hours: progress: the callback threw an exception");
     told = {};
     expect_ok(hours());
+}
+
+TEST(Progress, IsPolledToo) {
+    const DemHandle dem = open_bundled();
+    std::vector<float> values(posts_of(dem.get()));
+    std::int32_t cancel = 0;
+    double share = 0;
+    auto progress = sized<relevo_progress>();
+    progress.cancel = &cancel;
+    progress.share = &share;
+    const auto sky_view = [&] {
+        return relevo_sky_view(dem.get(), R"({"directions": 8})", values.data(), values.size(),
+                               &progress, nullptr);
+    };
+    expect_ok(sky_view());
+    EXPECT_NEAR(share, 1, 1e-6);
+    cancel = 1;
+    expect_error(sky_view(), RELEVO_RESULT_CANCELLED, "relevo_sky_view: cancelled");
+    EXPECT_LT(share, 0.5);
+    progress.size = 24;  // of callers of 0.1, which have neither
+    progress.cancel = reinterpret_cast<std::int32_t*>(1);
+    expect_ok(sky_view());
 }
 
 TEST(Messages, GoWhereTheCallerWantsThem) {

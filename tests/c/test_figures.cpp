@@ -282,6 +282,13 @@ TEST_F(Figures, TheHorizonIsThatOfTheProgram) {
     double height_m = 0;
     expect_ok(relevo_dem_height(dem_.get(), place.lat_deg, place.lon_deg, &height_m));
     EXPECT_GT(height_m, 100);
+    const std::array lat_deg{place.lat_deg, 0.0}, lon_deg{place.lon_deg, 0.0};
+    std::array heights_m{0.0, 0.0};
+    expect_ok(relevo_dem_heights(dem_.get(), lat_deg.data(), lon_deg.data(), 2, heights_m.data()));
+    EXPECT_EQ(heights_m[0], height_m);
+    EXPECT_TRUE(std::isnan(heights_m[1]));
+    EXPECT_EQ(relevo_dem_heights(dem_.get(), nullptr, lon_deg.data(), 2, heights_m.data()),
+              RELEVO_RESULT_BAD_CALL);
     expect_ok(relevo_dem_height(dem_.get(), 0, 0, &height_m));
     EXPECT_TRUE(std::isnan(height_m));
 }

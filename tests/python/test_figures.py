@@ -152,3 +152,54 @@ def test_saved_raster(dem, tmp_path):
 def test_repr(dem):
     assert repr(dem) == f"<relevo.Dem {dem.name!r}: 344 x 403>"
     assert repr(dem.sun.shadow("2026-12-21T14:00Z")) == "<relevo.Raster 344 x 403: direct sun [1], EPSG:4326>"
+
+
+@pytest.mark.parametrize(
+    "words, make",
+    [
+        (["hours", "--date", "2026-06-21"], lambda sun, **clip: sun.hours("2026-06-21", **clip)),
+        (["shadow", "--time", "2026-12-21T13:30Z"], lambda sun, **clip: sun.shadow("2026-12-21T13:30Z", **clip)),
+        (["sky-view", "--directions", "8"], lambda sun, **clip: sun.sky_view(8, **clip)),
+        (["horizons", "--directions", "1"], lambda sun, **clip: sun.horizons(1, **clip)["0"]),
+    ],
+)
+def test_clip(dem, path, written, words, make):
+    """The values of --clip at their places, and those of no other places; NaN elsewhere."""
+    raster = make(dem.sun, clip=(-84.3, 36.2, -84.2, 36.25))
+    inside = numpy.isfinite(raster.values)
+    rows, columns = numpy.flatnonzero(inside.any(axis=1)), numpy.flatnonzero(inside.any(axis=0))
+    assert inside.sum() == len(rows) * len(columns) == 61 * 121
+    found = raster.values[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    numpy.testing.assert_array_equal(found, written("sun", *words[:1], path, *words[1:], "--clip=-84.3,36.2,-84.2,36.25")[0])
+    assert abs(found - make(dem.sun).values[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]).max() < 0.1
+    assert raster.about["clip"].startswith(f"columns {columns[0]} to {columns[-1]} and rows {rows[0]} to {rows[-1]}")
+    numpy.testing.assert_array_equal(relevo.again(raster).values, raster.values)
+
+
+def test_clip_in_another_crs(dem):
+    metres = dem.sun.shadow("2026-12-21T13:30Z", clip=(743000, 4010000, 750000, 4015000), clip_crs=32616)
+    assert 5000 < numpy.isfinite(metres.values).sum() < 8000
+    for wrong, message in (
+        ({"clip": (0, 0, 1, 1)}, "^clip: .* not one post of the DEM"),
+        ({"clip": (1, 0, 0, 1)}, "^clip: .* expected WEST,SOUTH,EAST,NORTH, numbers of the DEM's CRS or of clip_crs="),
+        ({"clip": 7}, "^clip: expected .west, south, east, north. but got 7"),
+        ({"clip": (1, 2, 3)}, "^clip: expected"),
+        ({"clip_crs": 32616}, "^clip_crs: needs clip"),
+        ({"clip": (0, 0, 1, 1), "clip_crs": "EPSG:999999"}, "^clip_crs: "),
+    ):
+        with pytest.raises(relevo.BadInput, match=message):
+            dem.sun.sky_view(8, **wrong)
+
+
+def test_horizons(dem, written):
+    horizons = dem.sun.horizons(8)
+    numpy.testing.assert_array_equal(horizons, written("sun", "horizons", dem.name, "--directions", 8))
+    assert horizons.bands[:3] == ("0", "45", "90") and horizons.unit == "deg"
+    assert horizons["45"].name == "horizon towards azimuth 45"
+    row, column = 100, 200
+    x, y = dem.transform.apply(column + 0.5, row + 0.5)
+    exact = dem.sun.horizon(y, x, step=45).elevation
+    assert horizons.values[:, row, column] == pytest.approx(exact, abs=0.2)
+    for wrong in (0, 721, 2.5, True, "8", 10**30):
+        with pytest.raises(relevo.BadInput, match="^directions: expected a whole number from 1 to 720"):
+            dem.sun.horizons(wrong)

@@ -87,11 +87,11 @@ def test_errors_name_the_argument(dem):
             wrong()
 
 
-def test_without_the_module(tmp_path):
-    """The package as it lies in the source says how its module is built."""
+def test_without_the_library(tmp_path):
+    """The package as it lies in the source says how its library is built."""
     shutil.copytree(SOURCE / "bindings/python/relevo", tmp_path / "relevo")
     environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", "import relevo"], capture_output=True, text=True, env=environment,
                           cwd=tmp_path, timeout=60)
     last = done.stderr.splitlines()[-1]
-    assert last.startswith("ImportError: relevo: its module for Python 3.") and "cmake --build build/release" in last
+    assert last.startswith("ImportError: relevo: its library does not load") and "cmake --build build/release" in last

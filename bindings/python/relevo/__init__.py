@@ -13,18 +13,12 @@ from __future__ import annotations
 
 import sys
 
-try:
-    from . import _relevo
-except ImportError as error:
-    raise ImportError(
-        f"relevo: its module for Python {sys.version_info.major}.{sys.version_info.minor} is not built or does not load "
-        f"({error}); build it by cmake --build build/release, then set PYTHONPATH=build/release/python"
-    ) from error
-
 from . import sun
+from ._again import again
 from ._dem import Dem, open
 from ._errors import BadCall, BadInput, Cancelled, Error, NoDevice, OutOfMemory, Warning
 from ._raster import Raster
+from ._relevo import version as _version
 from ._sun_over_dem import Horizon, SunOverDem
 from ._transform import Transform
 from ._view import Layers, View
@@ -44,11 +38,12 @@ __all__ = [
     "Transform",
     "View",
     "Warning",
+    "again",
     "open",
     "sun",
 ]
 
-__version__ = _relevo.version()
+__version__ = _version()
 
 if "xarray" in sys.modules:
     from . import xarray as _xarray  # noqa: F401, the accessor

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 from collections.abc import Mapping, Sequence
 from types import TracebackType
@@ -27,9 +29,10 @@ class Dem:
     to it; views of it keep what they need.
     """
 
-    def __init__(self, handle: _relevo.Dem, name: str) -> None:
+    def __init__(self, handle: _relevo.Dem, name: str, files: Sequence[str] = (), options: str = "{}") -> None:
         self._handle = handle
         self._name = name
+        self._opened_by = {"dem": name, "dem_files": json.dumps(files), "dem_options": options}
         (columns, rows), geotransform, self._centre, self._spacing_m = handle.grid()
         self._shape = rows, columns
         self._transform = Transform.from_gdal(*geotransform)
@@ -84,6 +87,19 @@ class Dem:
     def closed(self) -> bool:
         return self._handle.closed
 
+    def provenance(self) -> dict[str, Any]:
+        """What rasters say of the DEM: "dem", its name; "dem_sha256" of heights, grid and CRS, which is the same for
+        copies, in memory and in any format; "dem_files" and "dem_options" by which it was opened, JSON."""
+        if "dem_sha256" not in self._opened_by:
+            heights = self.heights().values
+            found = hashlib.sha256(f"{self._shape} {tuple(self._transform)} {self._wkt} ".encode())
+            for row in range(0, len(heights), 64):  # Ctrl-C does not wait for all
+                some = heights[row : row + 64]
+                some[numpy.isnan(some)] = numpy.nan  # of one kind
+                found.update(some.data)
+            self._opened_by["dem_sha256"] = found.hexdigest()
+        return dict(self._opened_by)
+
     def heights(self) -> Raster:
         """All heights [m], NaN in voids."""
         values = empty(None, *self._shape)
@@ -99,12 +115,13 @@ class Dem:
 
         lat, lon: degrees of WGS 84, numbers or arrays. Returns a float, or an array of their shape.
         """
-        places = numpy.broadcast_arrays(numpy.asarray(lat, numpy.float64), numpy.asarray(lon, numpy.float64))
-        latitudes, longitudes = (numpy.ascontiguousarray(array).ravel() for array in places)
-        heights = numpy.empty(latitudes.shape, dtype=numpy.float64)
+        lat, lon = numpy.asarray(lat, numpy.float64, "C"), numpy.asarray(lon, numpy.float64, "C")
+        if lat.shape != lon.shape:
+            lat, lon = (numpy.array(degrees) for degrees in numpy.broadcast_arrays(lat, lon))
+        heights = numpy.empty(lat.shape)
         with messages():
-            self._handle.height(latitudes, longitudes, heights)
-        return float(heights[0]) if places[0].ndim == 0 else heights.reshape(places[0].shape)
+            self._handle.height(lat, lon, heights)
+        return float(heights) if heights.ndim == 0 else heights
 
     def view(
         self,
@@ -248,16 +265,23 @@ def open(
         if transform is not None:
             raise BadInput("transform: of arrays alone; bounds= places a file")
         text = options_text(
-            "open", crs=None if crs is None else _inputs.crs_text(crs), band=band, unit=unit, nodata=nodata,
-            **for_files, **common,
+            "open",
+            {"crs": None if crs is None else _inputs.crs_text(crs), "band": band, "unit": unit, "nodata": nodata}
+            | for_files
+            | common,
         )
         with messages(assumptions=True):
-            return Dem(_relevo.open_dem(paths, text), paths[0] if len(paths) == 1 else f"{paths[0]} ...")
+            name = paths[0] if len(paths) == 1 else f"{paths[0]} ..."
+            return Dem(_relevo.open_dem(paths, text), name, [_absolute(path) for path in paths], text)
     _refuse(for_files, "of files alone")
     heights, name = _heights(source, transform, crs, band, unit, nodata)
     text = options_text(
-        "open", unit=heights.unit, nodata="none" if nodata == "none" else None, voids_known=heights.voids_known,
-        scale=heights.scale, offset=heights.offset, **common,
+        "open",
+        {
+            "unit": heights.unit, "nodata": "none" if nodata == "none" else None, "voids_known": heights.voids_known,
+            "scale": heights.scale, "offset": heights.offset,
+        }
+        | common,
     )
     with messages(assumptions=True):
         return Dem(_relevo.dem_from_heights(heights.values, heights.transform.to_gdal(), heights.crs, text), name)
@@ -272,6 +296,11 @@ def _paths(source: Any) -> Optional[list[str]]:
     if isinstance(source, (list, tuple)) and all(isinstance(one, (str, os.PathLike)) for one in source):
         return [os.fspath(one) for one in source]
     return None
+
+
+def _absolute(path: str) -> str:
+    """Names of the net and of archives, which GDAL reads, stay."""
+    return os.path.abspath(path) if os.path.exists(path) else path
 
 
 def _degrees(name: str, edges: Sequence[float]) -> list[float]:

@@ -6,14 +6,13 @@ import contextlib
 import logging
 import sys
 import warnings
-from collections.abc import Iterator
 
-from . import _relevo
 from ._words import python_words
 
 log = logging.getLogger("relevo")
 
 _DEBUG, _INFO = 0, 1  # levels of messages; above: a warning
+_kept: list[tuple[int, str]] = []  # what the library has said since messages() took it
 
 
 class Error(Exception):
@@ -48,15 +47,21 @@ _CLASSES: dict[int, type[Error]] = {2: BadCall, 3: BadInput, 4: NoDevice, 5: Can
 
 
 def error_of(code: int, text: str) -> Error:
-    """The exception for a code of the C interface. The module calls it."""
+    """The exception for a code of the C interface."""
     return _CLASSES.get(code, Error)(python_words(text))
+
+
+def keep_message(level: int, text: str) -> None:
+    """Keeps what the library says, on any thread, for messages(): all warnings, and as much else as anybody reads."""
+    if level > _INFO or len(_kept) < 1000:
+        _kept.append((level, text))
 
 
 def _level_of_caller() -> int:
     """`stacklevel` of the first frame outside of this package, for the function that calls."""
     level = 1
     frame = sys._getframe(1)
-    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).split(".")[0] in ("relevo", "contextlib"):
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).split(".")[0] == "relevo":
         frame = frame.f_back
         level += 1
     return level
@@ -67,18 +72,26 @@ def warn(text: str) -> None:
     warnings.warn(text, Warning, stacklevel=_level_of_caller())
 
 
-@contextlib.contextmanager
-def messages(assumptions: bool = False) -> Iterator[None]:
+class messages:
     """Around calls of the library: what it says becomes warnings and log records, on this thread.
 
     assumptions: what is assumed becomes a warning, too
     """
-    try:
-        yield
-    finally:
-        for level, text in _relevo.take_messages():
+
+    def __init__(self, assumptions: bool = False) -> None:
+        self._least = _INFO if assumptions else _INFO + 1  # of levels that become warnings
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *error: object) -> None:
+        taken = []
+        with contextlib.suppress(IndexError):  # of another thread, which takes at the same time
+            while _kept:
+                taken.append(_kept.pop(0))
+        for level, text in taken:
             text = python_words(text)
-            if level > _INFO or (assumptions and level == _INFO):
+            if level >= self._least:
                 warn(text)
             else:
                 log.log(logging.INFO if level == _INFO else logging.DEBUG, "%s", text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+from collections.abc import Mapping
 from typing import Any
 
 import numpy
@@ -31,6 +32,6 @@ def json_text(who: str, value: Any) -> str:
         raise BadInput(f"{who}: {error}") from None
 
 
-def options_text(who: str, **options: Any) -> str:
+def options_text(who: str, options: Mapping[str, Any]) -> str:
     """JSON of those options that are not None."""
     return json_text(who, {key: value for key, value in options.items() if value is not None})

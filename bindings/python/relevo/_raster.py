@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from typing import Any, NoReturn, Optional, Union
 
@@ -45,7 +46,9 @@ class Raster:
         """The unit of each band: "h", "min", "kWh/m2", "m"; "1" for plain numbers."""
         self.about = about
         """"definition": what was computed, in a sentence. "holes": number of voids. "beyond": a sentence about terrain
-        outside of the DEM, where that could change values."""
+        outside of the DEM, where that could change values. What else the program's GeoTIFF says: "dem", "time_from",
+        "time_zone", "refraction", "software" ... And what `relevo.again()` takes: "figure", "options", "dem_sha256",
+        "dem_files", "dem_options". Texts and numbers."""
 
     @property
     def name(self) -> str:
@@ -78,8 +81,11 @@ class Raster:
         i = self.bands.index(band)
         values = self.values if self.values.ndim == 2 else self.values[i]
         one = slice(i, i + 1)
+        about = dict(self.about)
+        if self.values.ndim == 3:
+            about["options"] = json.dumps({**json.loads(about["options"]), "bands": [band]})
         return Raster(
-            values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], self.about
+            values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], about
         )
 
     def __iter__(self) -> NoReturn:

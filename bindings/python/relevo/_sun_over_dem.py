@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from ._errors import BadInput, messages
+from ._inputs import crs_text
 from ._options import options_text
 from ._raster import Raster, band_list, empty
 from ._times import Date, Time, Zone, date_text, time_text, zone_text
@@ -20,6 +21,21 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float], object]
 """Is called with the share that is done, 0 to 1, on the thread that has called. False from it cancels."""
+
+
+def _clip_text(clip: Union[str, Sequence[float]]) -> str:
+    if isinstance(clip, str):
+        return clip  # of a raster that is made again
+    try:
+        west, south, east, north = (float(edge) for edge in clip)
+    except (TypeError, ValueError):
+        raise BadInput(f"clip: expected (west, south, east, north) but got {clip!r}") from None
+    return f"{west!r},{south!r},{east!r},{north!r}"
+
+
+_TEXTS: dict[str, Callable[[Any], str]] = {
+    "date": date_text, "from": date_text, "to": date_text, "zone": zone_text, "clip": _clip_text, "clip_crs": crs_text,
+}
 
 
 class Horizon(NamedTuple):
@@ -43,6 +59,8 @@ class SunOverDem:
     terrestrial_refraction: curvature of a line of sight in units of the Earth's (0.13)
     refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"; not of the sky view
     highest: what no terrain outside of the DEM exceeds [m] (the DEM's highest post)
+    clip: (west, south, east, north) in `clip_crs` (the DEM's CRS): only posts in it are computed, in the shade of the
+        whole DEM; others are NaN
 
     and warn (relevo.Warning) where terrain outside of the DEM could change values.
     """
@@ -65,6 +83,8 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Hours of direct sun, and what belongs to them.
@@ -83,9 +103,12 @@ class SunOverDem:
         if isinstance(step, datetime.timedelta):
             step = step.total_seconds()
         return self._raster(
-            "sun_hours", names, alone, progress, **{"date": date, "from": start, "to": end}, year=year, zone=zone,
-            bands=names, step=step, linke=linke, albedo=albedo, terrestrial_refraction=terrestrial_refraction,
-            refraction=refraction, highest=highest,
+            "sun_hours", names, alone, progress,
+            {
+                "date": date, "from": start, "to": end, "year": year, "zone": zone, "bands": names, "step": step,
+                "linke": linke, "albedo": albedo, "terrestrial_refraction": terrestrial_refraction,
+                "refraction": refraction, "highest": highest, "clip": clip, "clip_crs": clip_crs,
+            },
         )
 
     def shadow(
@@ -98,6 +121,8 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
@@ -106,8 +131,11 @@ class SunOverDem:
         soft: the visible fraction of the solar disc instead
         """
         return self._raster(
-            "shadow", ["shadow"], True, progress, time=time_text(time, zone), date=date, zone=zone, soft=soft,
-            terrestrial_refraction=terrestrial_refraction, refraction=refraction, highest=highest,
+            "shadow", ["shadow"], True, progress,
+            {
+                "time": time_text(time, zone), "date": date, "zone": zone, "soft": soft,
+                "terrestrial_refraction": terrestrial_refraction, "refraction": refraction, "highest": highest, "clip": clip, "clip_crs": clip_crs,
+            },
         )
 
     def sky_view(
@@ -117,6 +145,8 @@ class SunOverDem:
         level: bool = False,
         terrestrial_refraction: Optional[float] = None,
         highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
         """The sky-view factor, 0 to 1.
@@ -125,8 +155,36 @@ class SunOverDem:
         level: of a level plane instead of the ground as it is inclined
         """
         return self._raster(
-            "sky_view", ["sky_view"], True, progress, directions=directions, level=level,
-            terrestrial_refraction=terrestrial_refraction, highest=highest,
+            "sky_view", ["sky_view"], True, progress,
+            {
+                "directions": directions, "level": level, "terrestrial_refraction": terrestrial_refraction,
+                "highest": highest, "clip": clip, "clip_crs": clip_crs,
+            },
+        )
+
+    def horizons(
+        self,
+        directions: int = 36,
+        *,
+        terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None,
+        clip: Optional[Sequence[float]] = None,
+        clip_crs: Any = None,
+        progress: Optional[Progress] = None,
+    ) -> Raster:
+        """The horizon of each post [degrees]: values of (directions, rows, columns), evenly spread from north.
+
+        directions: 1 to 720. Bands are named by their azimuths: `raster["90"]` is that to the east.
+        """
+        if isinstance(directions, bool) or directions not in range(1, 721):
+            raise BadInput(f"directions: expected a whole number from 1 to 720 but got {directions!r}")
+        names = [f"{360 * i / directions:.10g}" for i in range(directions)]
+        return self._raster(
+            "horizons", names, False, progress,
+            {
+                "directions": int(directions), "terrestrial_refraction": terrestrial_refraction, "highest": highest,
+                "clip": clip, "clip_crs": clip_crs,
+            },
         )
 
     def horizon(
@@ -154,23 +212,29 @@ class SunOverDem:
             azimuth = numpy.arange(int(numpy.ceil(round(360 / step, 6)))) * step
         azimuths = numpy.ascontiguousarray(numpy.atleast_1d(azimuth), dtype=numpy.float64)
         elevation, distance = numpy.empty_like(azimuths), numpy.empty_like(azimuths)
-        options = options_text("horizon", eye_height=eye_height, terrestrial_refraction=terrestrial_refraction)
+        options = options_text(
+            "horizon", {"eye_height": eye_height, "terrestrial_refraction": terrestrial_refraction}
+        )
         with messages():
             self._dem._handle.horizon(float(lat), float(lon), options, azimuths, elevation, distance)
         return Horizon(azimuths, elevation, distance)
 
     def _raster(
-        self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], **options: Any
+        self, figure: str, names: list[str], alone: bool, progress: Optional[Progress], options: dict[str, Any]
     ) -> Raster:
         """A figure by its function of the library."""
-        for key, text in (("date", date_text), ("from", date_text), ("to", date_text), ("zone", zone_text)):
+        for key, text in _TEXTS.items():
             if options.get(key) is not None:
                 options[key] = text(options[key])
         values = empty(None if alone else len(names), *self._dem.shape)
         fill = getattr(self._dem._handle, figure)
+        asked = options_text(figure.removeprefix("sun_"), options)
+        of_dem = self._dem.provenance()  # before the figure, during which others may close the DEM
         with messages():
-            about = json.loads(fill(options_text(figure.removeprefix("sun_"), **options), values, progress))
+            about = json.loads(fill(asked, values, progress))
         described = about.pop("bands")
+        told = {key.lower().removeprefix("tifftag_"): value for key, value in about.pop("metadata").items()}
+        about = {**told, **about, **of_dem, "figure": figure, "options": asked}
         titles = tuple(band["name"] for band in described)
         units = tuple(band["unit"] for band in described)
         return self._dem._raster(values, tuple(names), titles, units, about)

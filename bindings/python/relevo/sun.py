@@ -57,11 +57,13 @@ def position(
     given = seconds(times, zone)
     one_place = all(number.ndim == 0 for number in numbers)
     shape = given.shape if one_place else numpy.broadcast_shapes(given.shape, *(number.shape for number in numbers))
-    places = numpy.stack(numbers if one_place else [numpy.broadcast_to(n, shape).ravel() for n in numbers], axis=-1)
+    if not one_place:
+        numbers = [numpy.broadcast_to(number, shape).ravel() for number in numbers]
+    places = numpy.stack(numbers, axis=-1) if numbers[0].ndim else numpy.array(numbers)
     times_s = numpy.ascontiguousarray(numpy.broadcast_to(given, shape)).ravel()
-    results = [numpy.empty(times_s.shape, dtype=numpy.float64) for _ in range(3)]
+    results = numpy.empty((3, times_s.size))
     with messages():
-        _relevo.sun_position(numpy.ascontiguousarray(places), times_s, refraction, *results)
+        _relevo.sun_position(numpy.ascontiguousarray(places), times_s, refraction, results)
     if shape == ():
         return Position(*(float(result[0]) for result in results))
     return Position(*(result.reshape(shape) for result in results))

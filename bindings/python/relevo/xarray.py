@@ -18,6 +18,9 @@ from ._raster import Raster
 from ._sun_over_dem import Horizon
 
 
+_UDUNITS = {"deg": "degree", "kWh/m2": "kW h m-2"}
+
+
 def to_dataarray(raster: Raster) -> Any:
     """`Raster.to_xarray()`."""
     rows, columns = raster.shape[-2:]
@@ -25,8 +28,10 @@ def to_dataarray(raster: Raster) -> Any:
     coords: dict[str, Any] = {"spatial_ref": _spatial_ref(raster)}
     row, column = numpy.arange(rows) + 0.5, numpy.arange(columns) + 0.5
     if transform.b == 0 and transform.d == 0:
-        coords["y"] = ("y", transform.f + transform.e * row)
-        coords["x"] = ("x", transform.c + transform.a * column)
+        crs = _crs(raster)
+        axes = {} if crs is None else {axis["axis"].lower(): axis for axis in crs.cs_to_cf()}
+        coords["y"] = ("y", transform.f + transform.e * row, axes.get("y"), {"_FillValue": None})
+        coords["x"] = ("x", transform.c + transform.a * column, axes.get("x"), {"_FillValue": None})
     dims: tuple[str, ...] = ("y", "x")
     if raster.values.ndim == 3:
         dims = ("band", *dims)
@@ -37,16 +42,26 @@ def to_dataarray(raster: Raster) -> Any:
 def _spatial_ref(raster: Raster) -> Any:
     """The CRS as rioxarray and CF have it."""
     geotransform = " ".join(repr(number) for number in raster.transform.to_gdal())
-    return xarray.Variable(
-        (), 0, {"crs_wkt": raster.wkt, "spatial_ref": raster.wkt, "GeoTransform": geotransform}
-    )
+    found = {"crs_wkt": raster.wkt, "spatial_ref": raster.wkt, "GeoTransform": geotransform}
+    crs = _crs(raster)
+    return xarray.Variable((), numpy.int32(0), found if crs is None else {**crs.to_cf(), **found})
+
+
+def _crs(raster: Raster) -> Any:
+    """The CRS of pyproj, which knows CF's words for it; None without pyproj."""
+    try:
+        import pyproj
+    except ImportError:
+        return None
+    return pyproj.CRS.from_wkt(raster.wkt)
 
 
 def _described(array: Any, raster: Raster) -> Any:
-    array.name = raster.bands[0] if raster.values.ndim == 2 else "sun"
+    band = raster.bands[0] if raster.values.ndim == 2 else "sun"
+    array.name = band if band.isidentifier() else raster.about["figure"]
     array.attrs.update(raster.about)
     if raster.values.ndim == 2:
-        array.attrs.update(long_name=raster.name, units=raster.unit)
+        array.attrs.update(long_name=raster.name, units=_UDUNITS.get(raster.unit, raster.unit))
     else:
         array.coords["unit"] = ("band", list(raster.units))
     array.encoding["grid_mapping"] = "spatial_ref"
