@@ -126,11 +126,12 @@ void CameraMoves::go_to_view(std::size_t i) {
     parts_.state.step = true;
 }
 
-void CameraMoves::go_to_place(geo::Geodetic place) {
+void CameraMoves::go_to_place(const FoundPlace& found) {
+    geo::Geodetic place = found.place;
     place.height_m = parts_.state.land.height_m(place);
     if (std::isnan(place.height_m))
-        return parts_.messages.note(tr_format("the DEM has no ground at {}",
-                                              coordinates_text(place, Coordinates::Degrees)));
+        return parts_.messages.note(
+            tr_format("the DEM has no ground at {}: {}", found.name, found.details));
     parts_.history.end_step(parts_.state.document);
     parts_.hand.rest();
     geo::Geodetic drawn = place;

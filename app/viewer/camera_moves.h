@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "viewer/find_sheet.h"
 #include "viewer/frame_pacing.h"
 #include "viewer/hand.h"
 #include "viewer/history.h"
@@ -46,7 +47,7 @@ class CameraMoves {
     /// @param i  of State::views
     void go_to_view(std::size_t i);
     /// Looks at a place of the ground, and chooses it.
-    void go_to_place(geo::Geodetic place);
+    void go_to_place(const FoundPlace& found);
     /// When the sun next stands over the chosen point: goes there once it is known.
     void ask_sun_over_point();
     void poll_sun_over();

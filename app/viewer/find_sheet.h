@@ -1,20 +1,22 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <glm/vec2.hpp>
-
 #include "geo/geodetic.h"
-#include "viewer/document.h"
+#include "viewer/state.h"
 
 namespace relevo::viewer {
 
-/// A place with a name, of a file that an effect shows.
+/// A place that a text means.
 struct FoundPlace {
-    std::string name;
+    std::string name;  ///< or coordinates
     geo::Geodetic place;
+    std::string details{};  ///< "AT, 12.3 km NNW of the middle"
 };
 
 /// Places whose names have a text, whatever its case, of the files that active effects show as
@@ -23,23 +25,40 @@ struct FoundPlace {
 std::vector<FoundPlace> find_names(const std::string& text, const EffectsModel& effects,
                                    std::size_t most);
 
-/// Asks for coordinates or a name, and goes there.
+/// "12.3 km NNW of the middle" of a DEM, or "834.0 km N, outside the DEM".
+std::string way_text(const geo::Geodetic& place, const dem::Grid& grid);
+
+/// Asks for coordinates or a name, and goes there. Finds names of files that are shown, and those
+/// that Relevo brings.
 class FindSheet {
   public:
-    void open() { is_open_ = takes_focus_ = true; }
+    FindSheet();
+    ~FindSheet();
+    void open();
     void close() { is_open_ = false; }
-    /// @param effects  null: none yet
-    void draw(glm::vec2 size_px, const EffectsModel* effects);
+    /// @param state  gets the names in the list, for their letters
+    /// @param grid   of the DEM
+    void draw(glm::vec2 size_px, State& state, const dem::Grid& grid);
     /// The place that was chosen since the last call.
-    std::optional<geo::Geodetic> take() { return std::exchange(chosen_, std::nullopt); }
+    std::optional<FoundPlace> take() { return std::exchange(chosen_, std::nullopt); }
 
   private:
-    void choose(const geo::Geodetic& place);
+    class Search;
+    bool draw_field();
+    void look_up(State& state, const dem::Grid& grid);
+    void draw_rows();
+    void choose(const FoundPlace& place);
 
     bool is_open_ = false, takes_focus_ = false;
-    std::string text_, searched_;
-    std::vector<FoundPlace> found_;
-    std::optional<geo::Geodetic> chosen_;
+    bool enters_ = false;  ///< chooses a row when the names are found
+    std::string text_, error_;
+    std::optional<std::string> searched_;  ///< none: nothing yet on this grid
+    const dem::Grid* grid_ = nullptr;
+    std::vector<FoundPlace> own_, rows_;  ///< coordinates and names of files; all
+    bool is_done_ = false;                ///< `rows_` are those of `searched_`
+    int selected_ = 0;
+    std::unique_ptr<Search> search_;  ///< null until the sheet is opened
+    std::optional<FoundPlace> chosen_;
 };
 
 }  // namespace relevo::viewer

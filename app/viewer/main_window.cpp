@@ -194,7 +194,7 @@ void MainWindow::draw_panels() {
     if (film_->draw_question(size())) quits_ = true;
     point_menu(state_, std::exchange(opens_point_menu_, false));
     opener_->draw(size());
-    find_sheet_.draw(size(), state_.effects.get());
+    find_sheet_.draw(size(), state_, opening_->opened()->dem->field.grid);
     if (!film_->shows_frame()) saver_->draw_sheet();
     status_line(state_, work_in_progress());
     message_box(state_, unit());

@@ -48,6 +48,7 @@ struct State {
     bool playing = false;
     double hours_a_second = 1;
     std::string search, zone_text;   ///< text in input fields
+    std::string found_names;         ///< in the list of the sheet that finds places
     std::string zone_to_show;        ///< a request: "Europe/Zurich", "auto"; empty: none
     int sensor = 0;                  ///< of the panel Camera
     float dragged_exaggeration = 1;  ///< while its slider is dragged

@@ -26,6 +26,7 @@ bool WindowStyle::needs_glyphs(const State& state) {
     const auto want = [&](const std::string& text) { any = window_.want_letters(text) || any; };
     for (const std::string& dem : state.document.scene.dems)
         want(dem);
+    want(state.found_names);
     if (state.document.scene.overlay) want(state.document.scene.overlay->file);
     for (const RecentDem& dem : state.recent)
         want(dem.files.front());

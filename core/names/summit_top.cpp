@@ -92,12 +92,13 @@ class Hill {
     glm::dvec2 column_m_, row_m_;  // east and north, from post to post
 };
 
-bool is_inside(const dem::Grid& grid, const glm::dvec2& post) {
+}  // namespace
+
+bool is_on(const dem::Grid& grid, const geo::Geodetic& place) {
+    const glm::dvec2 post = grid.post(place);
     return post.x > -0.5 && post.y > -0.5 && post.x < grid.columns() - 0.5 &&
            post.y < grid.rows() - 0.5;
 }
-
-}  // namespace
 
 std::string label(const Summit& summit) {
     if (!summit.height_m) return std::string(summit.entry->name);
@@ -127,8 +128,7 @@ std::vector<Summit> summits_on(const Gazetteer& gazetteer, const dem::Grid& grid
                                const PostHeight& height_m) {
     std::vector<Summit> summits;
     for (const Entry* const entry : gazetteer.summits_within(around(grid)))
-        if (is_inside(grid, grid.post(entry->place)))
-            summits.push_back(on_top(*entry, grid, height_m));
+        if (is_on(grid, entry->place)) summits.push_back(on_top(*entry, grid, height_m));
     return summits;
 }
 

@@ -37,6 +37,9 @@ Summit on_top(const Entry& entry, const dem::Grid& grid, const PostHeight& heigh
 std::vector<Summit> summits_on(const Gazetteer& gazetteer, const dem::Grid& grid,
                                const PostHeight& height_m);
 
+/// Whether a place is on the cells of a grid.
+bool is_on(const dem::Grid& grid, const geo::Geodetic& place);
+
 /// A circle around the grid.
 Near around(const dem::Grid& grid);
 

@@ -35,6 +35,67 @@ TEST(FindNames, AreThoseOfTheFilesThatAreShown) {
     EXPECT_THAT(names("bettel"), testing::IsEmpty());
 }
 
+TEST(FindSheet, SaysWhereAPlaceIs) {
+    const dem::Grid grid(101, 101, {179.5, 0.01, 0, 0.5, 0, -0.01},
+                         geo::Crs::parse("EPSG:4326", "test"));
+    EXPECT_EQ(viewer::way_text(geo::geodetic_deg(0, -179.8), grid), "22.3 km E of the middle");
+    EXPECT_EQ(viewer::way_text(geo::geodetic_deg(-1, 180), grid), "110.6 km S, outside the DEM");
+}
+
+TEST_F(Viewer, GoesToAPlaceByItsName) {
+    std::ofstream(folder_ / "own.csv")
+        << "name,lat,lon\nOwn one,36.2,-84.1\nOwn two,36.42,-84.35\n";
+    open({dem_, "--only", "labels", "--set", "labels.file=" + (folder_ / "own.csv").string(),
+          "--time", "2026-06-21T18:00:00Z"});
+    const auto distance_m = [&](double lat_deg, double lon_deg) {
+        const nlohmann::json camera = resting_scene()["camera"];
+        return geo::geodesic(geo::geodetic_deg(camera["eye"][0], camera["eye"][1]),
+                             geo::geodetic_deg(lat_deg, lon_deg))
+            .distance_m;
+    };
+    const auto find = [&](const char* name, const std::vector<std::string>& keys) {
+        act({"key", "ctrl+f"});
+        ASSERT_TRUE(settles(3));
+        act({"type", "--delay", "60", name});
+        for (const std::string& key : keys) {
+            ASSERT_TRUE(settles(3));
+            act({"key", key});
+        }
+        ASSERT_TRUE(settles());
+    };
+    ASSERT_GT(distance_m(36.218, -84.155), 20e3);
+    find("rocky top", {"Return"});
+    EXPECT_LT(distance_m(36.218, -84.155), 14e3);
+    find("innsbruck", {"Return"});  // outside the DEM
+    EXPECT_LT(distance_m(36.218, -84.155), 14e3);
+    find("own", {"Down", "Return"});  // the second row
+    EXPECT_LT(distance_m(36.42, -84.35), 14e3);
+}
+
+TEST_F(Viewer, GoesOnWithoutItsNames) {
+    const std::filesystem::path share = folder_ / "share",
+                                built = test::build_dir() / "share/relevo";
+    std::filesystem::create_directories(share / "data/names");
+    for (const char* const folder : {"", "data"})
+        for (const auto& entry : std::filesystem::directory_iterator(built / folder))
+            if (!std::filesystem::exists(share / folder / entry.path().filename()))
+                std::filesystem::create_symlink(std::filesystem::canonical(entry),
+                                                share / folder / entry.path().filename());
+    std::ofstream(share / "data/names/places.tsv.gz") << "cut";
+    environment_ = {"RELEVO_SHARE=" + share.string()};
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    const nlohmann::json before = resting_scene()["camera"];
+    act({"key", "ctrl+f"});
+    ASSERT_TRUE(settles(3));
+    act({"type", "--delay", "60", "rocky top"});
+    act({"key", "Return", "ctrl+a"});
+    EXPECT_TRUE(settles());
+    act({"type", "--delay", "60", "36.3,-84.2"});
+    act({"key", "Return"});
+    EXPECT_TRUE(settles());
+    EXPECT_NE(resting_scene()["camera"], before);
+}
+
 TEST(EffectsModel, KnowsWhatAViewDoesNotShow) {
     using testing::Contains, testing::Not;
     scene::Effects effects;
