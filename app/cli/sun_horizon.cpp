@@ -127,6 +127,7 @@ chart::Drawing draw(const HorizonArguments& arguments,
     chart::HorizonPanorama panorama;
     panorama.horizon = &horizon;
     panorama.profile = &profile;
+    panorama.names = chart::names_on_skyline(horizon);
     panorama.place_name = arguments.place.name;
     std::optional<light::DirectLight> direct;
     if (asked) {

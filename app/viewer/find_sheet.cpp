@@ -143,7 +143,9 @@ void FindSheet::look_up(State& state, const dem::Grid& grid) {
     error_ = answer->error;
     rows_ = own_;
     for (const names::Entry* const entry : answer->entries)
-        rows_.push_back({title_of(*entry), entry->place, std::string(entry->country)});
+        rows_.push_back({title_of(*entry), entry->place,
+                         entry->kind == names::Kind::Summit ? entry : nullptr,
+                         std::string(entry->country)});
     if (rows_.size() > kMostRows) rows_.resize(kMostRows);
     state.found_names = text_;
     for (FoundPlace& row : rows_) {
@@ -176,6 +178,10 @@ void FindSheet::draw(glm::vec2 size_px, State& state, const dem::Grid& grid) {
         if (draw_field()) enters_ = takes_focus_ = true;
         look_up(state, grid);
         draw_rows();
+        if (chosen_ && chosen_->summit && names::is_on(grid, chosen_->place))
+            chosen_->place = names::on_top(*chosen_->summit, grid, [&](int column, int row) {
+                                 return state.land.height_m(grid.place(column, row));
+                             }).place;
         if (is_done_) enters_ = false;
         if (rows_.empty() && error_.empty())
             ImGui::TextDisabled("%s", text_.empty() ? tr("47.4395, 11.8935; 32N 683473 5255234; "

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geo/geodetic.h"
+#include "names/gazetteer.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {
@@ -16,7 +17,8 @@ namespace relevo::viewer {
 struct FoundPlace {
     std::string name;  ///< or coordinates
     geo::Geodetic place;
-    std::string details{};  ///< "AT, 12.3 km NNW of the middle"
+    const names::Entry* summit = nullptr;  ///< of a summit that Relevo brings
+    std::string details{};                 ///< "AT, 12.3 km NNW of the middle"
 };
 
 /// Places whose names have a text, whatever its case, of the files that active effects show as

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <mutex>
 #include <utility>
 
+#include "base/error.h"
+#include "base/log.h"
 #include "base/units.h"
 #include "chart/carpet_chart.h"
 #include "light/point/carpet.h"
@@ -111,6 +114,7 @@ class PointWork::Worker {
         panorama.zone = wanted_.zone;
         panorama.refraction = light().refraction();
         panorama.day = day_;
+        panorama.names = names();
         panorama.panel = panel();
         auto picture = std::make_shared<HorizonPicture>();
         picture->picture = chart::to_image(panorama.draw(&picture->axes), wanted_.px_a_unit);
@@ -148,6 +152,18 @@ class PointWork::Worker {
         if (profile_.empty()) profile_ = horizon_->profile(kDirections);
         return profile_;
     }
+    const std::vector<chart::SkylineName>& names() {
+        if (!names_) {
+            names_.emplace();
+            try {
+                names_ = chart::names_on_skyline(*horizon_);
+            } catch (const Error& error) {  // the light is the same without names
+                static std::once_flag once;
+                std::call_once(once, [&] { log::warning(error.what()); });
+            }
+        }
+        return *names_;
+    }
     chart::PanelSize panel() const {
         return {wanted_.chart_px.x / wanted_.px_a_unit, wanted_.chart_px.y / wanted_.px_a_unit};
     }
@@ -157,6 +173,7 @@ class PointWork::Worker {
     std::optional<light::TerrainHorizon> horizon_;  // from posts_
     std::optional<light::DirectLight> light_;       // from horizon_
     std::vector<light::HorizonPoint> profile_;
+    std::optional<std::vector<chart::SkylineName>> names_;
     std::optional<light::LightDay> day_, tomorrow_;
     std::string day_zone_;
     std::optional<light::Carpet> carpet_;

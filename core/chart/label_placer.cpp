@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "chart/diagram_parts.h"
 
@@ -13,13 +14,14 @@ void LabelPlacer::keep_clear(const glm::dvec2& center, double radius) {
 
 bool LabelPlacer::add(const glm::dvec2& at, const std::string& words, Lettering lettering,
                       double gap, Side side, bool leader) {
-    constexpr double kSteps[] = {0, 1, 2, 3, 4};
-    constexpr double kAsides[] = {0, -0.6, 0.6};
+    // Words with a leader may be far up and need no other words' room.
+    const int last_step = leader ? 9 : 4;
+    constexpr double kAsides[] = {0, -0.6, 0.6, -0.3, 0.3};
     const double width = text_width(words, lettering.size, lettering.bold);
     const double ascent = 0.74 * lettering.size, height = 0.92 * lettering.size;
     const double up = side == Side::Above ? -1 : 1;
-    for (const double step : kSteps)
-        for (const double aside : kAsides) {
+    for (int step = 0; step <= last_step; ++step)
+        for (const double aside : std::span(kAsides).first(leader ? 5 : 3)) {
             const double middle = at.x + aside * width;
             const double base = side == Side::Above ? at.y - gap - step * (height + 2)
                                                     : at.y + gap + ascent + step * (height + 2);

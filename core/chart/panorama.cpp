@@ -407,9 +407,20 @@ class Panorama {
             labels.keep_clear(Rect{x(h.azimuth_rad), top, column, all.y + all.height - top});
         }
         constexpr std::size_t kMost = 14;
-        if (summits.size() > kMost) summits.resize(kMost);
+        std::vector<double> named_rad;
+        for (const SkylineName& name : of_.names)
+            if (named_rad.size() < kMost &&
+                labels.add({x(name.azimuth_rad), y(name.elevation_rad)}, name.text,
+                           {.size = 10.5, .color = kInk}, 8, LabelPlacer::Side::Above, true))
+                named_rad.push_back(name.azimuth_rad);
+        std::size_t room = kMost - named_rad.size();
         for (const Summit& summit : summits) {
             const light::HorizonPoint& h = p[summit.at];
+            const auto is_named = [&](double azimuth_rad) {
+                return std::abs(std::remainder(azimuth_rad - h.azimuth_rad, 2 * kPi)) < radians(1);
+            };
+            if (std::ranges::any_of(named_rad, is_named)) continue;
+            if (room-- == 0) break;
             labels.add({x(h.azimuth_rad), y(h.elevation_rad)},
                        fmt::format("{:.0f} m, {}", h.height_m, distance_text(h.distance_m)),
                        {.size = 10.5, .color = kInk}, 8, LabelPlacer::Side::Above, true);

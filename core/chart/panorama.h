@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chart/drawing.h"
+#include "chart/skyline_names.h"
 #include "light/point/direct_light.h"
 
 namespace relevo::chart {
@@ -14,7 +15,8 @@ namespace relevo::chart {
 struct HorizonPanorama {
     const light::TerrainHorizon* horizon = nullptr;
     const std::vector<light::HorizonPoint>* profile = nullptr;  ///< of that horizon, all round
-    std::string place_name;  ///< for the title, where there is one
+    std::vector<SkylineName> names;  ///< of summits; other tops have their height alone
+    std::string place_name;          ///< for the title, where there is one
     /// The sun's paths of a year by the clock of a zone; 0: the landscape alone.
     int year = 0;
     sun::Zone zone;

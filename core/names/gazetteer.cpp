@@ -67,13 +67,18 @@ struct Gazetteer::Hit {
 
 Gazetteer::Gazetteer(const std::filesystem::path& places, const std::filesystem::path& summits) {
     texts_.reserve(2);  // entries point into them
-    read(places, Kind::Place);
+    if (!places.empty()) read(places, Kind::Place);
     read(summits, Kind::Summit);
 }
 
 const Gazetteer& Gazetteer::shipped() {
     static const Gazetteer gazetteer(share_dir() / "data/names/places.tsv.gz",
                                      share_dir() / "data/names/summits.tsv.gz");
+    return gazetteer;
+}
+
+const Gazetteer& Gazetteer::summits() {
+    static const Gazetteer gazetteer({}, share_dir() / "data/names/summits.tsv.gz");
     return gazetteer;
 }
 

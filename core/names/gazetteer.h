@@ -36,6 +36,7 @@ struct Near {
 /// Both lists, in memory. Reading takes 0.3 s, a search 1 to 6 ms (tests/names/test_gazetteer.cpp).
 class Gazetteer {
   public:
+    /// @param places  empty: none
     /// @throws Error (BadInput) `names: path: ...` for a file that is missing, damaged or not such
     /// a
     ///     list
@@ -45,6 +46,8 @@ class Gazetteer {
     /// The lists that Relevo brings, read at the first call. Safe on several threads at once.
     /// @throws Error as the constructor, at every call
     static const Gazetteer& shipped();
+    /// Summits alone, which are read in a quarter of the time.
+    static const Gazetteer& summits();
 
     /// Entries with a name in which `text` begins a word, by fold(). First those within `near`,
     /// then those with exactly this name, then those that begin with it; among equals the nearest

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -18,6 +20,12 @@ constexpr int kMostStart = 64;            ///< posts each way, where meridians m
 
 bool is_coarse(const Entry& entry) {
     return entry.source == 'N' || entry.source == 'O';
+}
+
+Summit unmoved(const Entry& entry) {
+    Summit summit{.entry = &entry, .place = entry.place};
+    if (entry.size) summit.height_m = *entry.size;
+    return summit;
 }
 
 /// The posts around a place.
@@ -107,8 +115,7 @@ std::string label(const Summit& summit) {
 }
 
 Summit on_top(const Entry& entry, const dem::Grid& grid, const PostHeight& height_m) {
-    Summit summit{.entry = &entry, .place = entry.place};
-    if (entry.size) summit.height_m = *entry.size;
+    Summit summit = unmoved(entry);
     const Hill hill(grid, entry.place, height_m);
     if (!(hill.spacing_m() <= kCoarsestPosts_m)) return summit;
     const double reach_m = is_coarse(entry) ? kFar_m : std::max(kNear_m, 2 * hill.spacing_m());
@@ -125,10 +132,25 @@ Summit on_top(const Entry& entry, const dem::Grid& grid, const PostHeight& heigh
 }
 
 std::vector<Summit> summits_on(const Gazetteer& gazetteer, const dem::Grid& grid,
-                               const PostHeight& height_m) {
+                               const PostHeight& height_m, const Near& near) {
     std::vector<Summit> summits;
-    for (const Entry* const entry : gazetteer.summits_within(around(grid)))
+    for (const Entry* const entry : gazetteer.summits_within(near))
         if (is_on(grid, entry->place)) summits.push_back(on_top(*entry, grid, height_m));
+    // A top has one name: that with a height, else the nearest.
+    std::map<std::pair<double, double>, Summit*> tops;
+    const auto rank = [](const Summit& summit) {
+        return std::pair(!summit.entry->size,
+                         geo::geodesic(summit.entry->place, summit.place).distance_m);
+    };
+    for (Summit& summit : summits) {
+        if (!summit.is_moved) continue;
+        Summit*& owner = tops[{summit.place.lat_rad, summit.place.lon_rad}];
+        if (!owner) owner = &summit;
+        if (owner == &summit) continue;
+        Summit* other = &summit;
+        if (rank(*other) < rank(*owner)) std::swap(owner, other);
+        *other = unmoved(*other->entry);
+    }
     return summits;
 }
 

@@ -33,9 +33,10 @@ std::string label(const Summit& summit);
 /// Accuracy: data/README.md; measured in tests/names/test_summit_top.cpp.
 Summit on_top(const Entry& entry, const dem::Grid& grid, const PostHeight& height_m);
 
-/// All summits on a DEM.
+/// Summits on a DEM and within a distance. Of several that were moved to one top, one stays there:
+/// that with a height, else the nearest.
 std::vector<Summit> summits_on(const Gazetteer& gazetteer, const dem::Grid& grid,
-                               const PostHeight& height_m);
+                               const PostHeight& height_m, const Near& near);
 
 /// Whether a place is on the cells of a grid.
 bool is_on(const dem::Grid& grid, const geo::Geodetic& place);

@@ -199,6 +199,26 @@ TEST(Diagrams, APanelHasTheSizeThatIsAskedForAndNoLettersOnEachOther) {
     }
 }
 
+TEST(Diagrams, NamesOfSummitsHaveRoom) {
+    const Scene scene(places()[2]);
+    HorizonPanorama panorama = scene.panorama(true);
+    for (int i = 0; i < 1000; ++i) {
+        const double azimuth_rad = 2 * kPi * i / 1000;
+        panorama.names.push_back({azimuth_rad, scene.horizon.elevation_rad(azimuth_rad), 1000,
+                                  fmt::format("Summit {} ~1400 m", i)});
+    }
+    const auto count = [&] {
+        const std::vector<Box> words = words_of(panorama.draw());
+        return std::ranges::count_if(
+            words, [](const Box& box) { return box.words.starts_with("Summit "); });
+    };
+    expect_readable(panorama.draw());
+    EXPECT_EQ(count(), 14);
+    panorama.panel = PanelSize{760, 260};
+    expect_readable(panorama.draw(), 3);
+    EXPECT_GE(count(), 5);
+}
+
 TEST(Diagrams, ALongNameLeavesTheRestOfTheTitle) {
     const Scene scene(places()[2]);
     const std::string name = std::string(2000, 'n') + "\x1b";

@@ -4,11 +4,9 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include "base/paths.h"
-#include "names/gazetteer.h"
-#include "support/support.h"
+#include "names/summit_list.h"
 
 // Names that Relevo brings (data/README.md): found, ranked, where they are, and in time.
 namespace relevo::names {
@@ -130,33 +128,25 @@ TEST(Gazetteer, IsFast) {
     fmt::print("{}\n", text);
 }
 
-/// A file as a test has it.
-std::filesystem::path packed(const char* name, const std::string& text) {
-    const std::filesystem::path path = test::scratch_dir(name) / name;
-    const gzFile file = gzopen(path.c_str(), "wb");
-    gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
-    gzclose(file);
-    return path;
-}
-
 const std::string kPlaces = "name\talt\tcc\tlat\tlon\tpop\n",
                   kSummits = "name\talt\tcc\tlat\tlon\tele\tsrc\n";
 
 TEST(Gazetteer, RefusesFilesThatAreDamaged) {
-    const auto good = packed("places", kPlaces + "A\tB|C\tAT\t1\t2\t3\n");
+    const auto good = test::packed("places", kPlaces + "A\tB|C\tAT\t1\t2\t3\n");
     const auto reads = [&](const std::filesystem::path& summits) {
         return test::error_of([&] { const Gazetteer read(good, summits); });
     };
-    EXPECT_EQ(reads(packed("good", kSummits + "A\t\t\t1\t2\t\tN\n")), "no error");
+    EXPECT_EQ(reads(test::packed("good", kSummits + "A\t\t\t1\t2\t\tN\n")), "no error");
     EXPECT_THAT(reads("/missing"), HasSubstr("names: /missing: cannot be read"));
     EXPECT_THAT(reads("/missing"), testing::EndsWith("; install Relevo again"));
     for (const char* const row :
          {"A\t\t\t91\t2\t\tN\n", "A\t\t\t1\tx\t\tN\n", "A\t\t\t1\t2\tx\tN\n", "A\t\t\t1\t2\t3\n",
           "\t\t\t1\t2\t3\tN\n", "A\t\t\t1\t2\t3\tNN\n", "A\t\t\t1\t2\t3\tN\t4\n", "\n"})
-        EXPECT_THAT(reads(packed("row", kSummits + row)), HasSubstr("line 2: damaged")) << row;
+        EXPECT_THAT(reads(test::packed("row", kSummits + row)), HasSubstr("line 2: damaged"))
+            << row;
     EXPECT_THAT(reads(good), HasSubstr("no such list of this version"));
 
-    const auto cut = packed("cut", kSummits + "A\t\t\t1\t2\t\tN\n");
+    const auto cut = test::packed("cut", kSummits + "A\t\t\t1\t2\t\tN\n");
     std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 9);
     EXPECT_THAT(reads(cut), HasSubstr("not all of it is there"));
     std::ofstream(cut) << kSummits;  // not packed

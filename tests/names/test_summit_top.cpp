@@ -5,8 +5,8 @@
 
 #include "base/units.h"
 #include "dem/load.h"
+#include "names/summit_list.h"
 #include "names/summit_top.h"
-#include "support/support.h"
 
 // Summits on the tops of a DEM, and where they stay as they are.
 namespace relevo::names {
@@ -31,6 +31,11 @@ class Land {
 
     Summit top(const Entry& entry) const {
         return on_top(entry, grid_, [this](int column, int row) { return height_m(column, row); });
+    }
+    std::vector<Summit> summits(const Gazetteer& list) const {
+        return summits_on(
+            list, grid_, [this](int column, int row) { return height_m(column, row); },
+            around(grid_));
     }
     /// An entry so far from the middle.
     Entry entry(double east_m, double north_m, char source, std::optional<int> height_m) const {
@@ -134,9 +139,9 @@ TEST(SummitsOn, MeasuredDems) {
           Table{"hawaii_rotated20.tif", 80, 0.4}, Table{"rmnp/rmnp-dem.tif", 100, 0},
           Table{"colorado_tut_relief.nc", 3000, 0}}) {
         const dem::Heightfield field = dem::load((data / "dem" / table.file).string());
-        const auto summits = summits_on(Gazetteer::shipped(), field.grid, [&](int column, int row) {
-            return field.height_at(column, row);
-        });
+        const auto summits = summits_on(
+            Gazetteer::summits(), field.grid,
+            [&](int column, int row) { return field.height_at(column, row); }, around(field.grid));
         std::vector<double> moved_m, differences_m;
         for (const Summit& summit : summits) {
             if (!summit.is_moved) continue;
@@ -157,11 +162,32 @@ TEST(SummitsOn, MeasuredDems) {
     }
 }
 
+TEST(SummitsOn, ATopHasOneName) {
+    const Land land(30, {{60, 30, 2000, 0.5}});
+    const auto row = [&](const char* name, double east_m, double north_m, const char* height_m) {
+        const geo::Geodetic place = land.entry(east_m, north_m, 'G', {}).place;
+        return fmt::format("{}\t\t\t{:.6f}\t{:.6f}\t{}\tG\n", name, degrees(place.lat_rad),
+                           degrees(place.lon_rad), height_m);
+    };
+    const auto labels = [&](const std::string& rows) {
+        std::vector<std::string> texts;
+        const Gazetteer list = test::summit_list(rows);
+        for (const Summit& summit : land.summits(list))
+            texts.push_back(label(summit) + (summit.is_moved ? " on top" : ""));
+        return texts;
+    };
+    EXPECT_THAT(labels(row("Far", 0, 0, "") + row("Near", 50, 0, "")),
+                testing::ElementsAre("Far", "Near ~2000 m on top"));
+    EXPECT_THAT(labels(row("Far", 0, 0, "2010") + row("Near", 50, 0, "")),
+                testing::ElementsAre("Far 2010 m on top", "Near"));
+}
+
 /// How many summits of the whole list lie on a grid in degrees.
 std::int64_t count_on(int columns, int rows, double west_deg, double north_deg, double step_deg) {
     const dem::Grid grid(columns, rows, {west_deg, step_deg, 0, north_deg, 0, -step_deg},
                          geo::Crs::parse("EPSG:4326", "test"));
-    return std::ssize(summits_on(Gazetteer::shipped(), grid, [](int, int) { return 0.0; }));
+    return std::ssize(summits_on(
+        Gazetteer::shipped(), grid, [](int, int) { return 0.0; }, around(grid)));
 }
 
 TEST(SummitsOn, EveryGridOfTheEarth) {
@@ -181,8 +207,8 @@ TEST(SummitsOn, ADemAroundAPole) {
     const dem::Grid pole(1000, 1000, {-1e6, 2e3, 0, 1e6, 0, -2e3},
                          geo::Crs::parse("EPSG:3413", "test"));
     std::vector<std::string_view> names;
-    for (const Summit& summit :
-         summits_on(Gazetteer::shipped(), pole, [](int, int) { return 0.0; }))
+    for (const Summit& summit : summits_on(
+             Gazetteer::shipped(), pole, [](int, int) { return 0.0; }, around(pole)))
         names.push_back(summit.entry->name);
     EXPECT_THAT(names, testing::ElementsAre("Barbeau Pk.", "Outlook Pk."));
 }
