@@ -90,6 +90,7 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
     marks.line = object.line();
     if (const std::string from = object.string("from", ""); !from.empty())
         marks.from = id + '.' + from;
+    marks.summits = object.boolean("known_summits", false);
     for (const MarkKey& key : mark_keys())
         marks.*key.member = read_value(object, key, id);
     return marks;
@@ -97,11 +98,15 @@ MarksSpec read_marks(json::ObjectReader& object, const std::string& id, const st
 
 std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& params,
                      const std::vector<shader::TextParam>& texts, bool has_module) {
-    if (marks.from.empty() && !has_module)
+    if (marks.from.empty() && !marks.summits && !has_module)
         return fmt::format(
-            "marks.{}: expected a member \"from\", or a \"module\" of the plugin that sets the "
-            "marks",
+            "marks.{}: expected a member \"from\" or \"known_summits\", or a \"module\" of the plugin "
+            "that "
+            "sets the marks",
             marks.name);
+    if (!marks.from.empty() && marks.summits)
+        return fmt::format("marks.{}: has both \"from\" and \"known_summits\"; make two lists",
+                           marks.name);
     const auto text = std::ranges::find(texts, marks.from, &shader::TextParam::address);
     if (!marks.from.empty() && (text == texts.end() || !text->is_file))
         return fmt::format(

@@ -19,19 +19,21 @@ struct MarkValue {
     }
 };
 
-/// Texts and symbols at places of a file or of a native module, which core draws over the picture.
+/// Texts and symbols at places of a file or of a native module, or at summits that Relevo brings,
+/// which core draws over the picture.
 struct MarksSpec {
     enum class Symbol { None, Dot, Triangle };
     enum class Order { Rank, Nearest, Highest };
 
-    std::string name;       ///< "places"
-    std::string from;       ///< "labels.file": a text of kind file; empty: the module sets them
-    MarkValue size_px;      ///< height of the letters, in pixels of the picture
-    MarkValue colour;       ///< sRGB, 0 to 1
-    MarkValue halo;         ///< the same, around letters and symbols
-    MarkValue symbol;       ///< index of a Symbol
-    MarkValue leader_px;    ///< least length of the line up to the letters; 0: letters beside
-    MarkValue above_m;      ///< height of the marks above the ground, in the DEM's heights
+    std::string name;      ///< "places"
+    std::string from;      ///< "labels.file": a text of kind file; empty: not from a file
+    bool summits = false;  ///< those that Relevo brings; else, without a file, the module sets them
+    MarkValue size_px;     ///< height of the letters, in pixels of the picture
+    MarkValue colour;      ///< sRGB, 0 to 1
+    MarkValue halo;        ///< the same, around letters and symbols
+    MarkValue symbol;      ///< index of a Symbol
+    MarkValue leader_px;   ///< least length of the line up to the letters; 0: letters beside
+    MarkValue above_m;     ///< height of the marks above the ground, in the DEM's heights
     MarkValue distance_px;  ///< least distance between letters or symbols of two marks
     MarkValue repeat_px;    ///< least distance between two marks with the same text
     MarkValue order;        ///< index of an Order: which marks are drawn where room is short

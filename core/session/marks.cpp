@@ -12,6 +12,7 @@
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "names/summit_top.h"
 
 namespace relevo::session {
 namespace {
@@ -137,7 +138,8 @@ std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
     std::vector<LoadedMarks> result;
     for (const effect::Effect* effect : selection.effects)
         for (const effect::MarksSpec& spec : effect->manifest.marks) {
-            if (spec.from.empty()) {  // its module sets them
+            if (spec.summits) names::Gazetteer::summits();  // reports a damaged list now
+            if (spec.from.empty()) {
                 result.push_back({&spec, effect->id(), nullptr});
                 continue;
             }
@@ -183,6 +185,29 @@ std::shared_ptr<const MarkPlaces> MarksOnGround::places(
     if (places_.size() >= kMostKept) places_.erase(places_.begin());
     places_.emplace_back(marks, places_of(*marks));
     return places_.back().second;
+}
+
+std::shared_ptr<const MarkPlaces> MarksOnGround::summits(
+    const std::shared_ptr<const LoadedDem>& dem) {
+    if (summits_.first == dem) return summits_.second;
+    const dem::Heightfield& field = dem->to_draw();
+    std::vector<std::pair<double, dem::NamedPlace>> found;
+    for (const names::Summit& summit : names::summits_on(
+             names::Gazetteer::summits(), field.grid,
+             [&](int column, int row) { return field.height_at(column, row); },
+             names::around(field.grid))) {
+        const double height_m = ground_m(*dem, summit.place, false);
+        if (!std::isnan(height_m))
+            found.push_back(
+                {-height_m,
+                 {.name = std::string(summit.entry->name), .at = {.place = summit.place}}});
+    }
+    std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });
+    auto places = std::make_shared<MarkPlaces>();
+    for (auto& [height_m, place] : found)
+        places->places.push_back(std::move(place));
+    summits_ = {dem, std::move(places)};
+    return summits_.second;
 }
 
 std::shared_ptr<const StandingMarks> MarksOnGround::of(

@@ -43,18 +43,19 @@ struct MarkPlaces {
 /// Places of a native module's marks.
 std::shared_ptr<const MarkPlaces> places_of(const effect::ModuleMarks& marks);
 
-/// An active effect's list of marks. `places` is null if no file is set, and if its module sets
-/// them, which the renderer has then.
+/// An active effect's list of marks. `places` is null if no file is set, for summits, which depend
+/// on the DEM, and if its module sets them, which the renderer has then.
 struct LoadedMarks {
     const effect::MarksSpec* spec = nullptr;  ///< in the registry
     std::string plugin;                       ///< its id
     std::shared_ptr<const MarkPlaces> places;
 };
 
-/// Reads the files of the active effects' marks.
+/// Reads the files of the active effects' marks, and the list of summits if they show it.
 /// @param earlier  whose places are used again if their file has not changed
 /// @param report   logs which lists have no file
-/// @throws Error (BadInput) as dem::read_points(), and for a rank that is not a number
+/// @throws Error (BadInput) as dem::read_points() and names::Gazetteer, and for a rank that is not
+/// a number
 std::vector<LoadedMarks> load_marks(const effect::Selection& selection,
                                     const shader::ParamStore& values,
                                     const std::vector<LoadedMarks>& earlier, bool report);
@@ -87,6 +88,9 @@ class MarksOnGround {
     /// Places of a module's marks. Keeps those of the latest lists.
     std::shared_ptr<const MarkPlaces> places(
         const std::shared_ptr<const effect::ModuleMarks>& marks);
+    /// Summits of names::Gazetteer on the tops of the heights as drawn, the highest first. Keeps
+    /// those of the latest DEM.
+    std::shared_ptr<const MarkPlaces> summits(const std::shared_ptr<const LoadedDem>& dem);
     std::shared_ptr<const StandingMarks> of(const std::shared_ptr<const MarkPlaces>& places,
                                             const std::shared_ptr<const LoadedDem>& dem,
                                             const geo::LocalFrame& frame, double exaggeration);
@@ -101,6 +105,7 @@ class MarksOnGround {
     std::vector<std::pair<std::shared_ptr<const effect::ModuleMarks>,
                           std::shared_ptr<const MarkPlaces>>>
         places_;  // the latest last
+    std::pair<std::shared_ptr<const LoadedDem>, std::shared_ptr<const MarkPlaces>> summits_;
 };
 
 /// A list of marks as a frame shows it.

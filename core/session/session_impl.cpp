@@ -410,6 +410,7 @@ std::vector<Marks> Session::Impl::marks(const std::vector<LoadedMarks>& loaded,
         std::shared_ptr<const MarkPlaces> places = list.places;
         if (const auto set = renderer.module_marks(list.plugin, list.spec->name))
             places = marks_on_ground.places(set);
+        if (list.spec->summits) places = marks_on_ground.summits(state.dem());
         if (!places || places->places.empty()) continue;
         result.push_back(marks_of(
             list,

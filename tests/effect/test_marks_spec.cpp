@@ -53,8 +53,12 @@ TEST(MarksSpec, MistakesAreNamed) {
     const std::string kFile = R"("from": "file", )";
     for (const Bad& bad :
          {Bad{R"("size": 12)",
-              ":2: marks.huts: expected a member \"from\", or a \"module\" of the plugin that sets "
-              "the marks"},
+              ":2: marks.huts: expected a member \"from\" or \"known_summits\", or a \"module\" of the "
+              "plugin "
+              "that sets the marks"},
+          Bad{kFile + R"("known_summits": true)",
+              ":2: marks.huts: has both \"from\" and \"known_summits\"; make two lists"},
+          Bad{R"("known_summits": "all")", ":2: marks.huts.known_summits: expected true or false"},
           Bad{R"("from": "list")",
               ":2: marks.huts.from: expected a text of kind file but got \"list\"; add \"texts\": "
               "{\"list\": {\"kind\": \"file\"}}"},

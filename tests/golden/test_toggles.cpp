@@ -26,8 +26,8 @@ namespace {
     GTEST_SKIP() << "the plugin " << (id) << " is not there"
 
 /// Effects that leave the bundled DEM as it is: they paint voids, slopes that it lacks, or what a
-/// file has that users name.
-const std::set<std::string> kSilent{"avalanche", "blank", "drape", "infill", "labels"};
+/// file has that users name, or summits.
+const std::set<std::string> kSilent{"avalanche", "blank", "drape", "infill", "labels", "summits"};
 
 class Toggles : public testing::Test {
   protected:

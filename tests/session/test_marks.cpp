@@ -164,6 +164,43 @@ std::vector<double> distances_px(double elevation_deg, double exaggeration, bool
     return distances;
 }
 
+TEST(SummitMarks, AreOnTheDem) {
+    scene::Scene scene =
+        scene_of((test::source_dir() / "data/dem/vancouver-island.tif").string(), "");
+    scene.effects.switches.only = {"summits"};
+    scene.effects.settings.clear();
+    Shown shown(scene);
+    const std::vector<std::string> names = shown.names();
+    EXPECT_THAT(names, testing::IsSupersetOf({"Mount Garibaldi", "Golden Hinde"}));
+    const std::vector<Marks> lists = shown.session.marks();
+    ASSERT_EQ(lists.size(), 1u);
+    const auto& marks = lists[0].standing->marks;
+    ASSERT_GT(marks.size(), 100u);
+    for (std::size_t i = 1; i < marks.size(); ++i)
+        EXPECT_GE(marks[i - 1].height_m, marks[i].height_m);          // the highest first
+    EXPECT_EQ(shown.session.marks()[0].standing, lists[0].standing);  // kept
+}
+
+TEST(SummitMarks, StandOnTheTopsOfTheDem) {
+    test::Raster cone;
+    cone.columns = cone.rows = 100;
+    cone.crs = "EPSG:32630";
+    cone.geotransform = {{376180, 30, 0, 6298100, 0, -30}};
+    cone.value = [](int column, int row, int) {
+        return 1500 - 10 * std::hypot(column - 50, row - 50);  // 61 m from Ben Nevis
+    };
+    scene::Scene scene = scene_of(test::write_raster(test::scratch_dir() / "cone.tif", cone), "");
+    scene.effects.switches.only = {"summits"};
+    scene.effects.settings.clear();
+    Shown shown(scene);
+    const std::vector<Marks> lists = shown.session.marks();
+    ASSERT_EQ(lists.size(), 1u);
+    const StandingMarks& standing = *lists[0].standing;
+    ASSERT_FALSE(standing.marks.empty());
+    EXPECT_EQ(standing.places->places[standing.marks[0].index].name, "Ben Nevis");
+    EXPECT_NEAR(standing.marks[0].height_m, 1500, 0.01);
+}
+
 TEST(MarksOnGround, StandWhereTheRendererDrawsTheirPosts) {
     struct View {
         double elevation_deg, exaggeration;
