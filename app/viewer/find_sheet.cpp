@@ -189,7 +189,7 @@ void FindSheet::draw(glm::vec2 size_px, State& state, const dem::Grid& grid) {
                                       : is_done_    ? tr("nothing found")
                                                     : tr("searching ..."));
         if (!error_.empty()) ImGui::TextWrapped("%s", error_.c_str());
-        ImGui::TextDisabled("%s", tr("Names: GeoNames, CC BY 4.0, and others (data/README.md)"));
+        ImGui::TextDisabled("%s", tr("Names: GeoNames, CC BY 4.0, and others (Help, About)"));
         if (closes_sheet()) close();
     }
     ImGui::End();

@@ -58,12 +58,15 @@ void about(const std::string& device) {
     ImGui::TextUnformatted(tr_format("draws with {}", device).c_str());
     ImGui::Separator();
     // What ships with it: data/README.md has the terms.
-    static constexpr std::array<Row, 4> kData = {{
+    static constexpr std::array<Row, 6> kData = {{
         {tr_later("Climate"),
          tr_later("NOAA (GHCN-CAMS, CMAP, Reanalysis 1, COADS), CHELSA 1.1, ERA5 (Copernicus)")},
         {tr_later("Land cover"), tr_later("NASA LP DAAC (MODIS), NASA Earth Observatory")},
         {tr_later("Time zones"), tr_later("tz-lookup, tz_world, IANA tzdata, Natural Earth")},
         {tr_later("Terrain"), tr_later("SRTM (NASA, USGS)")},
+        {tr_later("Place names"), tr_later("GeoNames (geonames.org), CC BY 4.0; Natural Earth")},
+        {tr_later("Summits"), tr_later("The Database of British and Irish Hills, CC BY 4.0; GSI "
+                                       "(Japan); USGS GNIS; Natural Earth")},
     }};
     rows(kData);
     ImGui::TextUnformatted(

@@ -100,7 +100,8 @@ std::string fault_of(const MarksSpec& marks, const std::vector<shader::Param>& p
                      const std::vector<shader::TextParam>& texts, bool has_module) {
     if (marks.from.empty() && !marks.summits && !has_module)
         return fmt::format(
-            "marks.{}: expected a member \"from\" or \"known_summits\", or a \"module\" of the plugin "
+            "marks.{}: expected a member \"from\" or \"known_summits\", or a \"module\" of the "
+            "plugin "
             "that "
             "sets the marks",
             marks.name);

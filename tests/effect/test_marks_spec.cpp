@@ -53,7 +53,8 @@ TEST(MarksSpec, MistakesAreNamed) {
     const std::string kFile = R"("from": "file", )";
     for (const Bad& bad :
          {Bad{R"("size": 12)",
-              ":2: marks.huts: expected a member \"from\" or \"known_summits\", or a \"module\" of the "
+              ":2: marks.huts: expected a member \"from\" or \"known_summits\", or a \"module\" of "
+              "the "
               "plugin "
               "that sets the marks"},
           Bad{kFile + R"("known_summits": true)",
