@@ -202,6 +202,7 @@ std::shared_ptr<const MarkPlaces> MarksOnGround::summits(
                 {-height_m,
                  {.name = std::string(summit.entry->name), .at = {.place = summit.place}}});
     }
+    if (found.empty()) log::info("summits: none of those that come with Relevo is on the DEM");
     std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });
     auto places = std::make_shared<MarkPlaces>();
     for (auto& [height_m, place] : found)

@@ -59,7 +59,8 @@ TEST(MarksSpec, MistakesAreNamed) {
               "that sets the marks"},
           Bad{kFile + R"("known_summits": true)",
               ":2: marks.huts: has both \"from\" and \"known_summits\"; make two lists"},
-          Bad{R"("known_summits": "all")", ":2: marks.huts.known_summits: expected true or false"},
+          Bad{R"("known_summits": "all")",
+              ":2: marks.huts.known_summits: expected true or false but got \"all\""},
           Bad{R"("from": "list")",
               ":2: marks.huts.from: expected a text of kind file but got \"list\"; add \"texts\": "
               "{\"list\": {\"kind\": \"file\"}}"},
