@@ -6,7 +6,8 @@
 namespace relevo::viewer {
 namespace {
 
-/// Heights of the menu, the time bar and the status line, of the texts' height.
+/// Heights of the menu, the time bar, and the row of status line and scale below the film panel, of
+/// the texts' height.
 constexpr float kMenu = 1.375f, kBar = 2.75f, kStatus = 2;
 /// A chart that nobody has made higher or lower, of the window's height.
 constexpr float kChartsShare = 0.2f;
@@ -18,7 +19,7 @@ scene::Insets Layout::insets(glm::vec2 window) const {
     insets.left = picture.at.x / window.x;
     insets.right = 1 - picture.end().x / window.x;
     insets.top = picture.at.y / window.y;
-    insets.bottom = 1 - picture.end().y / window.y;
+    insets.bottom = 1 - (picture.end().y - below) / window.y;
     // A very low window has no room between the two.
     if (insets.top + insets.bottom > 0.75) insets.top = insets.bottom = 0;
     return insets;
@@ -47,8 +48,8 @@ Layout lay_out(glm::vec2 window, float unit, const Settings& settings, Lower low
         high = std::floor(std::clamp(wanted, std::min(room, unit * kLeastCharts), room));
     }
     layout.charts = {{left, low - high}, {window.x - left, high}};
-    const float status = lower == Lower::Film ? kStatus * text : 0;
-    layout.picture = {{left, top}, {window.x - left, std::max(0.0f, low - high - status - top)}};
+    layout.picture = {{left, top}, {window.x - left, std::max(0.0f, low - high - top)}};
+    if (lower == Lower::Film) layout.below = std::min(kStatus * text, layout.picture.size.y);
     return layout;
 }
 

@@ -23,10 +23,11 @@ enum class Lower {
 };
 
 struct Layout {
-    Area side;     ///< the side panel; empty like those below: hidden
-    Area bar;      ///< the time bar
-    Area charts;   ///< beside the side panel
-    Area picture;  ///< what is left
+    Area side;        ///< the side panel; empty like those below: hidden
+    Area bar;         ///< the time bar
+    Area charts;      ///< beside the side panel
+    Area picture;     ///< what is left
+    float below = 0;  ///< lower part of the picture that views leave free
 
     /// What covers the picture, which is drawn as large as the window.
     scene::Insets insets(glm::vec2 window) const;
