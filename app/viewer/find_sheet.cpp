@@ -88,7 +88,7 @@ class FindSheet::Search : public LatestWork<NameWanted, NamesFound> {
         auto found = std::make_shared<NamesFound>(NamesFound{.of = *wanted});
         try {
             found->entries =
-                names::Gazetteer::shipped().find(wanted->text, wanted->near, kMostRows);
+                names::Gazetteer::shipped().find(wanted->text, wanted->near, 4 * kMostRows);
         } catch (const Error& error) {
             found->error = error.what();
         }
@@ -146,6 +146,9 @@ void FindSheet::look_up(State& state, const dem::Grid& grid) {
         rows_.push_back({title_of(*entry), entry->place,
                          entry->kind == names::Kind::Summit ? entry : nullptr,
                          std::string(entry->country)});
+    // The search knows a circle around the DEM.
+    std::stable_partition(rows_.begin() + static_cast<std::ptrdiff_t>(own_.size()), rows_.end(),
+                          [&](const FoundPlace& row) { return names::is_on(grid, row.place); });
     if (rows_.size() > kMostRows) rows_.resize(kMostRows);
     state.found_names = text_;
     for (FoundPlace& row : rows_) {
