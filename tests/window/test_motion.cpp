@@ -18,7 +18,7 @@ class Motion : public Viewer {
         start(arguments);
         ASSERT_TRUE(wait([&] { return program_->title().find("Relevo") != std::string::npos; }))
             << program_->output();
-        ASSERT_TRUE(wait([&] { return test::brightness(display_.screen()) > 30; }));
+        ASSERT_TRUE(wait([&] { return shows_picture(display_.screen()); }));
     }
     /// Whether the picture changes without input.
     bool moves() {

@@ -36,6 +36,19 @@ inline int count_other(const image::Image8& one, const image::Image8& other, glm
     return count;
 }
 
+/// What an area of the screen has of a colour, by less than `by` in each channel.
+inline int count_near(const image::Image8& screen, glm::ivec4 area, glm::ivec3 colour,
+                      int by = 12) {
+    int count = 0;
+    for (int y = area.y; y < area.y + area.w; ++y)
+        for (int x = area.x; x < area.x + area.z; ++x) {
+            const std::uint8_t* at = screen.row(y) + 3 * x;
+            count += std::abs(at[0] - colour.x) < by && std::abs(at[1] - colour.y) < by &&
+                     std::abs(at[2] - colour.z) < by;
+        }
+    return count;
+}
+
 /// The window of `relevo DEM`, driven by a mouse and keys on a display of the tests' own.
 class Viewer : public testing::Test {
   protected:
@@ -67,7 +80,12 @@ class Viewer : public testing::Test {
             display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
         return windows.substr(0, windows.find('\n'));
     }
-    /// Waits until the screen shows something, and the same for a while.
+    /// Whether a window is there, without the card that stands there before the first picture.
+    static bool shows_picture(const image::Image8& screen) {
+        return test::brightness(screen) > 30 &&
+               count_near(screen, {580, 330, 500, 120}, {242, 184, 75}, 20) < 50;
+    }
+    /// Waits until the screen shows a picture, and the same for a while.
     /// @param looks  so many in a row, 150 ms apart: a slow window has no frame every 60 ms
     bool settles(int looks = 6) {
         image::Image8 before = display_.screen();
@@ -75,8 +93,7 @@ class Viewer : public testing::Test {
         return wait([&] {
             std::this_thread::sleep_for(std::chrono::milliseconds(150));
             image::Image8 now = display_.screen();
-            same =
-                test::difference(now, before) < 1e-4 && test::brightness(now) > 30 ? same + 1 : 0;
+            same = test::difference(now, before) < 1e-4 && shows_picture(now) ? same + 1 : 0;
             before = std::move(now);
             return same >= looks;
         });
@@ -158,18 +175,5 @@ class Viewer : public testing::Test {
     std::optional<test::WindowedProgram> program_;
     int saved_ = 0;
 };
-
-/// What an area of the screen has of a colour, by less than `by` in each channel.
-inline int count_near(const image::Image8& screen, glm::ivec4 area, glm::ivec3 colour,
-                      int by = 12) {
-    int count = 0;
-    for (int y = area.y; y < area.y + area.w; ++y)
-        for (int x = area.x; x < area.x + area.z; ++x) {
-            const std::uint8_t* at = screen.row(y) + 3 * x;
-            count += std::abs(at[0] - colour.x) < by && std::abs(at[1] - colour.y) < by &&
-                     std::abs(at[2] - colour.z) < by;
-        }
-    return count;
-}
 
 }  // namespace relevo
