@@ -30,7 +30,7 @@ TEST_F(SharedFrames, FollowTheHandTheSunAndTheSizeOfTheWindow) {
     EXPECT_TRUE(changes([&] { drag(1, 700, 300, -100, 20); }));
     // The ground under the cursor is read from the frame on the device.
     EXPECT_TRUE(changes_in({0, 626, 1000, 30}, [&] {
-        act({"mousemove", "760", "400"});
+        act({"mousemove", "760", "400", "sleep", "0.3", "mousemove", "764", "406"});
     })) << program_->output();
 }
 
