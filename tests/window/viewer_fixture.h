@@ -80,10 +80,13 @@ class Viewer : public testing::Test {
             display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
         return windows.substr(0, windows.find('\n'));
     }
-    /// Whether a window is there, without the card that stands there before the first picture.
+    /// Whether a window is there, and more than the dusk before its first picture.
     static bool shows_picture(const image::Image8& screen) {
-        return test::brightness(screen) > 30 &&
-               count_near(screen, {580, 330, 500, 120}, {242, 184, 75}, 20) < 50;
+        const auto is_dusk = [&](int y) {
+            const glm::ivec3 dusk(22 + 96 * y / 800, 34 + 62 * y / 800, 58 + 38 * y / 800);
+            return count_near(screen, {1274, y, 1, 1}, dusk, 4) == 1;
+        };
+        return test::brightness(screen) > 30 && !(is_dusk(200) && is_dusk(400) && is_dusk(600));
     }
     /// Waits until the screen shows a picture, and the same for a while.
     /// @param looks  so many in a row, 150 ms apart: a slow window has no frame every 60 ms
