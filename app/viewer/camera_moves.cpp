@@ -77,13 +77,15 @@ void CameraMoves::ask_sun_over_point() {
         return parts_.messages.note(
             tr("the eye is outside the DEM: right click, Stand here, then ask"));
     const Opened& opened = *parts_.opening.opened();
-    sun_over_.ask({opened.dem, opened.scene, eye, *parts_.state.chosen, parts_.state.document.utc,
-                   parts_.state.document.zone});
+    if (!sun_over_.ask({opened.dem, opened.scene, eye, *parts_.state.chosen,
+                        parts_.state.document.utc, parts_.state.document.zone}))
+        parts_.messages.note(tr("still looking for the time that was asked for before"));
 }
 
 void CameraMoves::poll_sun_over() {
     parts_.messages.try_to([&] {
-        const std::optional<SunOverAnswer> answer = sun_over_.poll();
+        const Opened* const opened = parts_.opening.opened().get();
+        const std::optional<SunOverAnswer> answer = sun_over_.poll(opened ? opened->dem : nullptr);
         if (!answer) return;
         if (answer->utc) {
             parts_.state.set_utc(*answer->utc);

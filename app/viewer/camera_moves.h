@@ -4,15 +4,8 @@
 #include <optional>
 
 #include "viewer/find_sheet.h"
-#include "viewer/frame_pacing.h"
-#include "viewer/hand.h"
-#include "viewer/history.h"
-#include "viewer/messages.h"
-#include "viewer/opening.h"
-#include "viewer/point_query.h"
-#include "viewer/state.h"
+#include "viewer/parts.h"
 #include "viewer/sun_over.h"
-#include "viewer/window.h"
 
 namespace relevo::viewer {
 
@@ -20,17 +13,6 @@ namespace relevo::viewer {
 /// document's pose and time.
 class CameraMoves {
   public:
-    /// What it acts on; all outlive it.
-    struct Parts {
-        Window& window;
-        State& state;
-        Hand& hand;
-        History& history;
-        Messages& messages;
-        FramePacing& pacing;
-        PointQuery& point;
-        const Opening& opening;
-    };
     explicit CameraMoves(const Parts& parts) : parts_(parts) {}
 
     /// The pose of a view that leaves room for the panels.

@@ -79,8 +79,8 @@ void FileOpener::open_requested_files() {
         if (imported) open_imported(*imported);
         return;
     }
-    if (const std::string track = parts_.film.take_track(); !track.empty()) files.push_back(track);
-    if (imported || recent || !dems.empty() || !files.empty()) parts_.film.end_preview();
+    if (const std::string track = film_.take_track(); !track.empty()) files.push_back(track);
+    if (imported || recent || !dems.empty() || !files.empty()) film_.end_preview();
     if (imported) return open_imported(*imported);
     if (recent) return open_dem(*recent);
     if (!dems.empty()) return open_dem({.files = dems});
@@ -137,7 +137,7 @@ void FileOpener::open_scene(scene::Scene scene) {
     parts_.state.message.clear();
     sheet_.close();
     scene.dem.cached = is_cached_;
-    parts_.opening.open(std::move(scene), parts_.first_wanted());
+    parts_.opening.open(std::move(scene), first_wanted_());
     parts_.pacing.need_frames(3);
 }
 
@@ -225,7 +225,7 @@ void FileOpener::stand_where_taken(const std::string& path) {
     }
     parts_.history.end_step(parts_.state.document);
     parts_.hand.rest();
-    parts_.state.document.pose = parts_.moves.pose_in(view);
+    parts_.state.document.pose = moves_.pose_in(view);
     if (taken) parts_.state.set_utc(*taken);
     parts_.pacing.moved();
     parts_.state.step = true;

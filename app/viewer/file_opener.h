@@ -18,21 +18,16 @@ namespace relevo::viewer {
 /// that need it.
 class FileOpener {
   public:
-    /// What it opens them in; all outlive it.
-    struct Parts {
-        Window& window;
-        State& state;
-        Hand& hand;
-        History& history;
-        Messages& messages;
-        FramePacing& pacing;
-        Opening& opening;
-        CameraMoves& moves;
-        FilmController& film;
-        std::function<Wanted()> first_wanted;  ///< what the thread of a scene begins with
-    };
-    /// @param is_cached  as scene::Scene::dem.cached of all that are opened
-    FileOpener(Parts parts, bool is_cached) : parts_(std::move(parts)), is_cached_(is_cached) {}
+    /// @param moves, film   outlive this
+    /// @param first_wanted  what the thread of a scene begins with
+    /// @param is_cached     as scene::Scene::dem.cached of all that are opened
+    FileOpener(const Parts& parts, CameraMoves& moves, FilmController& film,
+               std::function<Wanted()> first_wanted, bool is_cached)
+        : parts_(parts),
+          moves_(moves),
+          film_(film),
+          first_wanted_(std::move(first_wanted)),
+          is_cached_(is_cached) {}
 
     /// The dialog of files.
     void ask_which();
@@ -67,6 +62,9 @@ class FileOpener {
     void stand_where_taken(const std::string& path);
 
     Parts parts_;
+    CameraMoves& moves_;
+    FilmController& film_;
+    std::function<Wanted()> first_wanted_;
     const bool is_cached_;  // not --no-cache
     OpenDialog dialog_;
     ImportSheet sheet_;

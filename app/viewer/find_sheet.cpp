@@ -31,7 +31,7 @@ struct NameWanted {
 struct NamesFound {
     NameWanted of;
     std::vector<const names::Entry*> entries{};
-    std::string error{};  ///< why there are none
+    std::string error{};  ///< why the lists of names cannot be read; empty: they can
 };
 
 /// "Munich (München)": with the first other name.

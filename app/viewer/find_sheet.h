@@ -57,7 +57,7 @@ class FindSheet {
     std::optional<std::string> searched_;  ///< none: nothing yet on this grid
     const dem::Grid* grid_ = nullptr;
     std::vector<FoundPlace> own_, rows_;  ///< coordinates and names of files; all
-    bool is_done_ = false;                ///< `rows_` are those of `searched_`
+    bool is_done_ = false;                ///< the search for `searched_` has ended
     int selected_ = 0;
     std::unique_ptr<Search> search_;  ///< null until the sheet is opened
     std::optional<FoundPlace> chosen_;

@@ -75,7 +75,7 @@ void about(const std::string& device) {
 }
 
 void keys() {
-    static constexpr std::array<std::array<const char*, 2>, 37> kKeys = {{
+    static constexpr std::array<Row, 37> kKeys = {{
         {tr_later("Left drag"), tr_later("move the ground")},
         {tr_later("Right drag, Shift + drag"), tr_later("turn about the ground under the cursor")},
         {tr_later("Middle drag"), tr_later("look around")},

@@ -21,7 +21,7 @@ class History {
     /// What undo() would change: "time", "view" ...; empty: nothing.
     /// @param document  as it is now, with what is no state yet; null: as its last state
     std::string undo_name(const Document* document) const;
-    std::string redo_name() const;  ///< likewise
+    std::string redo_name() const;  ///< what redo() would change
     bool can_undo() const { return at_ > 0; }
     bool can_redo() const { return at_ + 1 < states_.size(); }
     const Document& undo();  ///< the previous state; requires can_undo()

@@ -44,16 +44,13 @@ MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
     comparison_ = std::make_unique<Comparison>(device_, *window_, messages_, discard_);
     point_ = std::make_unique<PointQuery>(state_);
     overlay_ = std::make_unique<OverlayController>(state_, messages_, discard_);
-    moves_ = std::make_unique<CameraMoves>(CameraMoves::Parts{
-        *window_, state_, *hand_, history_, messages_, pacing_, *point_, *opening_});
-    saver_ = std::make_unique<SceneSaver>(
-        SceneSaver::Parts{*window_, state_, messages_, pacing_, *overlay_, *opening_},
-        device_name_);
+    const Parts parts{*window_, state_,  *hand_,    history_, messages_,
+                      pacing_,  *point_, *overlay_, *opening_};
+    moves_ = std::make_unique<CameraMoves>(parts);
+    saver_ = std::make_unique<SceneSaver>(parts, device_name_);
     film_ = make_film();
     opener_ = std::make_unique<FileOpener>(
-        FileOpener::Parts{*window_, state_, *hand_, history_, messages_, pacing_, *opening_,
-                          *moves_, *film_, [this] { return first_wanted(); }},
-        scene.dem.cached);
+        parts, *moves_, *film_, [this] { return first_wanted(); }, scene.dem.cached);
     state_.effects = EffectsModel::of(scene.effects);
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
@@ -123,6 +120,7 @@ void MainWindow::leave() {
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
     discard_.take(std::move(overlay_));
+    discard_.take(std::move(moves_));  // it may look for a time
     // No file is being written by now, and the system frees everything else.
     if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
 }

@@ -4,27 +4,13 @@
 #include <string>
 
 #include "viewer/export_sheet.h"
-#include "viewer/frame_pacing.h"
-#include "viewer/messages.h"
-#include "viewer/opening.h"
-#include "viewer/overlay_controller.h"
-#include "viewer/state.h"
-#include "viewer/window.h"
+#include "viewer/parts.h"
 
 namespace relevo::viewer {
 
 /// What the user takes along: pictures, scenes, jobs and commands of what the window shows.
 class SceneSaver {
   public:
-    /// What it takes them of; all outlive it.
-    struct Parts {
-        Window& window;
-        State& state;
-        Messages& messages;
-        FramePacing& pacing;
-        OverlayController& overlay;
-        const Opening& opening;
-    };
     /// @param device  as session::Options, for exported pictures
     SceneSaver(const Parts& parts, std::string device)
         : parts_(parts), device_(std::move(device)) {}

@@ -41,18 +41,23 @@ SunOverAnswer sun_over(const SunOverQuestion& question) {
                       next->above_rad < 0 ? tr("below") : tr("above"))};
 }
 
-void SunOver::ask(SunOverQuestion question) {
+bool SunOver::ask(SunOverQuestion question) {
+    if (answer_.valid()) return false;
+    dem_ = question.dem;
     answer_ = std::async(std::launch::async, [question = std::move(question)] {
         SunOverAnswer answer = sun_over(question);
         Window::wake();
         return answer;
     });
+    return true;
 }
 
-std::optional<SunOverAnswer> SunOver::poll() {
+std::optional<SunOverAnswer> SunOver::poll(const std::shared_ptr<const session::LoadedDem>& open) {
     using namespace std::chrono_literals;
     if (!answer_.valid() || answer_.wait_for(0s) != std::future_status::ready) return std::nullopt;
-    return answer_.get();
+    const auto asked = std::exchange(dem_, nullptr);
+    const SunOverAnswer answer = answer_.get();
+    return asked == open ? std::optional(answer) : std::nullopt;
 }
 
 }  // namespace relevo::viewer

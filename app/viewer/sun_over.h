@@ -15,7 +15,7 @@ struct SunOverQuestion {
     std::shared_ptr<const session::LoadedDem> dem;
     scene::Scene scene;    ///< files and options of the DEM, refraction
     geo::Geodetic eye;     ///< height above the zero of the DEM's heights
-    geo::Geodetic target;  ///< likewise
+    geo::Geodetic target;  ///< the same height
     sun::Instant after;
     sun::Zone zone;
 };
@@ -26,17 +26,20 @@ struct SunOverAnswer {
 };
 
 /// The first passage of the sun within half a degree, in sight of the eye, in the year after a
-/// time; its figures are those of `relevo sun when`.
+/// time, as `relevo sun when` finds it.
 SunOverAnswer sun_over(const SunOverQuestion& question);
 
 /// Answers the latest question in the background.
 class SunOver {
   public:
-    void ask(SunOverQuestion question);
-    /// The answer, once. @throws Error (BadInput) where the eye or the point is outside the DEM
-    std::optional<SunOverAnswer> poll();
+    /// @returns false: the last question is not answered yet
+    bool ask(SunOverQuestion question);
+    /// The answer, once; none if it is of another DEM than the open one. @throws Error (BadInput)
+    /// where the eye or the point is outside the DEM
+    std::optional<SunOverAnswer> poll(const std::shared_ptr<const session::LoadedDem>& open);
 
   private:
+    std::shared_ptr<const session::LoadedDem> dem_;  // of the question
     std::future<SunOverAnswer> answer_;
 };
 

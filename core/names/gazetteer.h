@@ -37,9 +37,8 @@ struct Near {
 class Gazetteer {
   public:
     /// @param places  empty: none
-    /// @throws Error (BadInput) `names: path: ...` for a file that is missing, damaged or not such
-    /// a
-    ///     list
+    /// @throws Error (BadInput) `names: path: ...` for a file that is missing, damaged or another
+    ///     kind of file
     Gazetteer(const std::filesystem::path& places, const std::filesystem::path& summits);
     Gazetteer(const Gazetteer&) = delete;
     Gazetteer& operator=(const Gazetteer&) = delete;

@@ -1,7 +1,7 @@
 """librelevo, and how it is called: results become exceptions, arrays addresses; long work runs on a thread of its own.
 
-By ctypes: one build serves every Python, and calls cost about what those of a compiled module do. The only callback is
-that of messages, because one takes the GIL, for which work would wait where another thread is busy.
+It is loaded by ctypes, so that one build serves every Python. Progress is polled: a callback would have to wait for the
+GIL, and slow the work down while another thread is busy. Only messages come by a callback.
 """
 
 from __future__ import annotations
