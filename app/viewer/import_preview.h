@@ -7,6 +7,7 @@
 
 #include "dem/source.h"
 #include "image/image.h"
+#include "viewer/crs_suggestions.h"
 #include "viewer/latest_work.h"
 
 namespace relevo::viewer {
@@ -15,6 +16,8 @@ struct PreviewWanted {
     std::vector<std::string> files;
     dem::LoadOptions options;
     int side_px = 0;  ///< of the longer side of the picture
+
+    bool operator==(const PreviewWanted&) const = default;
 };
 
 /// A DEM as the options have it read.
@@ -23,6 +26,7 @@ struct Preview {
     image::Image8 picture;  ///< shaded relief, RGBA, north up; empty: `error`
     std::string text;       ///< size, place, heights, assumptions, in lines
     std::string error;
+    std::vector<CrsSuggestion> suggestions{};  ///< where a CRS is all that it lacks
 };
 
 /// Reads a DEM and shades it. @param wanted  files that exist
@@ -31,12 +35,16 @@ std::shared_ptr<const Preview> preview_of(const PreviewWanted& wanted);
 /// The same on a thread of its own.
 class PreviewWork : public LatestWork<PreviewWanted, Preview> {
   public:
+    /// @param other      as suggest_crs()
     /// @param on_change  called on that thread
-    explicit PreviewWork(std::function<void()> on_change);
+    PreviewWork(RecentDem other, std::function<void()> on_change);
     ~PreviewWork() override { end(); }
 
   protected:
     void work_out(const PreviewWanted* wanted) override;
+
+  private:
+    const RecentDem other_;
 };
 
 }  // namespace relevo::viewer
