@@ -58,7 +58,9 @@ void CameraMoves::move_to_point(Command command) {
 
 void CameraMoves::look_to_moon() {
     Pose& pose = parts_.state.document.pose;
-    const geo::Geodetic eye = view_of(pose, parts_.state.land).eye->place;
+    geo::Geodetic eye = view_of(pose, parts_.state.land).eye->place;
+    // The heights that sun::moon_position() takes. 100 km turn the moon by 0.015 degrees at most.
+    eye.height_m = std::clamp(eye.height_m, 0.0, 100e3);
     const sun::MoonPosition moon = sun::moon_position(parts_.state.document.utc, eye);
     const double elevation_rad = parts_.state.air.apparent_rad(moon.elevation_rad);
     if (elevation_rad < 0)
