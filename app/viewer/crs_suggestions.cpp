@@ -1,11 +1,10 @@
 #include "viewer/crs_suggestions.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 #include <optional>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -20,20 +19,25 @@ namespace {
 
 constexpr std::size_t kMost = 8;
 /// Those used where the other DEM is; each is tried, which takes PROJ some 10 ms.
-constexpr std::size_t kMostTried = 30;
+constexpr std::size_t kMostTried = 40, kMostUsed = 400;
+/// World maps hold everything: the raster has to be somewhere around the other DEM.
+constexpr double kAround_m = 1'000'000;
 
 /// Corners of the raster as its file has them; empty: it has no coordinates.
 std::vector<glm::dvec2> corners_of(const RecentDem& dem) {
-    try {
-        dem::LoadOptions options = dem.options;
-        options.crs = "EPSG:3857";  // any: the coordinates stay
-        const dem::Grid grid = dem::Source::open(dem.files, options).grid();
-        const double right = grid.columns() - 0.5, below = grid.rows() - 0.5;
-        return {grid.affine()(-0.5, -0.5), grid.affine()(right, -0.5), grid.affine()(-0.5, below),
-                grid.affine()(right, below)};
-    } catch (const Error&) {
-        return {};
+    for (const char* any : {"EPSG:3857", "EPSG:4326"}) {  // of metres, of degrees
+        try {
+            dem::LoadOptions options = dem.options;
+            options.crs = any;
+            const dem::Grid grid = dem::Source::open(dem.files, options).grid();
+            const double right = grid.columns() - 0.5, below = grid.rows() - 0.5;
+            return {grid.affine()(-0.5, -0.5), grid.affine()(right, -0.5),
+                    grid.affine()(-0.5, below), grid.affine()(right, below)};
+        } catch (const Error&) {
+            // Not a file that any CRS would help.
+        }
     }
+    return {};
 }
 
 /// Of files on this machine alone: nothing is fetched for a suggestion.
@@ -65,8 +69,20 @@ std::vector<std::string> codes_in(const std::string& name) {
     return codes;
 }
 
-/// In the order in which they are suggested.
-std::vector<geo::KnownCrs> candidates(const RecentDem& dem, const RecentDem& other) {
+/// Projected CRSs that are used at a place: those of GPS and of Europe, then the smallest areas.
+std::vector<geo::KnownCrs> used_at(const geo::Geodetic& place) {
+    std::vector<geo::KnownCrs> used = geo::search_crs(
+        fmt::format("{},{}", degrees(place.lat_rad), degrees(place.lon_rad)), kMostUsed);
+    std::ranges::stable_partition(used, [](const geo::KnownCrs& crs) {
+        return crs.name.starts_with("WGS 84 / UTM") || crs.name.starts_with("ETRS89 / UTM");
+    });
+    if (used.size() > kMostTried) used.resize(kMostTried);
+    return used;
+}
+
+/// Those that are suggested wherever they are.
+std::vector<geo::KnownCrs> named_and_usual(const RecentDem& dem,
+                                           const std::optional<dem::Grid>& other) {
     std::vector<geo::KnownCrs> all;
     const auto add_code = [&](const std::string& code) {
         const std::vector<geo::KnownCrs> found = geo::search_crs(code, 1);
@@ -74,14 +90,8 @@ std::vector<geo::KnownCrs> candidates(const RecentDem& dem, const RecentDem& oth
     };
     for (const std::string& code : codes_in(std::filesystem::path(dem.files.front()).stem()))
         add_code("EPSG:" + code);
-    const std::optional<dem::Grid> grid = grid_of(other);
-    if (grid) add_code(grid->crs().code());
+    if (other) add_code(other->crs().code());
     add_code("EPSG:4326");
-    if (!grid) return all;
-    const geo::Geodetic middle = grid->center();
-    const std::vector<geo::KnownCrs> used_there = geo::search_crs(
-        fmt::format("{},{}", degrees(middle.lat_rad), degrees(middle.lon_rad)), kMostTried);
-    all.insert(all.end(), used_there.begin(), used_there.end());
     return all;
 }
 
@@ -104,14 +114,22 @@ std::vector<CrsSuggestion> suggest_crs(const RecentDem& dem, const RecentDem& ot
     const std::vector<glm::dvec2> corners = corners_of(dem);
     std::vector<CrsSuggestion> suggestions;
     if (corners.empty()) return suggestions;
-    for (const geo::KnownCrs& crs : candidates(dem, other)) {
-        if (suggestions.size() == kMost) break;
+    const std::optional<dem::Grid> last = grid_of(other);
+    const auto add = [&](const geo::KnownCrs& crs, double most_m) {
         const auto is_it = [&](const CrsSuggestion& each) { return each.crs.code == crs.code; };
-        if (std::ranges::any_of(suggestions, is_it) || !geo::holds(crs, corners)) continue;
+        if (suggestions.size() == kMost || std::ranges::any_of(suggestions, is_it)) return;
+        if (!geo::holds(crs, corners)) return;
         const glm::dvec2 middle = (corners[0] + corners[3]) / 2.0;
-        suggestions.push_back(
-            {crs, where_text(geo::Crs::parse(crs.code, crs.code).to_geodetic(middle.x, middle.y))});
-    }
+        const geo::Geodetic place =
+            geo::Crs::parse(crs.code, crs.code).to_geodetic(middle.x, middle.y);
+        if (last && geo::geodesic(last->center(), place).distance_m > most_m) return;
+        suggestions.push_back({crs, where_text(place)});
+    };
+    for (const geo::KnownCrs& crs : named_and_usual(dem, last))
+        add(crs, std::numeric_limits<double>::infinity());
+    if (last)
+        for (const geo::KnownCrs& crs : used_at(last->center()))
+            add(crs, kAround_m);
     return suggestions;
 }
 

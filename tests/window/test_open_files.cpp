@@ -121,15 +121,15 @@ TEST(CrsSuggestions, AreThoseThatTheCoordinatesCanBeIn) {
         std::string text = grid_text();
         text.replace(text.find("xllcorner"), text.find("cellsize") - text.find("xllcorner"),
                      corner);
-        std::vector<std::string> codes;
+        std::vector<std::string> found;
         for (const auto& each : viewer::suggest_crs({{write(name, text)}}, {{other}}))
-            codes.push_back(each.crs.code);
-        return codes;
+            found.push_back(each.crs.code);
+        return found;
     };
     // UTM 16 N around Jacksboro.
     constexpr const char* kUtm = "xllcorner 740000\nyllcorner 4020000\n";
     EXPECT_THAT(codes("grid.asc", kUtm, jacksboro),
-                testing::AllOf(testing::Contains("EPSG:32616"), testing::Contains("EPSG:26916"),
+                testing::AllOf(testing::Contains("EPSG:32616"), testing::SizeIs(testing::Gt(3)),
                                testing::Not(testing::Contains("EPSG:4326"))));
     EXPECT_THAT(codes("grid.asc", kUtm, "/missing.tif"), testing::IsEmpty());
     // A code in the name, if the coordinates can be in it.
@@ -149,7 +149,7 @@ TEST(FilePlace, IsOnTheDemOrOutside) {
     };
     const std::string huts = write("huts.csv", "name,lat,lon\nTop,36.36,-84.23\nFar,47,11\n");
     EXPECT_THAT(words(FileKind::Places, huts),
-                HasSubstr("1 of 2 places are on the DEM, around 6.4 km N"));
+                HasSubstr("1 of 2 places are on the DEM, around 6.49 km NNE"));
     EXPECT_EQ(words(FileKind::Places, write("far.csv", "name,lat,lon\nFar,47,11\n")),
               "outside the DEM");
     const auto way = [](const char* from, const char* to) {
