@@ -137,7 +137,7 @@ def faults(status, memory, lines):
         yield "the window does not end"
     elif status != 0:
         yield f"the window ended with status {status}"
-    yield from (f"the window wrote: {line}" for line in lines if "gl:" in line or "Sanitizer" in line)
+    yield from (f"the window wrote: {line}" for line in lines if ": gl: " in line or "SUMMARY: " in line)
     settled = memory[1:] or memory
     if settled and settled[-1] > MOST_GROWTH * settled[0]:
         yield f"memory grew from {settled[0]:.0f} to {settled[-1]:.0f} MiB"
