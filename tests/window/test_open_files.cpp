@@ -251,14 +251,13 @@ TEST_F(OpenedFiles, ADemOfTheCommandLineWithoutACrsIsAskedForOne) {
 TEST_F(OpenedFiles, ReturnTakesASuggestedCrsAndOpens) {
     std::string text = grid_text();
     text.replace(text.find("xllcorner"), text.find("cellsize") - text.find("xllcorner"),
-                 "xllcorner -84.3\nyllcorner 36.2\n");
-    text.replace(text.find("cellsize 10"), 11, "cellsize 0.001");
+                 "xllcorner 740000\nyllcorner 4020000\n");
     const auto grid = folder_ / "grid.asc";
     std::ofstream(grid) << text;
     open({dem_, "--only"});
     constexpr glm::ivec4 kSheet{270, 160, 740, 480}, kPreview{690, 230, 300, 150};
     ASSERT_TRUE(changes_in(kSheet, [&] { choose(grid.string()); }));
-    // The preview of the CRS of the DEM before, which is highlighted.
+    // The preview of the first suggestion, which is highlighted.
     ASSERT_TRUE(wait([&] {
         return count_near(display_.screen(), kPreview, {110, 110, 110}, 60) > 3000;
     }));
@@ -267,7 +266,7 @@ TEST_F(OpenedFiles, ReturnTakesASuggestedCrsAndOpens) {
     act({"key", "Return"});
     EXPECT_TRUE(shows("grid.asc"));
     ASSERT_TRUE(settles());
-    EXPECT_EQ(scene()["dem"]["crs"], "EPSG:4326");
+    EXPECT_EQ(scene()["dem"]["crs"], "EPSG:32616");
 }
 
 TEST(WindowWords, NameFieldsInsteadOfOptions) {
