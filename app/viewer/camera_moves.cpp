@@ -148,9 +148,11 @@ glm::dvec3 CameraMoves::drawn_m(geo::Geodetic place) const {
 }
 
 void CameraMoves::show(const FilePlace& place) {
-    const auto is_seen = [&](const geo::Geodetic& each) { return is_in_view(drawn_m(each)); };
-    if (!place.on_dem.empty() && !std::ranges::any_of(place.on_dem, is_seen))
-        look_down_at(place.middle());
+    if (place.on_dem.empty()) return;
+    constexpr std::size_t kMostTried = 1000;  // of a track's vertices
+    for (std::size_t i = 0; i < place.on_dem.size(); i += 1 + place.on_dem.size() / kMostTried)
+        if (is_in_view(drawn_m(place.on_dem[i]))) return;
+    look_down_at(place.middle());
 }
 
 void CameraMoves::look_down_at(const geo::Geodetic& place) {

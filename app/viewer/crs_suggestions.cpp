@@ -69,7 +69,7 @@ std::vector<std::string> codes_in(const std::string& name) {
     return codes;
 }
 
-/// Projected CRSs that are used at a place: those of GPS and of Europe, then the smallest areas.
+/// Projected CRSs whose area has a place: UTM on WGS 84 and ETRS89, then the smallest areas.
 std::vector<geo::KnownCrs> used_at(const geo::Geodetic& place) {
     std::vector<geo::KnownCrs> used = geo::search_crs(
         fmt::format("{},{}", degrees(place.lat_rad), degrees(place.lon_rad)), kMostUsed);

@@ -15,8 +15,8 @@ struct CrsSuggestion {
 };
 
 /// CRSs in whose area all of a raster lies: those whose code its name has ("dgm_25832.asc"), that
-/// of another DEM, longitude and latitude, and within 1000 km of the other DEM those used there:
-/// UTM on WGS 84 and ETRS89, then the smallest areas. Takes up to half a second.
+/// of another DEM if it has a code, longitude and latitude, and within 1000 km of the other DEM
+/// those used there: UTM on WGS 84 and ETRS89, then the smallest areas. Takes up to half a second.
 /// @param dem    has coordinates, but no CRS; otherwise there are no suggestions
 /// @param other  the DEM that was opened last; may have no files
 std::vector<CrsSuggestion> suggest_crs(const RecentDem& dem, const RecentDem& other);

@@ -202,8 +202,6 @@ void FileOpener::show_features(FileKind kind, const std::string& path) {
 void FileOpener::lay_over(const std::string& path) {
     const dem::Grid& grid = parts_.opening.opened()->dem->source->grid();
     const FilePlace place = place_of_file(FileKind::Overlay, path, grid);
-    if (place.on_dem.empty())
-        bad_input(tr_format("{}: {}", name_of(path), words_of(place, FileKind::Overlay, grid)));
     parts_.state.document.scene.overlay = scene::Overlay{.file = path};
     parts_.state.document.overlay = choice_of(*parts_.state.document.scene.overlay);
     parts_.state.step = true;

@@ -17,15 +17,23 @@
 namespace relevo::viewer {
 namespace {
 
-/// Corners, edges and inner points of an image.
-std::vector<geo::Geodetic> places_of_image(const std::string& path) {
+/// Corners, edges and inner places of a grid.
+std::vector<geo::Geodetic> places_all_over(const dem::Grid& grid) {
     constexpr int kSide = 9;
-    const dem::Grid grid = overlay::grid_of_raster(path);
     std::vector<geo::Geodetic> places;
     for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column)
             places.push_back(grid.place((grid.columns() - 1.0) * column / (kSide - 1),
                                         (grid.rows() - 1.0) * row / (kSide - 1)));
+    return places;
+}
+
+/// Those of an image, and those of the DEM that the image covers: either may be far larger.
+std::vector<geo::Geodetic> places_of_image(const std::string& path, const dem::Grid& dem) {
+    const dem::Grid image = overlay::grid_of_raster(path);
+    std::vector<geo::Geodetic> places = places_all_over(image);
+    for (const geo::Geodetic& place : places_all_over(dem))
+        if (names::is_on(image, place)) places.push_back(place);
     return places;
 }
 
@@ -39,7 +47,7 @@ std::vector<geo::Geodetic> places_in(FileKind kind, const std::string& path, con
             for (const glm::dvec2& post : line.posts)
                 places.push_back(dem.place(post.x, post.y));
     } else {
-        places = places_of_image(path);
+        places = places_of_image(path, dem);
     }
     return places;
 }
@@ -47,7 +55,7 @@ std::vector<geo::Geodetic> places_in(FileKind kind, const std::string& path, con
 }  // namespace
 
 geo::Geodetic FilePlace::middle() const {
-    // The one nearest to the mean: the mean of a bent track lies beside it.
+    // The mean itself may lie beside a track that bends.
     glm::dvec3 mean(0);
     const auto on_sphere = [](const geo::Geodetic& place) {
         return glm::dvec3(std::cos(place.lat_rad) * std::cos(place.lon_rad),

@@ -107,11 +107,10 @@ std::shared_ptr<const Preview> preview_of(const PreviewWanted& wanted) {
     return preview;
 }
 
-PreviewWork::PreviewWork(RecentDem other, std::function<void()> on_change)
-    : LatestWork(
-          std::move(on_change),
-          [](const PreviewWanted& of, const PreviewWanted& now) { return of.files == now.files; }),
-      other_(std::move(other)) {}
+PreviewWork::PreviewWork(std::function<void()> on_change)
+    : LatestWork(std::move(on_change), [](const PreviewWanted& of, const PreviewWanted& now) {
+          return of.files == now.files;
+      }) {}
 
 void PreviewWork::work_out(const PreviewWanted* wanted) {
     if (!wanted) return;
@@ -119,7 +118,11 @@ void PreviewWork::work_out(const PreviewWanted* wanted) {
     publish(preview, /*done=*/true);
     if (preview->error.empty() || !wanted->options.crs.empty()) return;
     auto suggesting = std::make_shared<Preview>(*preview);
-    suggesting->suggestions = suggest_crs({wanted->files, wanted->options}, other_);
+    try {
+        suggesting->suggestions = suggest_crs({wanted->files, wanted->options}, wanted->other);
+    } catch (const std::exception&) {
+        return;  // without PROJ's database; the field of the CRS says so
+    }
     if (!suggesting->suggestions.empty()) publish(suggesting, /*done=*/true);
 }
 

@@ -15,9 +15,8 @@ namespace relevo::viewer {
 struct PreviewWanted {
     std::vector<std::string> files;
     dem::LoadOptions options;
-    int side_px = 0;  ///< of the longer side of the picture
-
-    bool operator==(const PreviewWanted&) const = default;
+    int side_px = 0;    ///< of the longer side of the picture
+    RecentDem other{};  ///< as suggest_crs()
 };
 
 /// A DEM as the options have it read.
@@ -35,16 +34,12 @@ std::shared_ptr<const Preview> preview_of(const PreviewWanted& wanted);
 /// The same on a thread of its own.
 class PreviewWork : public LatestWork<PreviewWanted, Preview> {
   public:
-    /// @param other      as suggest_crs()
     /// @param on_change  called on that thread
-    PreviewWork(RecentDem other, std::function<void()> on_change);
+    explicit PreviewWork(std::function<void()> on_change);
     ~PreviewWork() override { end(); }
 
   protected:
     void work_out(const PreviewWanted* wanted) override;
-
-  private:
-    const RecentDem other_;
 };
 
 }  // namespace relevo::viewer

@@ -82,7 +82,9 @@ void ImportSheet::open(const RecentDem& dem, std::string reason, const RecentDem
     shown_ = nullptr;
     suggestions_.clear();
     selected_ = 0;
-    work_ = std::make_unique<PreviewWork>(other, &Window::wake);
+    other_ = other;
+    if (!work_) work_ = std::make_unique<PreviewWork>(&Window::wake);
+    work_->forget();
     is_open_ = takes_focus_ = true;
 }
 
@@ -97,7 +99,8 @@ void ImportSheet::want_preview() {
     if (previewed_ == fields) return;
     previewed_ = fields;
     try {
-        work_->want({dem_.files, fields.options(dem_.options), kPreview_px});
+        wanted_ = {dem_.files, fields.options(dem_.options), kPreview_px, other_};
+        work_->want(wanted_);
         error_.clear();
     } catch (const Error& error) {
         error_ = error.what();
@@ -191,8 +194,8 @@ void ImportSheet::take_preview() {
 }
 
 bool ImportSheet::can_open() const {
-    return error_.empty() && shown_ && shown_->error.empty() &&
-           shown_->of.options == highlighted().options(dem_.options);
+    return error_.empty() && previewed_ == highlighted() && shown_ && shown_->error.empty() &&
+           shown_->of.options == wanted_.options;
 }
 
 void ImportSheet::preview(float width_px) {
@@ -215,7 +218,7 @@ void ImportSheet::preview(float width_px) {
 
 void ImportSheet::choose() {
     chosen_ = dem_;
-    chosen_->options = highlighted().options(dem_.options);
+    chosen_->options = wanted_.options;
     is_open_ = false;
 }
 

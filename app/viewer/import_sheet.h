@@ -64,7 +64,7 @@ class ImportSheet {
     void buttons();
     void choose();
 
-    RecentDem dem_;
+    RecentDem dem_, other_;
     std::string reason_, error_;
     Fields fields_;
     std::optional<Fields> previewed_;
@@ -72,7 +72,8 @@ class ImportSheet {
     std::vector<CrsSuggestion> found_, suggestions_;
     int selected_ = 0;  // of listed()
     bool takes_focus_ = false;
-    std::unique_ptr<PreviewWork> work_;  // of dem_
+    std::unique_ptr<PreviewWork> work_;  // from the first open()
+    PreviewWanted wanted_;               // of previewed_
     std::shared_ptr<const Preview> shown_;
     gl::Texture texture_;  // of shown_
     bool is_open_ = false;

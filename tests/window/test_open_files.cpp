@@ -166,6 +166,14 @@ TEST(FilePlace, IsOnTheDemOrOutside) {
         "outside the DEM");
     EXPECT_THAT(words(FileKind::Overlay, (test::source_dir() / "data/dem/jacksboro.tif").string()),
                 HasSubstr("on the DEM around"));
+    // A map of half the world, of whose sampled places none is on the DEM.
+    std::string half = grid_text();
+    half.replace(half.find("xllcorner"), half.find("NODATA") - half.find("xllcorner"),
+                 "xllcorner -180\nyllcorner -90\ncellsize 6\n");
+    write("half.prj",
+          "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,"
+          "298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
+    EXPECT_THAT(words(FileKind::Overlay, write("half.asc", half)), HasSubstr("on the DEM around"));
 }
 
 /// The window with files that a desktop's dialog gives.
@@ -261,9 +269,16 @@ TEST_F(OpenedFiles, ReturnTakesASuggestedCrsAndOpens) {
     ASSERT_TRUE(wait([&] {
         return count_near(display_.screen(), kPreview, {110, 110, 110}, 60) > 3000;
     }));
-    act({"key", "Return"});
+    // Edges that cannot be are only said.
+    act({"mousemove", "420", "413", "click", "1"});
+    act({"type", "--delay", "60", "1,2"});
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    act({"key", "Return"});
+    act({"key", "ctrl+a", "key", "BackSpace"});
+    act({"mousemove", "420", "243", "click", "1"});
+    for (int i = 0; i < 2; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        act({"key", "Return"});
+    }
     EXPECT_TRUE(shows("grid.asc"));
     ASSERT_TRUE(settles());
     EXPECT_EQ(scene()["dem"]["crs"], "EPSG:32616");

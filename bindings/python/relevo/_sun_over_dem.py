@@ -50,8 +50,9 @@ class SunOverDem:
     refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"; not of the sky view
     highest: what no terrain outside of the DEM exceeds [m] (the DEM's highest post)
     clip: (west, south, east, north) in `clip_crs` (the DEM's CRS), or polygons: anything with `__geo_interface__`, as
-        shapely and geopandas have it, in `clip_crs` (their own `crs`, else the DEM's). Only posts in it are computed,
-        in the shade of the whole DEM; others are NaN. Polygons need rasterio.
+        shapely and geopandas have it, in `clip_crs` (their own `crs`, else the DEM's); of another CRS the vertices
+        are moved and edges are straight in the DEM's. Only posts in it are computed, in the shade of the whole DEM;
+        others are NaN. Polygons need rasterio.
 
     and warn (relevo.Warning) where terrain outside of the DEM could change values.
     """
