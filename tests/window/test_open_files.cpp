@@ -170,10 +170,11 @@ TEST(FilePlace, IsOnTheDemOrOutside) {
     std::string half = grid_text();
     half.replace(half.find("xllcorner"), half.find("NODATA") - half.find("xllcorner"),
                  "xllcorner -180\nyllcorner -90\ncellsize 6\n");
-    write("half.prj",
-          "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,"
-          "298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
-    EXPECT_THAT(words(FileKind::Overlay, write("half.asc", half)), HasSubstr("on the DEM around"));
+    const std::string map = write("half.asc", half);
+    std::ofstream(std::filesystem::path(map).replace_extension("prj"))
+        << "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,"
+           "298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
+    EXPECT_THAT(words(FileKind::Overlay, map), HasSubstr("on the DEM around"));
 }
 
 /// The window with files that a desktop's dialog gives.
