@@ -38,19 +38,14 @@ void run_days(const DayArguments& arguments, const DayFigure& figure) {
                               arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
     }
     const geo::PlaceText at = arguments.place.parse();
-    const DaysArguments::Days asked = arguments.days.parse(at.place);
+    const report::Days asked = arguments.days.parse(at.place);
     const DayForms forms = figure.forms(asked, at, load());
-    warn_of(forms.point.doubt);
+    report::warn_of(forms.point.doubt);
     arguments.output.deliver({.drawing = forms.drawing,
                               .csv = forms.csv,
                               .json = forms.point.json,
                               .print = forms.print},
                              file);
-}
-
-void check_has_ground(const geo::PlaceText& at) {
-    if (at.above_ground)
-        bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
 }
 
 }  // namespace relevo::cli

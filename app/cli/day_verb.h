@@ -23,6 +23,7 @@ struct DayArguments {
     /// All of them, with an optional DEM. `light.body` is to be set before.
     /// @param endings  of -o
     void add_to(Verb verb, const std::vector<std::string>& endings);
+    report::View view() const { return terrain.view(place.eye_height_m, light.view()); }
 };
 
 /// What a verb has to say of the days at one place, in each of its forms.
@@ -33,15 +34,17 @@ struct DayForms {
     std::function<chart::Drawing()> drawing = {};  ///< null if the verb draws nothing
 };
 
-/// Forms of a result by its rows_of(), json_of(), csv_of() and print_text().
+/// Forms of a result of core/report.
 /// @param terrain  whether there is a DEM
 template <typename Result>
-DayForms forms_of(const std::shared_ptr<const Result>& result, bool terrain) {
-    return {.point = {.rows = [=] { return rows_of(*result, terrain); },
-                      .json = [=] { return json_of(*result); },
+DayForms forms_of(const std::shared_ptr<const Result>& result, bool terrain,
+                  std::vector<std::string> (*rows)(const Result&, bool holes),
+                  std::string (*csv)(const Result&), void (*print)(const Result&)) {
+    return {.point = {.rows = [=] { return rows(*result, terrain); },
+                      .json = [=] { return nlohmann::ordered_json::parse(json_of(*result)); },
                       .doubt = result->doubt},
-            .csv = [=] { return csv_of(*result); },
-            .print = [=] { print_text(*result); }};
+            .csv = [=] { return csv(*result); },
+            .print = [=] { print(*result); }};
 }
 
 struct DayFigure {
@@ -49,15 +52,11 @@ struct DayFigure {
     std::function<std::string(bool terrain)> columns;
     std::vector<std::string> remarks;  ///< above the columns
     /// @param posts  null without a DEM; lives as long as the result
-    std::function<DayForms(const DaysArguments::Days&, const geo::PlaceText&,
-                           const dem::Posts* posts)>
+    std::function<DayForms(const report::Days&, const geo::PlaceText&, const dem::Posts* posts)>
         forms;
 };
 
 /// Computes a figure for --at or for all of --points, and delivers it.
 void run_days(const DayArguments& arguments, const DayFigure& figure);
-
-/// @throws Error (Usage) for a height above the ground where there is no DEM
-void check_has_ground(const geo::PlaceText& at);
 
 }  // namespace relevo::cli

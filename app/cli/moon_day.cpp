@@ -12,65 +12,16 @@
 namespace relevo::cli {
 namespace {
 
-using nlohmann::ordered_json;
+using report::all_day_of;
+using report::MoonDays;
 using sun::EventKind;
 
-constexpr EventKind kMoonKinds[] = {EventKind::Moonrise, EventKind::Transit, EventKind::Moonset,
-                                    EventKind::LowerTransit};
-constexpr const char* kPhases =
-    "phases: the moon's apparent geocentric ecliptic longitude is 0, 90, 180 or 270 degrees more "
-    "than the sun's; illuminated fraction: at the middle of the local day";
-
-constexpr DayResult::Words kMoonWords{
-    "direct_moonlight", "phase_definition", kPhases,
-    "date,all_day",     kMoonKinds,         ",moon_up_h,illuminated_fraction,phase,phase_time"};
-
-struct MoonDayResult : DayResult {
-    std::vector<sun::MoonDay> days{};
-};
-
-const char* all_day_of(const sun::MoonDay& day) {
-    return day.moon == sun::Crossing::AboveAllDay   ? "up"
-           : day.moon == sun::Crossing::BelowAllDay ? "down"
-                                                    : nullptr;
-}
-
-ordered_json first_json(const sun::MoonDay& day, EventKind kind) {
-    for (const sun::Event& event : day.events)
-        if (event.kind == kind) return utc_json(event.utc);
-    return nullptr;
-}
-
-ordered_json day_json(const MoonDayResult& result, std::size_t i) {
-    const sun::MoonDay& day = result.days[i];
-    ordered_json json;
-    json["date"] = sun::to_string(day.date);
-    const char* all_day = all_day_of(day);
-    json["all_day"] = all_day ? ordered_json(all_day) : ordered_json();
-    for (const EventKind kind : kMoonKinds)
-        json[std::string(sun::name_of(kind)) + "_utc"] = first_json(day, kind);
-    json["moon_up_h"] = day.moon_up_s / 3600;
-    json["illuminated_fraction"] = day.illuminated_fraction;
-    json["phase"] = sun::phase_name(day.phase_longitude_rad);
-    ordered_json& phases = json["phases"] = ordered_json::array();
-    for (const sun::PhaseTime& phase : day.phases)
-        phases.push_back({{"phase", sun::name_of(phase.phase)},
-                          {"utc", utc_json(phase.utc)},
-                          {"local", sun::to_iso(phase.utc, result.asked.zone)}});
-    json["events"] = events_json(day.events, result.asked.zone);
-    return json;
-}
-
-ordered_json json_of(const MoonDayResult& result) {
-    return json_of(result, result.days.size(), [&](std::size_t i) { return day_json(result, i); });
-}
-
-std::string row_of(const MoonDayResult& result, std::size_t i, bool holes) {
+std::string row_of(const MoonDays& result, std::size_t i, bool holes) {
     const sun::Zone& zone = result.asked.zone;
     const sun::MoonDay& day = result.days[i];
     const char* all_day = all_day_of(day);
     std::string text = sun::to_string(day.date) + "," + (all_day ? all_day : "");
-    for (const EventKind kind : kMoonKinds) {
+    for (const EventKind kind : result.words.kinds) {
         std::string times;
         for (const sun::Event& event : day.events)
             if (event.kind == kind)
@@ -83,7 +34,18 @@ std::string row_of(const MoonDayResult& result, std::size_t i, bool holes) {
     return text + light_columns(result, i, holes);
 }
 
-void print_day(const MoonDayResult& result) {
+std::vector<std::string> rows_of(const MoonDays& result, bool holes) {
+    std::vector<std::string> rows;
+    for (std::size_t i = 0; i < result.days.size(); ++i)
+        rows.push_back(row_of(result, i, holes));
+    return rows;
+}
+
+std::string csv_of(const MoonDays& result) {
+    return table_of(result, rows_of(result, result.has_holes()));
+}
+
+void print_day(const MoonDays& result) {
     const sun::MoonDay& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     print_events(day.events, zone);
@@ -97,7 +59,7 @@ void print_day(const MoonDayResult& result) {
     if (!result.light.empty()) print_lit(result.light.front(), "moonlight", zone);
 }
 
-void print_days(const MoonDayResult& result) {
+void print_days(const MoonDays& result) {
     const sun::Zone& zone = result.asked.zone;
     const bool lit = !result.light.empty();
     fmt::print("\n{:<12}{:<10}{:<10}{:<10}{:>10}{:>8}  {:<24}{}\n", "date", "moonrise", "transit",
@@ -122,26 +84,18 @@ void print_days(const MoonDayResult& result) {
     }
 }
 
-void print_text(const MoonDayResult& result) {
+void print_text(const MoonDays& result) {
     print_head(result);
     result.asked.single ? print_day(result) : print_days(result);
     print_definitions(result);
 }
 
 void run(const DayArguments& arguments) {
-    const auto forms = [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
-                           const dem::Posts* posts) {
-        const auto result = std::make_shared<MoonDayResult>(DayResult{kMoonWords, asked});
-        const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
-        std::optional<light::TerrainHorizon> horizon;
-        if (posts) horizon.emplace(*posts, at.place, arguments.terrain.horizon(at, eye_height_m));
-        if (find_light(arguments, at, horizon ? &*horizon : nullptr, *result))
-            result->light_definition += "; at any phase, and by day too";
-        result->days = sun::moon_days(asked.first, asked.last, asked.zone, result->place,
-                                      arguments.light.rule(result->place, eye_height_m));
-        return forms_of(std::shared_ptr<const MoonDayResult>(result), posts != nullptr);
-    };
-    run_days(arguments, kMoonWords, forms);
+    run_days(arguments, report::kMoonWords,
+             [&](const report::Days& asked, const geo::PlaceText& at, const dem::Posts* posts) {
+                 return forms_of(report::moon_days(arguments.view(), asked, at, posts),
+                                 posts != nullptr, rows_of, csv_of, print_text);
+             });
 }
 
 }  // namespace

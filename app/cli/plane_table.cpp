@@ -104,9 +104,9 @@ std::string plane_csv(const PlaneTable& table) {
 
 ordered_json plane_json(const PlaneTable& table) {
     ordered_json json;
-    json["place"] = place_json(table.place);
+    json["place"] = report::place_json<ordered_json>(table.place);
     json["zone"] = table.zone.name();
-    add_assumption(json, table.assumption);
+    report::add_assumption(json, table.assumption);
     json["tilt_deg"] = angle_deg(table.plane.tilt_rad);
     json["azimuth_deg"] = angle_deg(table.plane.azimuth_rad);
     for (const auto& [key, text] : table.remarks)

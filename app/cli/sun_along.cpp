@@ -62,7 +62,7 @@ double share(double part, double whole) {
 }
 
 ordered_json moment_json(const light::WalkMoment& moment, const sun::Zone& zone) {
-    return {{"utc", utc_json(moment.utc)},
+    return {{"utc", report::utc_json<ordered_json>(moment.utc)},
             {"local", sun::to_iso(moment.utc, zone)},
             {"distance_m", moment.distance_m},
             {"lat_deg", angle_deg(moment.place.lat_rad)},
@@ -74,7 +74,7 @@ ordered_json json_of(const AlongResult& result) {
     ordered_json json;
     json["name"] = result.name;
     json["zone"] = result.zone.name();
-    add_assumption(json, result.assumption);
+    report::add_assumption(json, result.assumption);
     json["definition"] = found.definition;
     json["refraction"] = result.air;
     json["spacing_m"] = found.spacing_m;
@@ -251,14 +251,14 @@ void run_along(AlongArguments arguments) {
     result.points = line.places.size();
     const light::Walk walk = walk_of(arguments, path, line, posts, result);
     light::WalkOptions options;
-    options.horizon = arguments.terrain.horizon({}, arguments.eye_height_m);
+    options.horizon = arguments.terrain.view(arguments.eye_height_m).horizon({});
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.highest_m = arguments.terrain.highest_m;
     result.air = arguments.refraction.name() == "standard"
                      ? "integrated ICAO standard atmosphere over the ground there"
                      : arguments.refraction.at(walk.places().front()).description();
     result.found = light::light_along(posts, walk, options);
-    warn_of(result.found.doubt);
+    report::warn_of(result.found.doubt);
     arguments.output.deliver({.drawing = {},
                               .csv = [&] { return csv_of(result); },
                               .json = [&] { return json_of(result); },

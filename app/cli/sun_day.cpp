@@ -16,75 +16,16 @@
 namespace relevo::cli {
 namespace {
 
-using nlohmann::ordered_json;
+using report::polar_of;
+using report::SunDays;
 using sun::EventKind;
 
-constexpr EventKind kSunKinds[] = {EventKind::AstronomicalDawn, EventKind::NauticalDawn,
-                                   EventKind::CivilDawn,        EventKind::Sunrise,
-                                   EventKind::Transit,          EventKind::Sunset,
-                                   EventKind::CivilDusk,        EventKind::NauticalDusk,
-                                   EventKind::AstronomicalDusk, EventKind::LowerTransit};
-constexpr const char* kTwilights =
-    "twilights: centre of the sun 6 (civil), 12 (nautical), 18 (astronomical) degrees below the "
-    "level horizon; golden hour: centre from 4 below to 6 above; blue hour: from 6 to 4 below; all "
-    "without refraction";
-
-constexpr DayResult::Words kSunWords{"direct_sun", "twilight_definition",
-                                     kTwilights,   "date,polar",
-                                     kSunKinds,    ",day_length_h,golden_hour,blue_hour"};
-
-/// With what its diagram is drawn from.
-struct SunDayResult : DayResult {
-    std::vector<sun::Day> days{};
-    std::optional<light::TerrainHorizon> horizon{};
-    std::optional<light::DirectLight> direct{};  // refers to horizon
-};
-
-const char* polar_of(const sun::Day& day) {
-    return day.sun == sun::Crossing::AboveAllDay   ? "day"
-           : day.sun == sun::Crossing::BelowAllDay ? "night"
-                                                   : nullptr;
-}
-
-ordered_json day_json(const SunDayResult& result, std::size_t i) {
-    const sun::Day& day = result.days[i];
-    ordered_json json;
-    json["date"] = sun::to_string(day.date);
-    const char* polar = polar_of(day);
-    json["polar"] = polar ? ordered_json(polar) : ordered_json();
-    for (const EventKind kind : kSunKinds)
-        json[std::string(sun::name_of(kind)) + "_utc"] = utc_json(day.first(kind));
-    json["day_length_h"] = day.day_length_s / 3600;
-    json["golden_hour"] = spans_json(day.golden_hour);
-    json["blue_hour"] = spans_json(day.blue_hour);
-    json["events"] = events_json(day.events, result.asked.zone);
-    return json;
-}
-
-ordered_json seasons_json(int year) {
-    const sun::Seasons s = sun::seasons(year);
-    return {{"year", year},
-            {"march_equinox_utc", utc_json(s.march_equinox)},
-            {"june_solstice_utc", utc_json(s.june_solstice)},
-            {"september_equinox_utc", utc_json(s.september_equinox)},
-            {"december_solstice_utc", utc_json(s.december_solstice)}};
-}
-
-ordered_json json_of(const SunDayResult& result) {
-    ordered_json json =
-        json_of(result, result.days.size(), [&](std::size_t i) { return day_json(result, i); });
-    ordered_json& seasons = json["seasons"] = ordered_json::array();
-    for (int year = result.asked.first.year; year <= result.asked.last.year; ++year)
-        seasons.push_back(seasons_json(year));
-    return json;
-}
-
-std::string row_of(const SunDayResult& result, std::size_t i, bool holes) {
+std::string row_of(const SunDays& result, std::size_t i, bool holes) {
     const sun::Zone& zone = result.asked.zone;
     const sun::Day& day = result.days[i];
     const char* polar = polar_of(day);
     std::string text = sun::to_string(day.date) + "," + (polar ? polar : "");
-    for (const EventKind kind : kSunKinds) {
+    for (const EventKind kind : result.words.kinds) {
         std::string times;
         for (const sun::Instant utc : day.all(kind))
             times += (times.empty() ? "" : ";") + sun::to_iso(utc, zone);
@@ -93,6 +34,17 @@ std::string row_of(const SunDayResult& result, std::size_t i, bool holes) {
     text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, spans_of(day.golden_hour, zone),
                         spans_of(day.blue_hour, zone));
     return text + light_columns(result, i, holes);
+}
+
+std::vector<std::string> rows_of(const SunDays& result, bool holes) {
+    std::vector<std::string> rows;
+    for (std::size_t i = 0; i < result.days.size(); ++i)
+        rows.push_back(row_of(result, i, holes));
+    return rows;
+}
+
+std::string csv_of(const SunDays& result) {
+    return table_of(result, rows_of(result, result.has_holes()));
 }
 
 void print_seasons(const DayResult& result) {
@@ -109,7 +61,7 @@ void print_seasons(const DayResult& result) {
     }
 }
 
-void print_day(const SunDayResult& result) {
+void print_day(const SunDays& result) {
     const sun::Day& day = result.days.front();
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
@@ -136,7 +88,7 @@ void print_day(const SunDayResult& result) {
     print_definitions(result);
 }
 
-void print_days(const SunDayResult& result) {
+void print_days(const SunDays& result) {
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
     const bool lit = !result.light.empty();
@@ -166,11 +118,11 @@ void print_days(const SunDayResult& result) {
     print_definitions(result);
 }
 
-void print_text(const SunDayResult& result) {
+void print_text(const SunDays& result) {
     result.asked.single ? print_day(result) : print_days(result);
 }
 
-chart::Drawing draw(const DayArguments& arguments, const SunDayResult& result) {
+chart::Drawing draw(const DayArguments& arguments, const SunDays& result) {
     chart::SunPathDiagram diagram;
     diagram.place = result.place;
     diagram.place_name = arguments.place.name;
@@ -188,29 +140,14 @@ chart::Drawing draw(const DayArguments& arguments, const SunDayResult& result) {
     return diagram.draw();
 }
 
-DayForms forms_at(const DayArguments& arguments, const DaysArguments::Days& asked,
-                  const geo::PlaceText& at, const dem::Posts* posts) {
-    const auto result = std::make_shared<SunDayResult>(DayResult{kSunWords, asked});
-    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
-    if (posts)
-        result->horizon.emplace(*posts, at.place, arguments.terrain.horizon(at, eye_height_m));
-    result->direct =
-        find_light(arguments, at, result->horizon ? &*result->horizon : nullptr, *result);
-    sun::DayOptions options;
-    options.rule = arguments.light.rule(result->place, eye_height_m);
-    if (!posts)
-        result->days = sun::day_events(asked.first, asked.last, asked.zone, at.place, options);
-    for (const light::LightDay& day : result->light)
-        result->days.push_back(day.flat);
-    DayForms forms = forms_of(std::shared_ptr<const SunDayResult>(result), posts != nullptr);
-    forms.drawing = [=, &arguments] { return draw(arguments, *result); };
-    return forms;
-}
-
 void run_day(const DayArguments& arguments) {
-    run_days(arguments, kSunWords,
-             [&](const DaysArguments::Days& asked, const geo::PlaceText& at,
-                 const dem::Posts* posts) { return forms_at(arguments, asked, at, posts); });
+    run_days(arguments, report::kSunWords,
+             [&](const report::Days& asked, const geo::PlaceText& at, const dem::Posts* posts) {
+                 const auto result = report::sun_days(arguments.view(), asked, at, posts);
+                 DayForms forms = forms_of(result, posts != nullptr, rows_of, csv_of, print_text);
+                 forms.drawing = [=, &arguments] { return draw(arguments, *result); };
+                 return forms;
+             });
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ ordered_json number_or_null(double value) {
 ordered_json json_of(const light::TerrainHorizon& horizon,
                      const std::vector<light::HorizonPoint>& profile, const light::Doubt& doubt) {
     ordered_json json;
-    json["place"] = place_json(horizon.place());
+    json["place"] = report::place_json<ordered_json>(horizon.place());
     json["eye_m"] = horizon.eye_m();
     json["definition"] = horizon.description();
     ordered_json& points = json["horizon"] = ordered_json::array();
@@ -50,7 +50,8 @@ ordered_json json_of(const light::TerrainHorizon& horizon,
                         {"reach_m", s.reach_m},
                         {"needed_m", s.needed_m},
                         {"least_m", s.least_m}});
-    if (!doubt.holes.empty()) json["hole_sectors"] = sectors_json(doubt.holes);
+    if (!doubt.holes.empty())
+        json["hole_sectors"] = report::sectors_json<ordered_json>(doubt.holes);
     return json;
 }
 
@@ -59,7 +60,7 @@ std::string holes_text(const light::Doubt& doubt) {
     return fmt::format(
         "not known: the horizon {}, where ground as high as the DEM's highest post in a void would "
         "be above it",
-        sectors_text(doubt.holes));
+        report::sectors_text(doubt.holes));
 }
 
 constexpr const char* kHorizonColumns =
@@ -120,8 +121,7 @@ void print_text(const light::TerrainHorizon& horizon,
 }
 
 /// @param asked  the day or the year whose sun or moon the panorama shows
-chart::Drawing draw(const HorizonArguments& arguments,
-                    const std::optional<DaysArguments::Days>& asked,
+chart::Drawing draw(const HorizonArguments& arguments, const std::optional<report::Days>& asked,
                     const light::TerrainHorizon& horizon,
                     const std::vector<light::HorizonPoint>& profile) {
     chart::HorizonPanorama panorama;
@@ -136,8 +136,7 @@ chart::Drawing draw(const HorizonArguments& arguments,
         panorama.zone = asked->zone;
         panorama.refraction = arguments.light.refraction.at(horizon.place());
         if (asked->single) {
-            direct.emplace(horizon,
-                           arguments.light.light(horizon.place(), arguments.place.eye_height_m));
+            direct.emplace(horizon, arguments.view().light(horizon.place()));
             panorama.day = direct->day(asked->first, asked->zone);
             panorama.light_definition = direct->definition();
         }
@@ -184,9 +183,9 @@ void check_format(const HorizonArguments& arguments, const std::string& format) 
 }
 
 /// The day or the year whose sun a panorama shows, or the day whose moon.
-std::optional<DaysArguments::Days> asked_of(const HorizonArguments& arguments) {
+std::optional<report::Days> asked_of(const HorizonArguments& arguments) {
     if (!arguments.days.given()) return std::nullopt;
-    const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
+    const report::Days asked = arguments.days.parse(arguments.place.parse().place);
     if (!asked.single && arguments.light.body == sun::Body::Moon)
         bad_usage("--from, --to and --year: a panorama shows one day of the moon; pass --date");
     if (!asked.single && !arguments.days.year)
@@ -210,8 +209,8 @@ void run_points(const HorizonArguments& arguments, FilesInUse& files, OutputFile
     const auto forms = [&](const dem::NamedPlace& point) {
         const geo::PlaceText& at = point.at;
         const auto result = std::make_shared<HorizonResult>();
-        result->horizon = std::make_unique<light::TerrainHorizon>(
-            posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
+        result->horizon =
+            std::make_unique<light::TerrainHorizon>(posts, at.place, arguments.view().horizon(at));
         result->profile = result->horizon->profile(directions);
         result->doubt =
             light::doubt_of(*result->horizon, result->profile, arguments.terrain.highest_m);
@@ -236,13 +235,15 @@ void run_horizon(const HorizonArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
     if (arguments.points.given()) return run_points(arguments, files, file);
-    const std::optional<DaysArguments::Days> asked = asked_of(arguments);
+    const std::optional<report::Days> asked = asked_of(arguments);
     const int directions = directions_of(arguments, format);
-    const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
-    const light::TerrainHorizon& horizon = view->horizon;
+    const geo::PlaceText at = arguments.place.parse();
+    const light::HorizonOptions options = arguments.view().horizon(at);
+    const dem::Posts posts = arguments.terrain.load();
+    const light::TerrainHorizon horizon(posts, at.place, options);
     const std::vector<light::HorizonPoint> profile = horizon.profile(directions);
     const light::Doubt doubt = light::doubt_of(horizon, profile, arguments.terrain.highest_m);
-    warn_of(doubt);
+    report::warn_of(doubt);
 
     const auto table = [&] {
         return format == "pvlib"    ? output::pvlib_text(profile)

@@ -29,7 +29,7 @@ struct HoursArguments {
     figure::Hours figure;
 };
 
-sun::TimeSpan time_of(const DaysArguments::Days& days) {
+sun::TimeSpan time_of(const report::Days& days) {
     return {days.zone.day(days.first).begin, days.zone.day(days.last).end};
 }
 
@@ -108,7 +108,7 @@ void run_hours(HoursArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = arguments.raster.open(files);
     const figure::RasterGround ground = arguments.raster.load();
-    const DaysArguments::Days days = arguments.days.parse(ground.posts.grid().center());
+    const report::Days days = arguments.days.parse(ground.posts.grid().center());
     figure::Hours& figure = arguments.figure;
     figure.time = time_of(days);
     figure.zone = days.zone;

@@ -164,7 +164,7 @@ light::Plane plane_of(const PlaneArguments& arguments, const dem::NamedPlace& po
 std::vector<light::Irradiance> selected(const PlaneArguments& arguments,
                                         const light::IrradianceTable& table) {
     if (!arguments.days.given()) return table.rows;
-    const DaysArguments::Days asked = arguments.days.parse({}, false);
+    const report::Days asked = arguments.days.parse({}, false);
     std::vector<light::Irradiance> rows;
     for (const light::Irradiance& row : table.rows) {
         const sun::Date date = table.clock.local(row.span.begin).wall.date;
@@ -179,7 +179,7 @@ std::vector<light::Irradiance> selected(const PlaneArguments& arguments,
     return rows;
 }
 
-std::vector<sun::TimeSpan> hours_of(const DaysArguments::Days& asked) {
+std::vector<sun::TimeSpan> hours_of(const report::Days& asked) {
     std::vector<sun::TimeSpan> hours;
     for (const sun::LocalDay& day : sun::local_days(asked.first, asked.last, asked.zone))
         for (sun::Instant begin = day.span.begin; begin < day.span.end; begin = begin + kHour_s)
@@ -192,8 +192,7 @@ light::PlaneLight::Result light_of(const PlaneRun& run, const light::PlaneLight&
                                    PlaneTable& result) {
     const PlaneArguments& arguments = run.arguments;
     if (!run.table) {
-        const DaysArguments::Days asked =
-            arguments.days.parse(result.place, !arguments.points.given());
+        const report::Days asked = arguments.days.parse(result.place, !arguments.points.given());
         result.zone = asked.zone;
         result.assumption = asked.assumption;
         return light.clear(hours_of(asked),
@@ -259,15 +258,13 @@ PlaneTable table_of(const PlaneRun& run, const dem::NamedPlace& point) {
     result.place = point.at.place;
     std::unique_ptr<const light::TerrainHorizon> ground;
     if (run.posts) {
-        ground = std::make_unique<light::TerrainHorizon>(
-            *run.posts, point.at.place,
-            arguments.terrain.horizon(point.at, arguments.place.eye_height_m));
+        ground = std::make_unique<light::TerrainHorizon>(*run.posts, point.at.place,
+                                                         arguments.view().horizon(point.at));
         result.place = ground->place();
     } else {
-        check_has_ground(point.at);
+        report::check_has_ground(point.at);
     }
-    const light::LightOptions options =
-        arguments.light.light(result.place, arguments.place.eye_height_m);
+    const light::LightOptions options = arguments.view().light(result.place);
     const light::DirectLight level(result.place, light::Skyline({0.0}), "a level horizon", options);
     std::unique_ptr<const light::DirectLight> over;
     std::string horizon = "horizon: level";
@@ -286,7 +283,7 @@ PlaneTable table_of(const PlaneRun& run, const dem::NamedPlace& point) {
         level, over.get());
     light::PlaneLight::Result found = light_of(run, light, result);
     if (ground && arguments.horizon.empty())
-        result.doubt = light::doubt_of(*over, found.lit, ground->profile(kDoubtDirections),
+        result.doubt = light::doubt_of(*over, found.lit, ground->profile(report::kDoubtDirections),
                                        arguments.terrain.highest_m);
     result.hours = std::move(found.hours);
     result.remarks = remarks_of(run);
@@ -344,7 +341,7 @@ void run_plane(const PlaneArguments& arguments) {
     if (arguments.terrain.given()) run.posts.emplace(arguments.terrain.load());
     const PlaneTable table = table_of(run, point);
     warn_of_distance(run, table.place);
-    warn_of(table.doubt);
+    report::warn_of(table.doubt);
     arguments.output.deliver({.csv = [&] { return plane_csv(table); },
                               .json = [&] { return plane_json(table); },
                               .print = [&] { fmt::print("{}", plane_csv(table)); }},

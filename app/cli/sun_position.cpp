@@ -13,14 +13,14 @@
 #include "cli/sun_points.h"
 #include "geo/format.h"
 #include "geo/geodetic.h"
+#include "report/position.h"
 #include "sun/event_time.h"
-#include "sun/moon.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
 namespace {
 
-using nlohmann::ordered_json;
+using report::BodyPosition;
 
 struct PositionArguments {
     sun::Body body = sun::Body::Sun;
@@ -31,76 +31,12 @@ struct PositionArguments {
     OutputArguments output;
 };
 
-/// A figure of a position: its key in JSON and CSV, and how CSV writes it.
-struct Figure {
-    const char* key;
-    double value;
-    const char* csv;
-};
-
-struct PositionResult {
-    sun::Body body;
-    geo::Geodetic place;
-    sun::ParsedTime when;
-    sun::SkyPosition sky;
-    sun::Refraction air;
-    double apparent_deg = 0;
-    std::vector<Figure> more;  ///< what only this body has
-    std::string phase;         ///< of the moon
-};
-
-std::vector<Figure> figures_of(const sun::MoonPosition& moon, sun::Instant utc) {
-    return {{"illuminated_fraction", moon.illuminated_fraction, "{:.6f}"},
-            {"phase_angle_deg", degrees(moon.phase_angle_rad), "{:.6f}"},
-            {"elongation_deg", degrees(moon.elongation_rad), "{:.6f}"},
-            {"bright_limb_deg", degrees(moon.bright_limb_rad), "{:.4f}"},
-            {"bright_limb_from_zenith_deg", degrees(moon.bright_limb_from_zenith_rad), "{:.4f}"},
-            {"phase_longitude_deg", degrees(moon.phase_longitude_rad), "{:.6f}"},
-            {"age_d", sun::moon_age_d(utc), "{:.4f}"}};
-}
-
-PositionResult result_of(const PositionArguments& arguments, const geo::PlaceText& at,
-                         const sun::ParsedTime& when) {
-    PositionResult result{
-        arguments.body, at.place, when, {}, arguments.refraction.at(at.place), 0, {}, {}};
-    if (arguments.body == sun::Body::Sun) {
-        const sun::Position sun = sun::position(when.utc, at.place);
-        result.sky = sun;
-        result.more = {{"equation_of_time_min", sun.equation_of_time_s / 60, "{:.5f}"}};
-    } else {
-        const sun::MoonPosition moon = sun::moon_position(when.utc, at.place);
-        result.sky = moon;
-        result.more = figures_of(moon, when.utc);
-        result.phase = sun::phase_name(moon.phase_longitude_rad);
-    }
-    result.apparent_deg = degrees(result.air.apparent_rad(result.sky.elevation_rad));
-    return result;
-}
-
-/// In the unit that the body's distance is usually given in.
-Figure distance_of(const PositionResult& result) {
-    constexpr double kAu_km = 149'597'870.7;
-    if (result.body == sun::Body::Sun) return {"distance_au", result.sky.distance_au, "{:.9f}"};
-    return {"distance_km", result.sky.distance_au * kAu_km, "{:.3f}"};
-}
-
-ordered_json json_of(const PositionResult& result) {
-    const sun::SkyPosition& sky = result.sky;
-    const Figure distance = distance_of(result);
-    ordered_json json = {{"utc", sun::to_iso(result.when.utc, 3)},
-                         {"azimuth_deg", degrees(sky.azimuth_rad)},
-                         {"elevation_deg", degrees(sky.elevation_rad)},
-                         {"apparent_elevation_deg", result.apparent_deg},
-                         {"refraction", result.air.description()},
-                         {distance.key, distance.value},
-                         {"declination_deg", degrees(sky.declination_rad)},
-                         {"right_ascension_deg", degrees(sky.right_ascension_rad)},
-                         {"semidiameter_deg", degrees(sky.semidiameter_rad)}};
-    for (const Figure& figure : result.more)
-        json[figure.key] = figure.value;
-    if (!result.phase.empty()) json["phase"] = result.phase;
-    add_assumption(json, result.when.assumption);
-    return json;
+BodyPosition result_of(const PositionArguments& arguments, const geo::PlaceText& at,
+                       const sun::ParsedTime& when) {
+    report::View view;
+    view.body = arguments.body;
+    view.refraction = arguments.refraction.name();
+    return report::position(view, at.place, when);
 }
 
 std::string position_columns(sun::Body body) {
@@ -124,21 +60,21 @@ std::string definition_of(sun::Body body) {
            "the zenith to the left; libration is not modelled";
 }
 
-std::string row_of(const PositionResult& result) {
+std::string row_of(const BodyPosition& result) {
     const sun::SkyPosition& sky = result.sky;
-    const Figure distance = distance_of(result);
+    const report::Number distance = result.distance();
     std::string row = fmt::format(
         "{},{:.6f},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f}",
         sun::to_iso(result.when.utc, result.when.zone), degrees(sky.azimuth_rad),
         degrees(sky.elevation_rad), result.apparent_deg,
-        fmt::format(fmt::runtime(distance.csv), distance.value), degrees(sky.declination_rad),
+        fmt::format(fmt::runtime(distance.format), distance.value), degrees(sky.declination_rad),
         degrees(sky.right_ascension_rad), degrees(sky.semidiameter_rad));
-    for (const Figure& figure : result.more)
-        row += "," + fmt::format(fmt::runtime(figure.csv), figure.value);
+    for (const report::Number& figure : result.more)
+        row += "," + fmt::format(fmt::runtime(figure.format), figure.value);
     return result.phase.empty() ? row : row + "," + result.phase;
 }
 
-void print_text(const PositionResult& result) {
+void print_text(const BodyPosition& result) {
     const sun::SkyPosition& sky = result.sky;
     const double azimuth_deg = degrees(sky.azimuth_rad);
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
@@ -157,21 +93,17 @@ void print_text(const PositionResult& result) {
         return;
     }
     const auto figure = [&](const char* key) {
-        return std::ranges::find_if(result.more,
-                                    [&](const Figure& f) { return std::string_view(f.key) == key; })
+        return std::ranges::find_if(
+                   result.more,
+                   [&](const report::Number& f) { return std::string_view(f.key) == key; })
             ->value;
     };
-    fmt::print("distance            {:9.0f} km\n", distance_of(result).value);
+    fmt::print("distance            {:9.0f} km\n", result.distance().value);
     fmt::print("declination         {:9.4f} deg\n", degrees(sky.declination_rad));
     fmt::print("phase               {}, {:.1f} days old\n", result.phase, figure("age_d"));
     fmt::print("illuminated         {:9.2f} %\n", 100 * figure("illuminated_fraction"));
     fmt::print("bright limb         {:9.2f} deg  from the zenith to the left\n",
                figure("bright_limb_from_zenith_deg"));
-}
-
-void check_height(const geo::PlaceText& at) {
-    if (at.above_ground)
-        bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
 }
 
 void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFile* file) {
@@ -180,17 +112,19 @@ void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFil
     session::needs_dem(spec);  // reports invalid words before any work
     const bool zone_by_place = sun::is_zone_by_place(spec.zone) && !sun::is_solar_zone(spec.zone) &&
                                (sun::is_event_time(spec.at) || sun::is_wall_time(spec.at));
-    const PointsJob job{.columns = position_columns(arguments.body),
-                        .remarks = {definition_of(arguments.body)},
-                        .forms = [&](const dem::NamedPlace& point) {
-                            const geo::PlaceText& at = point.at;
-                            check_height(at);
-                            const auto result = std::make_shared<PositionResult>(
-                                result_of(arguments, at, session::parse_quietly(spec, {}, at)));
-                            return PointForms{.rows = [=] { return std::vector{row_of(*result)}; },
-                                              .json = [=] { return json_of(*result); },
-                                              .doubt = {}};
-                        }};
+    const PointsJob job{
+        .columns = position_columns(arguments.body),
+        .remarks = {definition_of(arguments.body)},
+        .forms = [&](const dem::NamedPlace& point) {
+            const geo::PlaceText& at = point.at;
+            report::check_has_ground(at);
+            const auto result = std::make_shared<BodyPosition>(
+                result_of(arguments, at, session::parse_quietly(spec, {}, at)));
+            return PointForms{
+                .rows = [=] { return std::vector{row_of(*result)}; },
+                .json = [=] { return nlohmann::ordered_json::parse(json_of(*result)); },
+                .doubt = {}};
+        }};
     deliver_points(arguments.points, points, job, arguments.output, file, zone_by_place);
 }
 
@@ -199,8 +133,8 @@ void run_position(const PositionArguments& arguments) {
     OutputFile* const file = arguments.output.open(files, {});
     if (arguments.points.given()) return run_points(arguments, files, file);
     const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
-    check_height(at);
-    const PositionResult result =
+    report::check_has_ground(at);
+    const BodyPosition result =
         result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
     arguments.output.deliver(
         {.drawing = {},
@@ -209,7 +143,7 @@ void run_position(const PositionArguments& arguments) {
                  return csv_remarks({definition_of(result.body), result.air.description()}) +
                         position_columns(result.body) + "\n" + row_of(result) + "\n";
              },
-         .json = [&] { return json_of(result); },
+         .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
          .print = [&] { print_text(result); }},
         file);
 }

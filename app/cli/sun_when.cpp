@@ -1,66 +1,33 @@
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "base/log.h"
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "cli/sun_points.h"
 #include "geo/format.h"
-#include "light/point/alignment.h"
-#include "light/point/doubt.h"
-#include "light/point/ground_at.h"
+#include "report/when.h"
 
 namespace relevo::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct WhenArguments {
     TerrainArguments terrain;
     PlaceArguments place;
     PointsArguments points;
-    std::string over;
+    report::WhenOptions options;
     DaysArguments days;
     RefractionArguments refraction;
-    double tolerance_deg = 0.5, summit_radius_m = 100;
     OutputArguments output;
-};
 
-ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon& horizon,
-                     const DaysArguments::Days& asked) {
-    const sun::Zone& zone = asked.zone;
-    ordered_json json;
-    json["place"] = place_json(horizon.place());
-    json["eye_m"] = horizon.eye_m();
-    json["target"] = place_json(found.target);
-    json["sight"] = {{"azimuth_deg", angle_deg(found.sight.azimuth_rad)},
-                     {"elevation_deg", angle_deg(found.sight.elevation_rad)},
-                     {"distance_m", found.sight.distance_m},
-                     {"visible", found.sight.visible},
-                     {"hidden_by_deg", angle_deg(found.sight.hidden_by_rad)}};
-    if (found.sight.hole) json["sight"]["hole"] = true;
-    json["zone"] = zone.name();
-    add_assumption(json, asked.assumption);
-    json["definition"] = found.definition;
-    ordered_json& passages = json["passages"] = ordered_json::array();
-    for (const light::Alignment& p : found.passages) {
-        passages.push_back({{"utc", utc_json(p.utc)},
-                            {"local", sun::to_iso(p.utc, zone)},
-                            {"date", sun::to_string(p.date)},
-                            {"separation_deg", angle_deg(p.separation_rad)},
-                            {"right_deg", angle_deg(p.right_rad)},
-                            {"above_deg", angle_deg(p.above_rad)},
-                            {"azimuth_deg", angle_deg(p.azimuth_rad)},
-                            {"apparent_elevation_deg", angle_deg(p.elevation_rad)},
-                            {"sun_visible", p.sun_visible}});
-        if (p.hole) passages.back()["hole"] = true;
+    report::View view() const {
+        report::View light;
+        light.refraction = refraction.name();
+        return terrain.view(place.eye_height_m, light);
     }
-    return json;
-}
+};
 
 constexpr const char* kWhenColumns =
     "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible";
@@ -123,53 +90,20 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
     fmt::print("\n{}\n{}\n", found.definition, horizon.description());
 }
 
-/// The point that --over means.
-geo::Geodetic target_of(const WhenArguments& arguments, const dem::Posts& posts) {
-    const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
-    if (over.has_height && !over.above_ground) return over.place;
-    geo::Geodetic target =
-        light::summit_near(posts, over.place, over.has_height ? 0 : arguments.summit_radius_m);
-    target.height_m += over.place.height_m;
-    return target;
-}
-
-light::Alignments find(const WhenArguments& arguments, const light::TerrainHorizon& horizon,
-                       const geo::Geodetic& target, const DaysArguments::Days& asked) {
-    light::AlignmentOptions options;
-    options.tolerance_rad = radians(arguments.tolerance_deg);
-    options.refraction = arguments.refraction.at(horizon.place());
-    return light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
-}
-
-bool through_hole(const light::Alignments& found) {
-    return found.sight.hole ||
-           std::ranges::any_of(found.passages, [](const light::Alignment& p) { return p.hole; });
-}
-
 void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* file) {
     arguments.days.parse({}, false);  // what is wrong with them is said before any work
     const auto points = arguments.points.read(files, arguments.output);
     const dem::Posts posts = arguments.terrain.load();
-    const geo::Geodetic target = target_of(arguments, posts);
-    struct WhenResult {
-        std::unique_ptr<const light::TerrainHorizon> horizon;
-        light::Alignments found;
-        DaysArguments::Days asked;
-    };
+    const geo::Geodetic target = arguments.options.target(posts);
     const auto forms = [&](const dem::NamedPlace& point) {
-        const geo::PlaceText& at = point.at;
-        const auto result = std::make_shared<WhenResult>();
-        result->asked = arguments.days.parse(at.place, false);
-        result->horizon = std::make_unique<light::TerrainHorizon>(
-            posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
-        result->found = find(arguments, *result->horizon, target, result->asked);
-        light::Doubt doubt =
-            light::doubt_of(*result->horizon, result->found, arguments.terrain.highest_m);
-        if (through_hole(result->found)) doubt.holes.emplace_back();
-        return PointForms{
-            .rows = [=] { return rows_of(result->found, result->asked.zone); },
-            .json = [=] { return json_of(result->found, *result->horizon, result->asked); },
-            .doubt = doubt};
+        const report::Days asked = arguments.days.parse(point.at.place, false);
+        const auto result = std::make_shared<const report::When>(
+            report::when(arguments.view(), arguments.options, asked, point.at, posts, target));
+        light::Doubt doubt = result->doubt;
+        if (result->through_hole()) doubt.holes.emplace_back();
+        return PointForms{.rows = [=] { return rows_of(result->found, result->asked.zone); },
+                          .json = [=] { return nlohmann::ordered_json::parse(json_of(*result)); },
+                          .doubt = doubt};
     };
     deliver_points(arguments.points, points, {kWhenColumns, {kDirections}, forms}, arguments.output,
                    file, sun::is_zone_by_place(arguments.days.zone));
@@ -180,24 +114,19 @@ void run_when(const WhenArguments& arguments) {
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
     if (arguments.points.given()) return run_points(arguments, files, file);
-    const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
-    geo::parse_place(arguments.over, "--over");  // what is wrong with it is said before any work
-    const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
-    const light::TerrainHorizon& horizon = view->horizon;
-    const light::Alignments found =
-        find(arguments, horizon, target_of(arguments, view->dem), asked);
-
-    if (through_hole(found))
-        log::warning(
-            "the DEM has voids in the way: ground in them could hide the summit or the sun over "
-            "it; use a DEM without voids");
-
-    warn_of(light::doubt_of(horizon, found, arguments.terrain.highest_m));
-
+    const geo::PlaceText at = arguments.place.parse();
+    const report::Days asked = arguments.days.parse(at.place);
+    // What is wrong with these is said before any work.
+    geo::parse_place(arguments.options.over, "--over");
+    arguments.view().horizon(at);
+    const dem::Posts posts = arguments.terrain.load();
+    const report::When result = report::when(arguments.view(), arguments.options, asked, at, posts,
+                                             arguments.options.target(posts));
+    report::warn_of(result);
     output.deliver({.drawing = {},
-                    .csv = [&] { return csv_of(found, asked.zone); },
-                    .json = [&] { return json_of(found, horizon, asked); },
-                    .print = [&] { print_text(found, horizon, asked.zone); }},
+                    .csv = [&] { return csv_of(result.found, asked.zone); },
+                    .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
+                    .print = [&] { print_text(result.found, *result.horizon, asked.zone); }},
                    file);
 }
 
@@ -210,13 +139,13 @@ void add_sun_when(Verb sun_verb) {
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
-    verb.add_option("--over", arguments->over,
+    verb.add_option("--over", arguments->options.over,
                     "Summit: LAT,LON for the highest post nearby, or LAT,LON,H for that point")
         .required();
-    verb.add_option("--summit-radius", arguments->summit_radius_m,
+    verb.add_option("--summit-radius", arguments->options.summit_radius_m,
                     "Search radius of the summit, m (100)")
         .check(in_range(0.0, 10000.0));
-    verb.add_option("--tolerance", arguments->tolerance_deg,
+    verb.add_option("--tolerance", arguments->options.tolerance_deg,
                     "Largest distance of the sun's centre, degrees (0.5)")
         .check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);

@@ -9,6 +9,7 @@
 #include "handles.h"
 #include "scene/scene.h"
 #include "session/session.h"
+#include "sun/time.h"
 
 namespace relevo::c {
 
@@ -42,5 +43,8 @@ Handles<relevo_dem, Dem>& dems();
 
 /// A place of the caller's. @throws BadCall, Error (BadInput) for what is no place
 geo::Geodetic place_of(const relevo_place* place);
+
+/// @throws Error (BadInput) for what no instant holds
+sun::Instant instant_of(double time_s);
 
 }  // namespace relevo::c

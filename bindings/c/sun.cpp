@@ -19,15 +19,15 @@
 #include "sun/position.h"
 
 namespace relevo::c {
-namespace {
 
-/// @throws Error (BadInput) for what no instant holds
 sun::Instant instant_of(double time_s) {
     constexpr double kMost_s = 1e11;  // the year 5138; what is not computed sun::check_year() says
     if (!(std::abs(time_s) < kMost_s))
         bad_input(fmt::format("time: {:.10g}: expected seconds since 1970", time_s));
     return sun::Instant::from_unix_us(std::llround(time_s * 1e6));
 }
+
+namespace {
 
 double seconds_of(sun::Instant instant) {
     return static_cast<double>(instant.unix_us()) * 1e-6;

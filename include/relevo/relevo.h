@@ -189,6 +189,21 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
                                         const char* options, const double* azimuth_deg,
                                         size_t count, double* elevation_deg, double* distance_m);
 
+/* A figure of a place, as the program says it with --json. Since 0.2.
+ * @param dem      null for figures without terrain; "sun carpet" and "sun when" need one
+ * @param figure   "sun position", "moon position": {"positions": [...]} of "times" (a list)
+ *     "sun day", "moon day", "sun eclipses": of "date", or "from" and "to", or "year"; of days
+ *     always as {"days": [...]}
+ *     "sun carpet": of a "year"; "step" [s] (180)
+ *     "sun when": of days; "over" ("LAT,LON", "LAT,LON,H"), "summit_radius" [m] (100),
+ *     "tolerance" [degrees] (0.5)
+ * @param options  all: "lat", "lon" [degrees], "height" [m above sea level]; "refraction"
+ *     with days: "zone", "eye_height" [m above the ground], "terrestrial_refraction", "highest";
+ *     of risings and light: "limb" ("upper", "center", "lower"), "dip" [degrees] (not the carpet)
+ * @param answer   receives JSON */
+RELEVO_API relevo_result relevo_answer(relevo_dem* dem, const char* figure, const char* options,
+                                       const char** answer);
+
 /* ---- rasters of light ---- */
 
 /* Rasters have a value for each post of the DEM: columns * rows elements, bands one after the

@@ -1,0 +1,203 @@
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "dem.h"
+#include "options.h"
+#include "report/carpet.h"
+#include "report/days.h"
+#include "report/doubts.h"
+#include "report/eclipses.h"
+#include "report/position.h"
+#include "report/when.h"
+#include "session/words.h"
+
+/// Figures of a place, as the program's --json says them.
+namespace relevo::c {
+namespace {
+
+/// A call of relevo_answer(): options that figures share, read when they are asked for.
+class AnswerCall {
+  public:
+    AnswerCall(Dem* dem, json::ObjectReader& reader) : dem_(dem), reader_(reader) {}
+
+    json::ObjectReader& reader() { return reader_; }
+    /// Null without a DEM.
+    const dem::Posts* ground() { return dem_ ? &dem_->posts() : nullptr; }
+    /// @throws BadCall
+    const dem::Posts& posts() { return need(dem_, "dem").posts(); }
+
+    geo::PlaceText place() {
+        std::string at = fmt::format("{},{}", degrees("lat", 90), degrees("lon", 360));
+        if (reader_.has("height"))
+            at += fmt::format(",{}", reader_.number("height", 0, -12000, 10'000, false));
+        return geo::parse_place(at, "--at");
+    }
+    /// Options of the air and of the ground.
+    report::View view(sun::Body body) {
+        report::View view;
+        view.body = body;
+        view.eye_height_m = optional("eye_height", {0, 0, 10'000});
+        view.terrestrial_refraction = number(reader_, figure::kTerrestrialRefraction);
+        view.highest_m = optional("highest", figure::kHighestAtPoint_m);
+        if (reader_.has("refraction"))
+            view.refraction = refraction_name(reader_.string("refraction"), "");
+        return view;
+    }
+    /// With what rising and shining mean.
+    report::View light(sun::Body body) {
+        static const std::vector<std::string> kLimbs{"upper", "center", "lower"};
+        report::View view = this->view(body);
+        if (reader_.has("limb")) view.limb = kLimbs[reader_.choice("limb", kLimbs)];
+        return view;
+    }
+    std::optional<double> optional(const char* key, const figure::Range& range) {
+        if (!reader_.has(key)) return {};
+        return reader_.number(key, 0, range.min, range.max, false);
+    }
+    report::DaysText days() {
+        report::DaysText text = year();
+        text.date = reader_.string("date", "");
+        text.from = reader_.string("from", "");
+        text.to = reader_.string("to", "");
+        return text;
+    }
+    report::DaysText year() {
+        report::DaysText text;
+        text.zone = reader_.string("zone", "");
+        if (reader_.has("year"))
+            text.year = static_cast<int>(reader_.number("year", 0, -1e6, 1e6, true));
+        return text;
+    }
+    /// After the last option: what is wrong with them is said before any work.
+    report::Days parse(const report::DaysText& text, const geo::PlaceText& at) {
+        reader_.finish();
+        report::Days days = text.parse(at.place, session::zone_of);
+        days.single = false;
+        return days;
+    }
+
+  private:
+    double degrees(const char* key, double most) {
+        reader_.need(key);
+        return reader_.number(key, 0, -most, most, false);
+    }
+
+    Dem* dem_;
+    json::ObjectReader& reader_;
+};
+
+/// A figure of days: report::sun_days() and the like.
+template <sun::Body body, auto make>
+std::string days_answer(AnswerCall& call) {
+    const geo::PlaceText at = call.place();
+    report::View view = call.light(body);
+    view.dip_deg = call.optional("dip", {0, 0, 5});
+    const report::Days days = call.parse(call.days(), at);
+    const auto result = make(view, days, at, call.ground());
+    report::warn_of(result->doubt);
+    return json_of(*result);
+}
+
+std::shared_ptr<const report::Eclipses> shared_eclipses(const report::View& view,
+                                                        const report::Days& days,
+                                                        const geo::PlaceText& at,
+                                                        const dem::Posts* posts) {
+    return std::make_shared<report::Eclipses>(report::eclipses(view, days, at, posts));
+}
+
+std::string carpet_answer(AnswerCall& call) {
+    const geo::PlaceText at = call.place();
+    const report::View view = call.light(sun::Body::Sun);
+    const auto step_s = static_cast<int>(call.reader().number("step", 180, 1, 86'400, true));
+    const report::Days days = call.parse(call.year(), at);
+    const light::TerrainHorizon horizon(call.posts(), at.place, view.horizon(at));
+    const report::Carpet result = report::carpet(view, horizon, days, step_s);
+    report::warn_of(result.doubt);
+    return json_of(result);
+}
+
+std::string when_answer(AnswerCall& call) {
+    const geo::PlaceText at = call.place();
+    report::View view = call.view(sun::Body::Sun);
+    report::WhenOptions options;
+    options.over = call.reader().string("over");
+    options.summit_radius_m =
+        call.reader().number("summit_radius", options.summit_radius_m, 0, 10'000, false);
+    options.tolerance_deg =
+        call.reader().number("tolerance", options.tolerance_deg, 0.001, 45, false);
+    const report::Days days = call.parse(call.days(), at);
+    geo::parse_place(options.over, "--over");
+    const report::When result =
+        report::when(view, options, days, at, call.posts(), options.target(call.posts()));
+    report::warn_of(result);
+    return json_of(result);
+}
+
+template <sun::Body body>
+std::string positions_answer(AnswerCall& call) {
+    const geo::PlaceText at = call.place();
+    report::View view;
+    view.body = body;
+    if (call.reader().has("refraction"))
+        view.refraction = refraction_name(call.reader().string("refraction"), "");
+    const json::Value& times = call.reader().need("times");
+    call.reader().finish();
+    std::vector<std::string> positions;
+    for (const json::Value& time : times.items) {
+        if (time.kind != json::Value::Kind::Number)
+            call.reader().fail(time.line, "times", "expected numbers");
+        sun::ParsedTime when;
+        when.utc = instant_of(time.number);
+        positions.push_back(json_of(report::position(view, at.place, when)));
+    }
+    return fmt::format(R"({{"positions": [{}]}})", fmt::join(positions, ", "));
+}
+
+struct Answer {
+    std::string_view figure;
+    std::string (*make)(AnswerCall&);
+};
+constexpr std::array kAnswers{
+    Answer{"sun position", positions_answer<sun::Body::Sun>},
+    Answer{"sun day", days_answer<sun::Body::Sun, report::sun_days>},
+    Answer{"sun eclipses", days_answer<sun::Body::Sun, shared_eclipses>},
+    Answer{"sun carpet", carpet_answer},
+    Answer{"sun when", when_answer},
+    Answer{"moon position", positions_answer<sun::Body::Moon>},
+    Answer{"moon day", days_answer<sun::Body::Moon, report::moon_days>},
+};
+
+/// @throws Error (BadInput) for an unknown figure
+const Answer& answer_of(std::string_view figure) {
+    std::string known;
+    for (const Answer& answer : kAnswers) {
+        if (answer.figure == figure) return answer;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", answer.figure);
+    }
+    bad_input(fmt::format("figure: expected one of {} but got {}", known, figure));
+}
+
+}  // namespace
+}  // namespace relevo::c
+
+using namespace relevo;
+
+relevo_result relevo_answer(relevo_dem* dem, const char* figure, const char* options,
+                            const char** answer) {
+    return c::guarded("relevo_answer", [&] {
+        c::need(answer, "answer") = nullptr;
+        const c::Answer& asked = c::answer_of(&c::need(figure, "figure"));
+        c::Options given(options, "relevo_answer");
+        const std::shared_ptr<c::Dem> of = dem ? c::dems().get(dem, "dem") : nullptr;
+        c::AnswerCall call(of.get(), given.reader());
+        *answer = c::returned_text(asked.make(call));
+    });
+}
