@@ -15,6 +15,7 @@
 #include "geo/geodetic.h"
 #include "report/position.h"
 #include "sun/event_time.h"
+#include "sun/moon.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
@@ -33,10 +34,11 @@ struct PositionArguments {
 
 BodyPosition result_of(const PositionArguments& arguments, const geo::PlaceText& at,
                        const sun::ParsedTime& when) {
-    report::View view;
-    view.body = arguments.body;
-    view.refraction = arguments.refraction.name();
-    return report::position(view, at.place, when);
+    BodyPosition result =
+        report::position(arguments.body, arguments.refraction.at(at.place), at.place, when);
+    if (arguments.body == sun::Body::Moon)
+        result.more.push_back({"age_d", sun::moon_age_d(when.utc), "{:.4f}"});
+    return result;
 }
 
 std::string position_columns(sun::Body body) {

@@ -145,18 +145,18 @@ template <sun::Body body>
 std::string positions_answer(AnswerCall& call) {
     const geo::PlaceText at = call.place();
     report::View view;
-    view.body = body;
     if (call.reader().has("refraction"))
         view.refraction = refraction_name(call.reader().string("refraction"), "");
     const json::Value& times = call.reader().need("times");
     call.reader().finish();
+    const sun::Refraction air = view.air(at.place);
     std::vector<std::string> positions;
     for (const json::Value& time : times.items) {
         if (time.kind != json::Value::Kind::Number)
             call.reader().fail(time.line, "times", "expected numbers");
         sun::ParsedTime when;
         when.utc = instant_of(time.number);
-        positions.push_back(json_of(report::position(view, at.place, when)));
+        positions.push_back(json_of(report::position(body, air, at.place, when)));
     }
     return fmt::format(R"({{"positions": [{}]}})", fmt::join(positions, ", "));
 }

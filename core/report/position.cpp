@@ -12,14 +12,13 @@ using nlohmann::ordered_json;
 
 namespace {
 
-std::vector<Number> figures_of(const sun::MoonPosition& moon, sun::Instant utc) {
+std::vector<Number> figures_of(const sun::MoonPosition& moon) {
     return {{"illuminated_fraction", moon.illuminated_fraction, "{:.6f}"},
             {"phase_angle_deg", degrees(moon.phase_angle_rad), "{:.6f}"},
             {"elongation_deg", degrees(moon.elongation_rad), "{:.6f}"},
             {"bright_limb_deg", degrees(moon.bright_limb_rad), "{:.4f}"},
             {"bright_limb_from_zenith_deg", degrees(moon.bright_limb_from_zenith_rad), "{:.4f}"},
-            {"phase_longitude_deg", degrees(moon.phase_longitude_rad), "{:.6f}"},
-            {"age_d", sun::moon_age_d(utc), "{:.4f}"}};
+            {"phase_longitude_deg", degrees(moon.phase_longitude_rad), "{:.6f}"}};
 }
 
 }  // namespace
@@ -30,16 +29,17 @@ Number BodyPosition::distance() const {
     return {"distance_km", sky.distance_au * kAu_km, "{:.3f}"};
 }
 
-BodyPosition position(const View& view, const geo::Geodetic& place, const sun::ParsedTime& when) {
-    BodyPosition result{view.body, place, when, {}, view.air(place), 0, {}, {}};
-    if (view.body == sun::Body::Sun) {
+BodyPosition position(sun::Body body, const sun::Refraction& air, const geo::Geodetic& place,
+                      const sun::ParsedTime& when) {
+    BodyPosition result{body, place, when, {}, air, 0, {}, {}};
+    if (body == sun::Body::Sun) {
         const sun::Position sun = sun::position(when.utc, place);
         result.sky = sun;
         result.more = {{"equation_of_time_min", sun.equation_of_time_s / 60, "{:.5f}"}};
     } else {
         const sun::MoonPosition moon = sun::moon_position(when.utc, place);
         result.sky = moon;
-        result.more = figures_of(moon, when.utc);
+        result.more = figures_of(moon);
         result.phase = sun::phase_name(moon.phase_longitude_rad);
     }
     result.apparent_deg = degrees(result.air.apparent_rad(result.sky.elevation_rad));

@@ -31,7 +31,10 @@ struct BodyPosition {
     Number distance() const;
 };
 
-BodyPosition position(const View& view, const geo::Geodetic& place, const sun::ParsedTime& when);
+/// Without the age of the moon, which takes ten times as long.
+/// @param air  over the place
+BodyPosition position(sun::Body body, const sun::Refraction& air, const geo::Geodetic& place,
+                      const sun::ParsedTime& when);
 std::string json_of(const BodyPosition& result);
 
 }  // namespace relevo::report

@@ -293,5 +293,35 @@ TEST_F(Figures, TheHorizonIsThatOfTheProgram) {
     EXPECT_TRUE(std::isnan(height_m));
 }
 
+TEST_F(Figures, AnswersAreThoseOfTheProgram) {
+    const relevo_grid grid = grid_of(dem_.get());
+    const std::string at =
+        fmt::format(R"("lat": {}, "lon": {})", grid.centre_lat_deg, grid.centre_lon_deg);
+    for (const std::string figure : {"day", "eclipses"}) {
+        const char* answer = nullptr;
+        const std::string options =
+            fmt::format(R"({{{}, "from": "2024-04-08", "to": "2024-04-09", "limb": "upper"}})", at);
+        expect_ok(relevo_answer(dem_.get(), ("sun " + figure).c_str(), options.c_str(), &answer));
+        const Result run =
+            relevo({"sun", figure, bundled_dem(), "--at",
+                    fmt::format("{},{}", grid.centre_lat_deg, grid.centre_lon_deg), "--from",
+                    "2024-04-08", "--to", "2024-04-09", "--limb", "upper", "--json"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(nlohmann::json::parse(answer), nlohmann::json::parse(run.out)) << figure;
+    }
+    const char* answer = "";
+    expect_error(relevo_answer(nullptr, "sun dial", nullptr, &answer), RELEVO_RESULT_BAD_INPUT,
+                 "figure: expected one of sun position, sun day, sun eclipses, sun carpet, sun "
+                 "when, moon position, moon day but got sun dial");
+    EXPECT_EQ(answer, nullptr);
+    expect_error(relevo_answer(nullptr, "sun carpet",
+                               R"({"lat": 47, "lon": 8, "year": 2026, "zone": "UTC"})", &answer),
+                 RELEVO_RESULT_BAD_CALL, "relevo_answer: dem: null");
+    expect_error(
+        relevo_answer(dem_.get(), "moon day", R"({"lat": 47, "lon": 8, "dates": ""})", &answer),
+        RELEVO_RESULT_BAD_INPUT,
+        "relevo_answer: options:1: dates: no such key; did you mean \"date\"?");
+}
+
 }  // namespace
 }  // namespace relevo::test

@@ -12,7 +12,7 @@ import relevo
 
 MADE = {
     "hours of a day": lambda sun: sun.hours("2026-06-21"),
-    "hours of days": lambda sun: sun.hours(start="2026-02-27", end="2026-03-01", zone="+02:00", refraction="saemundsson"),
+    "hours of days": lambda sun: sun.hours(start="2026-02-27", end="2026-03-01", tz="+02:00", refraction="saemundsson"),
     "bands": lambda sun: sun.hours("2026-12-21", bands=["hours", "global", "first"], linke=4, step=600),
     "a list of one band": lambda sun: sun.hours("2026-12-21", bands=["beam"], albedo=0.3),
     "a band of several": lambda sun: sun.hours("2026-12-21", bands=["hours", "spells"])["spells"],
@@ -125,7 +125,7 @@ def test_no_rasters(dem, path):
 
 
 def test_rasters_carry_what_the_program_writes(small, program, tmp_path):
-    raster = small.sun.hours("2026-06-21", zone="Europe/Zurich")
+    raster = small.sun.hours("2026-06-21", tz="Europe/Zurich")
     program("sun", "hours", small.name, "--crop=-84.3,36.2,-84.2,36.3", "--date", "2026-06-21", "--tz", "Europe/Zurich",
             "-o", tmp_path / "hours.tif", "-q")
     with rasterio.open(tmp_path / "hours.tif") as file:

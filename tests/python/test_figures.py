@@ -36,7 +36,7 @@ def test_bands_of_hours(dem, written):
     values = dem.sun.hours(
         start="2026-12-20",
         end=datetime.date(2026, 12, 21),
-        zone="-05:00",
+        tz="-05:00",
         bands=["hours", "first", "global"],
         linke=2,
         step=datetime.timedelta(minutes=2),

@@ -20,7 +20,7 @@ def test_capture(dem, captured):
 
 
 def test_capture_of_local_time(dem, captured):
-    picture = dem.capture("2026-06-21T18:30", (96, 64), zone="America/New_York", device="software")
+    picture = dem.capture("2026-06-21T18:30", (96, 64), tz="America/New_York", device="software")
     expected = captured("--time", "2026-06-21T18:30", "--tz", "America/New_York", "--size", "96x64")
     numpy.testing.assert_array_equal(picture, expected)
 

@@ -1,4 +1,4 @@
-"""Every call takes times by one rule: without a time zone they need zone=."""
+"""Every call takes times by one rule: without a time zone they need tz=."""
 
 import datetime
 import zoneinfo
@@ -62,13 +62,13 @@ CALLS = pytest.mark.parametrize("call", [position_at, shadow_at, view_at, set_at
 def test_a_zone_is_needed(dem, call):
     at = call(dem)
     for time in NAIVE:
-        with pytest.raises(relevo.BadInput, match="^time: 2026-06-21.12:00(:00)? has no time zone; give zone=, or "):
+        with pytest.raises(relevo.BadInput, match="^time: 2026-06-21.12:00(:00)? has no time zone; give tz=, or "):
             at(time)
     expected = at("2026-06-21T10:00Z")
     assert at("2026-06-21T13:00Z") != expected
     for time in NAIVE if call in (position_at, shadow_at) else NAIVE[1:3]:
         for zone in ZONES:
-            assert at(time, zone=zone) == expected, (time, zone)
+            assert at(time, tz=zone) == expected, (time, zone)
     assert at(datetime.datetime(2026, 6, 21, 12, tzinfo=ZURICH)) == expected
     assert at(numpy.datetime64("2026-06-21T10:00")) == expected  # UTC
 
@@ -77,26 +77,26 @@ def test_a_zone_is_needed(dem, call):
 def test_what_is_no_time(dem, call):
     at = call(dem)
     for time in (pandas.NaT, numpy.datetime64("NaT"), float("nan"), numpy.float32("nan"), float("inf"), True):
-        for more in ({}, {"zone": "UTC"}):
+        for more in ({}, {"tz": "UTC"}):
             with pytest.raises(relevo.BadInput, match="^time: "):
                 at(time, **more)
 
 
 def test_many_times():
     naive = [datetime.datetime(2026, 6, 21, 12), "2026-12-21T12:00"]
-    found = relevo.sun.position(46.95, 7.44, naive, zone=ZURICH)
+    found = relevo.sun.position(46.95, 7.44, naive, tz=ZURICH)
     expected = relevo.sun.position(46.95, 7.44, ["2026-06-21T10:00Z", "2026-12-21T11:00Z"])
     numpy.testing.assert_array_equal(found.azimuth, expected.azimuth)
     for bad in ([1782036000.0, float("nan")], [pandas.NaT, naive[0]]):
         with pytest.raises(relevo.BadInput, match="^time: "):
-            relevo.sun.position(46.95, 7.44, bad, zone=ZURICH)
+            relevo.sun.position(46.95, 7.44, bad, tz=ZURICH)
 
 
 def test_clocks_that_are_put_back(dem):
     """The first of two times, in Python as in the library."""
     twice, zone = "2026-10-25T02:30", "Europe/Zurich"
-    assert view_at(dem)(twice, zone=zone).startswith("2026-10-25T00:30")
-    assert position_at(dem)(twice, zone=zone) == position_at(dem)("2026-10-25T00:30Z")
+    assert view_at(dem)(twice, tz=zone).startswith("2026-10-25T00:30")
+    assert position_at(dem)(twice, tz=zone) == position_at(dem)("2026-10-25T00:30Z")
 
 
 def test_zones_of_scenes(dem):
@@ -105,13 +105,13 @@ def test_zones_of_scenes(dem):
 
 
 def test_a_view_keeps_its_zone(dem):
-    with dem.view("2026-06-21T12:00", (16, 16), zone=ZURICH, device="software") as view:
+    with dem.view("2026-06-21T12:00", (16, 16), tz=ZURICH, device="software") as view:
         view.set("2026-06-21T14:00")
         assert view.scene["time"]["at"].startswith("2026-06-21T12:00")
 
 
 def test_the_zone_of_the_place(dem):
-    assert view_at(dem)("2026-06-21T12:00", zone="auto") == view_at(dem)("2026-06-21T12:00", zone="America/New_York")
+    assert view_at(dem)("2026-06-21T12:00", tz="auto") == view_at(dem)("2026-06-21T12:00", tz="America/New_York")
 
 
 def test_events_need_no_zone(dem):
@@ -119,19 +119,19 @@ def test_events_need_no_zone(dem):
 
 
 def test_zones_of_days(dem):
-    expected = dem.sun.hours("2026-06-21", zone="America/New_York").values
-    found = dem.sun.hours("2026-06-21", zone=zoneinfo.ZoneInfo("America/New_York")).values
+    expected = dem.sun.hours("2026-06-21", tz="America/New_York").values
+    found = dem.sun.hours("2026-06-21", tz=zoneinfo.ZoneInfo("America/New_York")).values
     numpy.testing.assert_array_equal(found, expected)
     assert relevo.sun.events(46.95, 7.44, "2026-06-21", ZURICH) == relevo.sun.events(46.95, 7.44, "2026-06-21")
     offset = datetime.timezone(datetime.timedelta(hours=-4))
-    numpy.testing.assert_array_equal(dem.sun.hours("2026-06-21", zone=offset).values, expected)
+    numpy.testing.assert_array_equal(dem.sun.hours("2026-06-21", tz=offset).values, expected)
 
 
 @pytest.mark.parametrize("zone", ["Europe/Zurih", "+99:00", 2, datetime.date(2026, 6, 21)])
 def test_what_is_no_zone(dem, zone):
     for call in (position_at, shadow_at):
-        with pytest.raises(relevo.BadInput, match="^(time )?zone: "):
-            call(dem)("2026-06-21T12:00", zone=zone)
+        with pytest.raises(relevo.BadInput, match="^(time zone|tz): "):
+            call(dem)("2026-06-21T12:00", tz=zone)
 
 
 def test_dates():

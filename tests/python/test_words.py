@@ -26,7 +26,7 @@ OPTION = re.compile(r"--[a-z]|(?<![\w-])-[a-z](?![\w-])")  # not those of gdal_t
         ("or bound them with --highest", "or bound them with highest="),
         ("pass the right one with --crs EPSG:n", 'pass the right one with crs="EPSG:n"'),
         ("no date; write it or pass --date", "no date; write it or pass date="),
-        ("pass --tz, as in --tz +02:00", "pass zone=, as in zone= +02:00"),
+        ("pass --tz, as in --tz +02:00", "pass tz=, as in tz= +02:00"),
         ("--highest bounds them; --at for one", "highest= bounds them; lat and lon for one"),
         ("--panorama: add --eye LAT,LON", 'scene["camera"]["panorama"]: add scene["camera"]["eye"] LAT,LON'),
         ("haze: fails; --disable haze goes on", 'haze: fails; scene["effects"]["disable"] haze goes on'),
@@ -51,11 +51,11 @@ def test_no_message_of_the_library_names_an_option():
 @pytest.mark.parametrize(
     "wrong",
     [
-        lambda dem: dem.sun.hours("2026-06-21", zone="Europe/Zurih"),
+        lambda dem: dem.sun.hours("2026-06-21", tz="Europe/Zurih"),
         lambda dem: dem.sun.hours("2026-06-21", linke=3),
         lambda dem: dem.sun.hours(start="2026-06-21"),
         lambda dem: dem.sun.hours(start="2026-06-21", end="2026-01-01"),
-        lambda dem: dem.sun.shadow("2026-06-21T12:00", zone="X"),
+        lambda dem: dem.sun.shadow("2026-06-21T12:00", tz="X"),
         lambda dem: dem.sun.shadow("sunset-30min"),
         lambda dem: dem.sun.shadow("2026-06-21T12:00Z", date="2026-06-21"),
         lambda dem: dem.capture("2026-06-21T12:00Z", size=(0, 1)),
@@ -66,7 +66,7 @@ def test_no_message_of_the_library_names_an_option():
         lambda dem: relevo.open(dem.name, crs="EPSG:4978"),
         lambda dem: relevo.open(dem.name, crop=(0, 0, 1, 1)),
         lambda dem: relevo.open(numpy.full((40, 50), 2e6), transform=(1, 0, 0, 0, -1, 0), crs=32632).sun.sky_view(),
-        lambda dem: relevo.sun.events(47, 8, "2026-06-21", zone="nowhere"),
+        lambda dem: relevo.sun.events(47, 8, "2026-06-21", tz="nowhere"),
     ],
 )
 def test_errors(dem, wrong):
@@ -79,7 +79,7 @@ def test_errors(dem, wrong):
 def test_errors_name_the_argument(dem):
     for wrong, name in (
         (lambda: dem.capture("2026-06-21T12:00Z", size=(0, 1)), "size: "),
-        (lambda: dem.sun.hours("2026-06-21", zone="Europe/Zurih"), "time zone: "),
+        (lambda: dem.sun.hours("2026-06-21", tz="Europe/Zurih"), "time zone: "),
         (lambda: dem.sun.hours(start="2026-06-21", end="2026-01-01"), "start: "),
         (lambda: relevo.open(dem.name, unit="furlong"), "unit: "),
     ):

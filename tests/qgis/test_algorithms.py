@@ -432,7 +432,7 @@ class Library(Case):
         for word, parameters, words in cases:
             output = self.run_algorithm(word, OUTPUT=self.path("a.tif"), **parameters)["OUTPUT"]
             self.expect_values(output, *words, "--overwrite")
-        self.assertIn("time zone America/New_York of the place; zone= sets another", self.feedback.infos)
+        self.assertIn("time zone America/New_York of the place; tz= sets another", self.feedback.infos)
         self.assertTrue(any(text.startswith("mountains outside this DEM") for text in self.feedback.warnings))
         self.assertTrue(self.feedback.shares)
 

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import sys
 
-from . import sun
+from . import moon, sun
 from ._again import again
 from ._dem import Dem, open
 from ._errors import BadCall, BadInput, Cancelled, Error, NoDevice, OutOfMemory, Warning
 from ._raster import Raster
 from ._relevo import version as _version
-from ._sun_over_dem import Horizon, SunOverDem
+from ._sun_over_dem import Horizon, MoonOverDem, SunOverDem
 from ._transform import Transform
 from ._view import Layers, View
 
@@ -31,6 +31,7 @@ __all__ = [
     "Error",
     "Horizon",
     "Layers",
+    "MoonOverDem",
     "NoDevice",
     "OutOfMemory",
     "Raster",
@@ -39,6 +40,7 @@ __all__ = [
     "View",
     "Warning",
     "again",
+    "moon",
     "open",
     "sun",
 ]

@@ -45,7 +45,7 @@ def again(
 
 def _made(dem: Dem, figure: str, options: dict[str, Any], alone: bool) -> Raster:
     if figure != "horizons":
-        return dem.sun._raster(figure, options.get("bands", [figure]), alone, None, options)
+        return dem.sun._raster(figure, options.get("bands", [figure]), alone, options, None)
     band = options.pop("bands", [])
     every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
     if band and band[0] not in every.bands:

@@ -16,7 +16,7 @@ from . import _inputs, _relevo
 from ._errors import BadInput, messages
 from ._options import options_text
 from ._raster import Raster, bounds_of, empty, horizontal
-from ._sun_over_dem import SunOverDem
+from ._sun_over_dem import MoonOverDem, SunOverDem
 from ._times import Date, Time, Zone
 from ._transform import Transform
 from ._view import Camera, Change, View, change_of
@@ -84,6 +84,11 @@ class Dem:
         return SunOverDem(self)
 
     @property
+    def moon(self) -> MoonOverDem:
+        """Figures of the moon: its days and moonlight, the horizon."""
+        return MoonOverDem(self)
+
+    @property
     def closed(self) -> bool:
         return self._handle.closed
 
@@ -129,7 +134,7 @@ class Dem:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[Zone] = None,
+        tz: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -138,11 +143,11 @@ class Dem:
         """Opens a scene of the DEM that stays on its device: for many pictures, and for depth, positions and normals.
 
         time: a datetime, a datetime64 (UTC), seconds since 1970, or a text as the program takes it:
-            "2026-06-21T16:30Z", "2026-06-21T18:30" with `zone`, "sunset-30min" with `date`. A datetime or text without
-            a time zone needs `zone`. None: a time that shows relief.
+            "2026-06-21T16:30Z", "2026-06-21T18:30" with `tz`, "sunset-30min" with `date`. A datetime or text without
+            a time zone needs `tz`. None: a time that shows relief.
         size: (columns, rows) of pictures [pixels]. None: 1280 x 720.
         date: of an event
-        zone: of a time that has none: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (that of the place)
+        tz: of a time that has none: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (that of the place)
         camera: as in scenes, such as {"orbit": {"azimuth": 210, "elevation": 30}}. None: one that shows relief.
         exaggeration: vertical exaggeration. None: 1.
         scene: what else a scene has (docs/scene.md), a dict or JSON: effects, overlay, stamps. Arguments go before it.
@@ -152,7 +157,7 @@ class Dem:
         """
         return View(
             self._handle,
-            change_of(time, size, date, zone, camera, exaggeration, scene),
+            change_of(time, size, date, tz, camera, exaggeration, scene),
             device,
             self._name,
         )
@@ -163,7 +168,7 @@ class Dem:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[Zone] = None,
+        tz: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -177,7 +182,7 @@ class Dem:
             time,
             size,
             date=date,
-            zone=zone,
+            tz=tz,
             camera=camera,
             exaggeration=exaggeration,
             scene=scene,
@@ -265,7 +270,6 @@ def open(
         if transform is not None:
             raise BadInput("transform: of arrays alone; bounds= places a file")
         text = options_text(
-            "open",
             {"crs": None if crs is None else _inputs.crs_text(crs), "band": band, "unit": unit, "nodata": nodata}
             | for_files
             | common,
@@ -276,8 +280,7 @@ def open(
     _refuse(for_files, "of files alone")
     heights, name = _heights(source, transform, crs, band, unit, nodata)
     text = options_text(
-        "open",
-        {
+            {
             "unit": heights.unit, "nodata": "none" if nodata == "none" else None, "voids_known": heights.voids_known,
             "scale": heights.scale, "offset": heights.offset,
         }

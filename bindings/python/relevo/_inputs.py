@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Any, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, Protocol, Union
 
 import numpy
 from numpy.typing import NDArray
@@ -11,6 +11,15 @@ from numpy.typing import NDArray
 from ._errors import BadInput, warn
 from ._transform import Transform, read_transform
 
+
+class _Wkt(Protocol):
+    """A CRS of rasterio or pyproj."""
+
+    def to_wkt(self) -> str: ...
+
+
+Crs = Union[str, int, _Wkt]
+"""A text such as "EPSG:32632", WKT or a PROJ string; a number of EPSG; a CRS of rasterio or pyproj."""
 
 Nodata = Union[float, str, None]
 """A number, "none", or None: what the source says."""

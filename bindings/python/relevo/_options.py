@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy
 
 from ._errors import BadInput
-from ._times import zone_text
+from ._times import date_text, zone_text
 
 
 def _plain(value: Any) -> Any:
@@ -32,6 +32,17 @@ def json_text(who: str, value: Any) -> str:
         raise BadInput(f"{who}: {error}") from None
 
 
-def options_text(who: str, options: Mapping[str, Any]) -> str:
-    """JSON of those options that are not None."""
-    return json_text(who, {key: value for key, value in options.items() if value is not None})
+def options_text(options: Mapping[str, Any]) -> str:
+    """JSON of those options that are not None. Errors name the option."""
+    return "{" + ", ".join(f'"{key}": {json_text(key, one)}' for key, one in options.items() if one is not None) + "}"
+
+
+_OTHER = ("self", "progress")
+_NAMES = {"start": "from", "end": "to", "tz": "zone"}
+_TEXTS: dict[str, Callable[[Any], str]] = {"date": date_text, "from": date_text, "to": date_text, "zone": zone_text}
+
+
+def library_options(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of the library by arguments of a method: with the library's names, dates and zones as texts."""
+    options = {_NAMES.get(key, key): value for key, value in arguments.items() if key not in _OTHER and value is not None}
+    return {key: _TEXTS[key](value) if key in _TEXTS else value for key, value in options.items()}

@@ -63,6 +63,7 @@ _dem_read = function("relevo_dem_read", _HANDLE, _DATA, c_size_t)
 _dem_heights = function("relevo_dem_heights", _HANDLE, _DATA, _DATA, c_size_t, _DATA)
 _sun_position = function("relevo_sun_position", POINTER(_Place), _DATA, c_size_t, _TEXT, _DATA, _DATA, _DATA)
 _sun_events = function("relevo_sun_events", POINTER(_Place), _TEXT, _TEXT, POINTER(_Event), c_size_t, POINTER(c_size_t))
+_answer = function("relevo_answer", _HANDLE, _TEXT, _TEXT, _SAID)
 _horizon = function("relevo_horizon", _HANDLE, POINTER(_Place), _TEXT, _DATA, c_size_t, _DATA, _DATA)
 _shadow, _sun_hours, _sky_view, _horizons = (
     function(f"relevo_{name}", _HANDLE, _TEXT, _DATA, c_size_t, PROGRESS, _SAID)
@@ -238,6 +239,20 @@ def open_session(scene: Optional[str], dem: Dem, device: Optional[str]) -> Sessi
     options = _OpenOptions(device=text(device), dem=dem.address)
     opened: Session = _opened(Session, _open, text(scene), byref(options))
     return opened
+
+
+def answer(dem: Optional[Dem], figure: str, options: str) -> str:
+    """JSON of a figure of a place."""
+    handle = None if dem is None else dem.address
+
+    def work(_: Any) -> str:
+        said = c_char_p()
+        check(_answer(handle, figure.encode(), options.encode(), byref(said)))
+        assert said.value is not None
+        return said.value.decode()
+
+    made: str = call_long(work)
+    return made
 
 
 def sun_position(places: Any, times_s: Any, refraction: Optional[str], results: Any) -> None:

@@ -30,7 +30,7 @@ def zone_text(zone: Zone) -> str:
         return name
     offset = zone.utcoffset(None) if isinstance(zone, datetime.tzinfo) else None
     if offset is None:
-        raise BadInput(f'zone: expected a name such as "Europe/Zurich", a ZoneInfo or a timezone but got {zone!r}')
+        raise BadInput(f'tz: expected a name such as "Europe/Zurich", a ZoneInfo or a timezone but got {zone!r}')
     minutes = offset // datetime.timedelta(minutes=1)
     return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02}:{abs(minutes) % 60:02}"
 
@@ -46,11 +46,11 @@ def _tzinfo_of(zone: Zone) -> datetime.tzinfo:
             return offset
         return zoneinfo.ZoneInfo("UTC" if text == "Z" else text)
     except (ValueError, OSError, zoneinfo.ZoneInfoNotFoundError):
-        raise BadInput(f'zone: expected one as "Europe/Zurich" or "+02:00" but got {zone!r}') from None
+        raise BadInput(f'tz: expected one as "Europe/Zurich" or "+02:00" but got {zone!r}') from None
 
 
 def _no_zone(time: str, remedy: str) -> BadInput:
-    return BadInput(f"time: {time} has no time zone; give zone=, or {remedy}")
+    return BadInput(f"time: {time} has no time zone; give tz=, or {remedy}")
 
 
 def _check_zone(time: Any, zone: Optional[Zone]) -> None:

@@ -82,7 +82,7 @@ class View:
         size: Optional[tuple[int, int]] = None,
         *,
         date: Optional[Date] = None,
-        zone: Optional[Zone] = None,
+        tz: Optional[Zone] = None,
         camera: Optional[Camera] = None,
         exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
@@ -92,7 +92,7 @@ class View:
         A camera replaces the one before, effects of `scene` are added, other members take the place of the scene's.
         Raises BadInput; the scene is then as it was.
         """
-        change = change_of(time, size, date, zone, camera, exaggeration, scene, self._zone)
+        change = change_of(time, size, date, tz, camera, exaggeration, scene, self._zone)
         with messages():
             self._session.set(json_text("scene", change))
         self._zone = _zone_of(change) or self._zone

@@ -13,13 +13,15 @@ _PHRASES: Final = (
     (re.compile(r"\(text\):1: "), ""),
     (re.compile(r"^scene: picture\.size: "), "size: "),
     (re.compile(r"^scene: time\.at: "), "time: "),
-    (re.compile(r"^scene: (time\.)?(date|zone|camera|exaggeration)(?=[.:])"), r"\2"),
+    (re.compile(r"^scene: (time\.)?(date|camera|exaggeration)(?=[.:])"), r"\2"),
+    (re.compile(r"^scene: (time\.)?zone(?=[.:])|^zone(?=:)"), "tz"),
     (re.compile(r"^from: "), "start: "),
+    (re.compile(r"\ba height in --at\b"), "height="),
     (re.compile(r"\bdate, from and to, or year\b"), "date, start and end, or year"),
     (re.compile(r"name it on the command line, or add --trust"), "open it with the program, which asks"),
     (re.compile(r", or --trust for all"), ""),
     (re.compile(r"write (\S+)Z for UTC or \S+\+02:00, or pass --tz Europe/Zurich"),
-     r'write \1Z for UTC or \1+02:00, or give zone="Europe/Zurich"'),
+     r'write \1Z for UTC or \1+02:00, or give tz="Europe/Zurich"'),
 )
 
 _ARGUMENTS: Final = {
@@ -27,7 +29,6 @@ _ARGUMENTS: Final = {
     "memory": "memory_mib",
     "overlay": "overlay.file",
     "points": "lat and lon",
-    "tz": "zone",
     "exaggerate": "exaggeration",
     "from": "start",
     "to": "end",
@@ -69,7 +70,7 @@ _MEMBERS: Final = {
     "weather": "weather",
 }
 
-_VALUE: Final = r"-?[\d.]+|V|none|us-ft|ft|m|[cdk]m|mm|terrarium|terrain-rgb|[A-Z]+:\w+"
+_VALUE: Final = r"\d+-\d+-\d+|-?[\d.]+|V|none|us-ft|ft|m|[cdk]m|mm|terrarium|terrain-rgb|[A-Z]+:\w+"
 _OPTION: Final = re.compile(rf"--([a-z][a-z0-9-]*)(: |:$)?(?: ({_VALUE})(?=[\s;,)]|$))?")
 
 

@@ -9,9 +9,12 @@ import numpy
 
 from . import _relevo
 from ._errors import messages
+from ._places import OfSun
 from ._times import Date, Zone, date_text, seconds, utc, zone_text
 
-__all__ = ["Event", "Position", "events", "position"]
+__all__ = ["Event", "Position", "day", "eclipses", "events", "position"]
+
+day, eclipses = OfSun().day, OfSun().eclipses
 
 
 class Position(NamedTuple):
@@ -39,14 +42,14 @@ class Event(NamedTuple):
 
 
 def position(
-    lat: Any, lon: Any, times: Any, *, zone: Optional[Zone] = None, height: Any = 0.0, refraction: str = "standard"
+    lat: Any, lon: Any, times: Any, *, tz: Optional[Zone] = None, height: Any = 0.0, refraction: str = "standard"
 ) -> Position:
     """Where the sun stands.
 
     lat, lon: degrees of WGS 84, east positive; numbers or arrays
     times: datetimes, datetime64 (UTC), texts such as "2026-06-21T12:00+02:00", or seconds since 1970, one or many; 1900
         to 2100
-    zone: of datetimes and texts that have none: "Europe/Zurich", "+02:00", a ZoneInfo
+    tz: of datetimes and texts that have none: "Europe/Zurich", "+02:00", a ZoneInfo
     height: above the ellipsoid [m], of which refraction depends
     refraction: "standard" (integrated ICAO atmosphere), "saemundsson", "none"
 
@@ -54,7 +57,7 @@ def position(
     Raises BadInput for times without a zone where none is given, and for places and times that are none.
     """
     numbers = [numpy.asarray(value, dtype=numpy.float64) for value in (lat, lon, height)]
-    given = seconds(times, zone)
+    given = seconds(times, tz)
     one_place = all(number.ndim == 0 for number in numbers)
     shape = given.shape if one_place else numpy.broadcast_shapes(given.shape, *(number.shape for number in numbers))
     if not one_place:
@@ -69,15 +72,15 @@ def position(
     return Position(*(result.reshape(shape) for result in results))
 
 
-def events(lat: float, lon: float, date: Date, zone: Optional[Zone] = None, *, height: float = 0.0) -> list[Event]:
+def events(lat: float, lon: float, date: Date, tz: Optional[Zone] = None, *, height: float = 0.0) -> list[Event]:
     """What the sun does on a local day over a level horizon, in order of time, by the rule of the Naval Observatory.
 
     lat, lon: degrees of WGS 84, east positive
     date: a date, or a text such as "2026-06-21"
-    zone: of the day, "Europe/Zurich", "+02:00", a ZoneInfo. None: that of the place.
+    tz: of the day, "Europe/Zurich", "+02:00", a ZoneInfo. None: that of the place.
     height: above the ellipsoid [m]
     """
-    name = None if zone is None else zone_text(zone)
+    name = None if tz is None else zone_text(tz)
     with messages():
         found = _relevo.sun_events(float(lat), float(lon), float(height), date_text(date), name)
     return [Event(kind, utc(time_s), azimuth, elevation) for kind, time_s, azimuth, elevation in found]

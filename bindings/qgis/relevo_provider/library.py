@@ -46,7 +46,7 @@ class Library(Backend):
         if bounds is not None:
             raise RelevoError("extent: needs the program relevo, which is not installed; leave it empty")
         if "zone" in options:
-            options = {**options, "zone": options["zone"] or "auto"}
+            options = {key: value for key, value in options.items() if key != "zone"} | {"tz": options["zone"] or "auto"}
         with self._opened(dem, watch) as opened:
             raster = getattr(opened.sun, figure)(**options, progress=_progress(watch))
         is_mask = figure == "shadow" and not options["soft"]
