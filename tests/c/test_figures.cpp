@@ -309,7 +309,10 @@ TEST_F(Figures, AnswersAreThoseOfTheProgram) {
         ASSERT_EQ(run.status, 0) << run.err;
         EXPECT_EQ(nlohmann::json::parse(answer), nlohmann::json::parse(run.out)) << figure;
     }
-    const char* answer = "";
+    const char* answer = nullptr;
+    const std::string one = "{" + at + R"(, "date": "2026-06-21"})";
+    expect_ok(relevo_answer(nullptr, "moon day", one.c_str(), &answer));
+    EXPECT_EQ(nlohmann::json::parse(answer)["days"].size(), 1U);
     expect_error(relevo_answer(nullptr, "sun dial", nullptr, &answer), RELEVO_RESULT_BAD_INPUT,
                  "figure: expected one of sun position, sun day, sun eclipses, sun carpet, sun "
                  "when, moon position, moon day but got sun dial");

@@ -1,5 +1,5 @@
-"""What figures of places say: the program's `--json`, with times as datetimes in UTC. docs/cli.md has all keys; those of
-voids are there where a DEM has voids, direct light where there is a DEM."""
+"""What figures of places say: the program's `--json`, with times as datetimes in UTC. docs/cli.md has all keys;
+those of voids are there where a DEM has voids, direct light where there is a DEM."""
 
 from __future__ import annotations
 
@@ -15,149 +15,64 @@ if TYPE_CHECKING:
     from ._dem import Dem
 
 
-class Place(TypedDict):
-    lat_deg: float
-    lon_deg: float
-    height_m: float
-
-
-class Span(TypedDict):
-    begin_utc: datetime.datetime
-    end_utc: datetime.datetime
-
-
-class Moment(TypedDict, total=False):
-    """When a body stands somewhere. Only of events: kind; only of eclipses: magnitude, obscuration, sun."""
-
-    kind: str
-    utc: datetime.datetime
-    local: str
-    azimuth_deg: float
-    elevation_deg: float
-    magnitude: float
-    obscuration: float
-    sun: str
-
-
-class Light(TypedDict, total=False):
-    """Direct light from its first to its last ray. Only of a day: azimuths, elevations, midnights."""
-
-    first_utc: datetime.datetime
-    last_utc: datetime.datetime
-    first_azimuth_deg: float
-    last_azimuth_deg: float
-    first_apparent_elevation_deg: float
-    last_apparent_elevation_deg: float
-    from_midnight: bool
-    to_midnight: bool
-    not_known: list[Span]
-
-
-class SunDay(TypedDict, total=False):
-    """Times of the first of each kind, None for none; `events` has all. Hours are sums."""
-
-    date: str
-    polar: Optional[str]
-    sunrise_utc: Optional[datetime.datetime]
-    transit_utc: Optional[datetime.datetime]
-    sunset_utc: Optional[datetime.datetime]
-    civil_dawn_utc: Optional[datetime.datetime]
-    civil_dusk_utc: Optional[datetime.datetime]
-    day_length_h: float
-    golden_hour: list[Span]
-    blue_hour: list[Span]
-    events: list[Moment]
-    direct_sun: list[Light]
-    direct_sun_h: float
-    level_horizon_h: float
-    not_known_h: float
-
-
-class MoonDay(TypedDict, total=False):
-    """As SunDay. illuminated_fraction and phase: at the middle of the day; phases: those that fall on it."""
-
-    date: str
-    all_day: Optional[str]
-    moonrise_utc: Optional[datetime.datetime]
-    transit_utc: Optional[datetime.datetime]
-    moonset_utc: Optional[datetime.datetime]
-    moon_up_h: float
-    illuminated_fraction: float
-    phase: str
-    phases: list[dict[str, object]]
-    events: list[Moment]
-    direct_moonlight: list[Light]
-    direct_moonlight_h: float
-    not_known_h: float
-
-
-class Eclipse(TypedDict):
-    """Contacts and the greatest eclipse, None for those that it has not. central_s: how long it is total or annular."""
-
-    date: str
-    kind: str
-    magnitude: float
-    obscuration: float
-    central_s: float
-    first_contact: Moment
-    greatest: Moment
-    last_contact: Moment
-    greatest_seen: Optional[Moment]
-
-
-class Passage(TypedDict):
-    """The sun at its closest to a summit. right_deg, above_deg: of its centre, from the summit."""
-
-    utc: datetime.datetime
-    local: str
-    date: str
-    separation_deg: float
-    right_deg: float
-    above_deg: float
-    azimuth_deg: float
-    apparent_elevation_deg: float
-    sun_visible: bool
-
-
-class Answer(TypedDict):
-    place: Place
-    zone: str
-
-
-class SunDays(Answer):
-    definition: str
-    days: list[SunDay]
-    seasons: list[dict[str, object]]
-
-
-class MoonDays(Answer):
-    definition: str
-    days: list[MoonDay]
-
-
-class Eclipses(Answer):
-    definition: str
-    eclipses: list[Eclipse]
-
-
-class Carpet(Answer):
-    """Hours of direct sun of a year, over the terrain and over a level horizon."""
-
-    year: int
-    light_definition: str
-    direct_sun_h: float
-    level_horizon_h: float
-    months: list[dict[str, float]]
-    days: list[SunDay]
-
-
-class When(Answer):
-    """sight: azimuth_deg, elevation_deg, distance_m, visible, hidden_by_deg of the summit."""
-
-    target: Place
-    sight: dict[str, float]
-    definition: str
-    passages: list[Passage]
+_Time = datetime.datetime
+_Numbers = dict[str, float]
+_Some = dict[str, object]
+Place = TypedDict("Place", {"lat_deg": float, "lon_deg": float, "height_m": float})
+Span = TypedDict("Span", {"begin_utc": _Time, "end_utc": _Time})
+# When a body stands somewhere. Only of events: kind; only of eclipses: magnitude, obscuration, sun.
+Moment = TypedDict("Moment", {
+    "kind": str, "utc": _Time, "local": str, "azimuth_deg": float, "elevation_deg": float, "magnitude": float,
+    "obscuration": float, "sun": str,
+}, total=False)
+# Direct light from its first to its last ray. Only of a day: azimuths, elevations, midnights.
+Light = TypedDict("Light", {
+    "first_utc": _Time, "last_utc": _Time, "first_azimuth_deg": float, "last_azimuth_deg": float,
+    "first_apparent_elevation_deg": float, "last_apparent_elevation_deg": float, "from_midnight": bool,
+    "to_midnight": bool, "not_known": list[Span],
+}, total=False)
+# Times of the first of each kind, None for none; `events` has all. Hours are sums.
+SunDay = TypedDict("SunDay", {
+    "date": str, "polar": Optional[str], "sunrise_utc": Optional[_Time], "transit_utc": Optional[_Time],
+    "sunset_utc": Optional[_Time], "lower_transit_utc": Optional[_Time], "civil_dawn_utc": Optional[_Time],
+    "civil_dusk_utc": Optional[_Time], "nautical_dawn_utc": Optional[_Time], "nautical_dusk_utc": Optional[_Time],
+    "astronomical_dawn_utc": Optional[_Time], "astronomical_dusk_utc": Optional[_Time], "day_length_h": float,
+    "golden_hour": list[Span], "blue_hour": list[Span], "events": list[Moment], "direct_sun": list[Light],
+    "direct_sun_h": float, "level_horizon_h": float, "not_known_h": float,
+}, total=False)
+# As SunDay. illuminated_fraction and phase: at the middle of the day; phases: those that fall on it.
+MoonDay = TypedDict("MoonDay", {
+    "date": str, "all_day": Optional[str], "moonrise_utc": Optional[_Time], "transit_utc": Optional[_Time],
+    "moonset_utc": Optional[_Time], "lower_transit_utc": Optional[_Time], "moon_up_h": float,
+    "illuminated_fraction": float, "phase": str, "phases": list[_Some], "events": list[Moment],
+    "direct_moonlight": list[Light], "direct_moonlight_h": float, "not_known_h": float,
+}, total=False)
+# Contacts and the greatest eclipse. central_s: how long it is total or annular; second and third contact only then.
+Eclipse = TypedDict("Eclipse", {
+    "date": str, "kind": str, "magnitude": float, "obscuration": float, "central_s": float, "first_contact": Moment,
+    "second_contact": Moment, "greatest": Moment, "third_contact": Moment, "last_contact": Moment,
+    "greatest_seen": Optional[Moment], "direct_sun": list[Span], "not_known": list[Span], "not_known_h": float,
+}, total=False)
+# The sun at its closest to a summit. right_deg, above_deg: of its centre, from the summit.
+Passage = TypedDict("Passage", {
+    "utc": _Time, "local": str, "date": str, "separation_deg": float, "right_deg": float, "above_deg": float,
+    "azimuth_deg": float, "apparent_elevation_deg": float, "sun_visible": bool,
+})
+SunDays = TypedDict("SunDays", {
+    "place": Place, "zone": str, "definition": str, "days": list[SunDay], "seasons": list[_Some],
+})
+MoonDays = TypedDict("MoonDays", {"place": Place, "zone": str, "definition": str, "days": list[MoonDay]})
+Eclipses = TypedDict("Eclipses", {"place": Place, "zone": str, "definition": str, "eclipses": list[Eclipse]})
+# Hours of direct sun of a year, over the terrain and over a level horizon.
+Carpet = TypedDict("Carpet", {
+    "place": Place, "zone": str, "year": int, "light_definition": str, "horizon_definition": str,
+    "direct_sun_h": float, "level_horizon_h": float, "months": list[_Numbers], "days": list[SunDay],
+})
+# sight: azimuth_deg, elevation_deg, distance_m, visible, hidden_by_deg of the summit.
+When = TypedDict("When", {
+    "place": Place, "zone": str, "eye_m": float, "target": Place, "sight": _Numbers, "definition": str,
+    "passages": list[Passage],
+})
 
 
 def _with_times(found: dict[str, Any]) -> dict[str, Any]:
