@@ -139,7 +139,7 @@ def test_options_of_opening(path, written):
 
 
 def test_saved_raster(dem, tmp_path):
-    dem.sun.hours("2026-06-21", bands=["hours", "spells"]).save(tmp_path / "hours.tif", compress="deflate")
+    dem.sun.hours("2026-06-21", bands=["hours", "spells"]).save(tmp_path / "hours.tif", compress="deflate", creation_options={"blockxsize": 256, "blockysize": 256})
     hours = dem.sun.hours("2026-06-21")
     with rasterio.open(tmp_path / "hours.tif") as file:
         numpy.testing.assert_array_equal(file.read(1), hours)

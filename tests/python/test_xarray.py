@@ -74,3 +74,26 @@ def test_order_of_imports(first):
     code = f"import {first}; print(xarray.DataArray([[0]]).relevo)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert "Accessor" in done.stdout, done.stderr
+
+
+def test_chunked_arrays_are_lazy(heights, monkeypatch):
+    pytest.importorskip("dask.array", reason="needs python3-dask")
+    opened = []
+    opens = relevo.xarray.open
+    monkeypatch.setattr(relevo.xarray, "open", lambda source: opened.append(source.shape) or opens(source))
+    chunked = heights.chunk({"y": 100, "x": 150})
+    days = {"start": "2026-03-20", "end": "2026-03-22", "bands": ["hours", "global"]}
+    lazy = chunked.relevo.hours(**days)
+    assert opened == [(4, 4)]
+    assert lazy.chunks == ((2,), (100, 100, 100, 44), (150, 150, 103)) and lazy.dims == ("band", "y", "x")
+    whole = heights.relevo.hours(**days)
+    assert list(lazy.unit.values) == list(whole.unit.values) == ["h", "kWh/m2"]
+    del opened[:]
+    numpy.testing.assert_array_equal(lazy.values, whole.values)
+    assert opened == [heights.shape]
+    clip = (-84.3, 36.2, -84.2, 36.3)
+    part = chunked.relevo.sky_view(8, clip=clip)
+    assert part.attrs["long_name"] == "sky-view factor" and part.attrs["units"] == "1"
+    numpy.testing.assert_array_equal(part.values, heights.relevo.sky_view(8, clip=clip).values)
+    with pytest.raises(relevo.BadInput, match="^bands: expected some of"):
+        chunked.relevo.hours("2026-03-20", bands="hour")

@@ -5,18 +5,21 @@ from __future__ import annotations
 import json
 import os
 import pathlib
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from ._dem import Dem, open
 from ._errors import BadInput
 from ._raster import Raster
+
+if TYPE_CHECKING:
+    import xarray
 
 _FIGURES = ("horizons", "shadow", "sky_view", "sun_hours")
 _DEM_OPTIONS = ("band", "bounds", "crop", "crs", "encoding", "holes", "memory_mib", "nodata", "unit")
 
 
 def again(
-    raster: Union[Raster, str, os.PathLike[str], Any], *, dem: Optional[Dem] = None, trust: bool = False
+    raster: Union[Raster, str, os.PathLike[str], xarray.DataArray], *, dem: Optional[Dem] = None, trust: bool = False
 ) -> Raster:
     """Makes a raster again from what it says of itself, the same to the bit with one version of Relevo.
 

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any, NoReturn, Optional, Union
 
 import numpy
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _inputs, _relevo
 from ._errors import BadInput, messages
@@ -92,7 +92,7 @@ class Dem:
     def closed(self) -> bool:
         return self._handle.closed
 
-    def provenance(self) -> dict[str, Any]:
+    def provenance(self) -> dict[str, str]:
         """What rasters say of the DEM: "dem", its name; "dem_sha256" of heights, grid and CRS, which is the same for
         copies, in memory and in any format; "dem_files" and "dem_options" by which it was opened, JSON."""
         if "dem_sha256" not in self._opened_by:
@@ -115,17 +115,17 @@ class Dem:
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
         return self.heights().__array__(dtype)
 
-    def height(self, lat: Any, lon: Any) -> Any:
+    def height(self, lat: ArrayLike, lon: ArrayLike) -> Union[float, NDArray[numpy.float64]]:
         """The height at places [m], bilinear between posts; NaN in voids and outside of the DEM.
 
         lat, lon: degrees of WGS 84, numbers or arrays. Returns a float, or an array of their shape.
         """
-        lat, lon = numpy.asarray(lat, numpy.float64, "C"), numpy.asarray(lon, numpy.float64, "C")
-        if lat.shape != lon.shape:
-            lat, lon = (numpy.array(degrees) for degrees in numpy.broadcast_arrays(lat, lon))
-        heights = numpy.empty(lat.shape)
+        lats, lons = numpy.asarray(lat, numpy.float64, "C"), numpy.asarray(lon, numpy.float64, "C")
+        if lats.shape != lons.shape:
+            lats, lons = (numpy.array(degrees) for degrees in numpy.broadcast_arrays(lats, lons))
+        heights = numpy.empty(lats.shape)
         with messages():
-            self._handle.height(lat, lon, heights)
+            self._handle.height(lats, lons, heights)
         return float(heights) if heights.ndim == 0 else heights
 
     def view(
@@ -224,10 +224,10 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def open(
-    source: Any,
+    source: _inputs.Source,
     *,
-    transform: Any = None,
-    crs: Any = None,
+    transform: Optional[Sequence[float]] = None,
+    crs: Optional[_inputs.Crs] = None,
     band: Optional[int] = None,
     unit: Optional[str] = None,
     nodata: _inputs.Nodata = None,

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from typing import Any, NamedTuple, Optional, Protocol, Union
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Protocol, Union
 
 import numpy
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ._errors import BadInput, warn
 from ._transform import Transform, read_transform
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class _Wkt(Protocol):
@@ -21,6 +26,16 @@ class _Wkt(Protocol):
 Crs = Union[str, int, _Wkt]
 """A text such as "EPSG:32632", WKT or a PROJ string; a number of EPSG; a CRS of rasterio or pyproj."""
 
+class _Dataset(Protocol):
+    """An open dataset of rasterio."""
+
+    count: int
+
+    def read(self, band: int) -> NDArray[Any]: ...
+
+
+_Name = Union[str, "os.PathLike[str]"]
+Source = Union[_Name, Sequence[_Name], ArrayLike, _Dataset, "xarray.DataArray"]
 Nodata = Union[float, str, None]
 """A number, "none", or None: what the source says."""
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import datetime
 import json
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Union
 
 import numpy
 
 from ._errors import BadInput
 from ._times import date_text, zone_text
+
+
+Json = Union[None, bool, float, str, list["Json"], dict[str, "Json"]]
 
 
 def _plain(value: Any) -> Any:

@@ -8,13 +8,17 @@ import json
 import os
 import struct
 import zlib
-from typing import Any, NoReturn, Optional, Union
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NoReturn, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from ._errors import BadInput
 from ._transform import Transform
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Raster:
@@ -32,7 +36,7 @@ class Raster:
         bands: tuple[str, ...],
         names: tuple[str, ...],
         units: tuple[str, ...],
-        about: dict[str, Any],
+        about: Mapping[str, Union[str, int]],
     ) -> None:
         self.values = values
         """float32, (rows, columns), or (bands, rows, columns) where a list of bands was asked for. Rows are in the
@@ -48,7 +52,7 @@ class Raster:
         """What each band is, for titles: "sun hours"."""
         self.units = units
         """The unit of each band: "h", "min", "kWh/m2", "m"; "1" for plain numbers."""
-        self.about = about
+        self.about = dict(about)
         """"definition": what was computed, in a sentence. "holes": number of voids. "beyond": a sentence about terrain
         outside of the DEM, where that could change values. What else the program's GeoTIFF says: "dem", "time_from",
         "time_zone", "refraction", "software" ... And what `relevo.again()` takes: "figure", "options", "dem_sha256",
@@ -87,7 +91,7 @@ class Raster:
         one = slice(i, i + 1)
         about = dict(self.about)
         if self.values.ndim == 3:
-            about["options"] = json.dumps({**json.loads(about["options"]), "bands": [band]})
+            about["options"] = json.dumps({**json.loads(str(about["options"])), "bands": [band]})
         return Raster(
             values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], about
         )
@@ -108,26 +112,32 @@ class Raster:
         picture = base64.b64encode(_png(values[::step, ::step])).decode()
         return f'<div>{html.escape(repr(self))}<br><img alt="" src="data:image/png;base64,{picture}"></div>'
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.DataArray:
         """An xarray.DataArray with coordinates of the centres of cells and the CRS in `spatial_ref`, as rioxarray has
         it. No copy of the values.
 
         Dimensions are y and x, with band before them where `values` has it. The coordinates of a rotated raster are
         numbers of rows and columns.
         """
-        from . import xarray
+        from .xarray import to_dataarray
 
-        return xarray.to_dataarray(self)
+        return to_dataarray(self)
 
-    def save(self, path: Union[str, os.PathLike[str]], **creation_options: Any) -> None:
+    def save(
+        self, path: Union[str, os.PathLike[str]], *, compress: Optional[str] = None,
+        creation_options: Mapping[str, object] = {},
+    ) -> None:
         """Writes a GeoTIFF by rasterio, which has to be installed: float32, NaN as nodata, unit and name of each band.
 
-        creation_options: as rasterio.open() takes them, such as compress="deflate".
+        compress: "deflate", "lzw", "zstd" ...; None: not
+        creation_options: others, as rasterio.open() takes them
         """
         import rasterio
 
         bands = self.values if self.values.ndim == 3 else self.values[numpy.newaxis]
         profile: dict[str, Any] = {"driver": "GTiff", "nodata": float("nan"), "tiled": True, **creation_options}
+        if compress is not None:
+            profile["compress"] = compress
         with rasterio.open(
             path,
             "w",

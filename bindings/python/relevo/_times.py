@@ -5,16 +5,18 @@ from __future__ import annotations
 import datetime
 import re
 import zoneinfo
+from collections.abc import Sequence
 from typing import Any, Optional, Union
 
 import numpy
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ._errors import BadInput
 
 Time = Union[str, datetime.datetime, numpy.datetime64, float]
 Date = Union[str, datetime.date, numpy.datetime64]
 Zone = Union[str, datetime.tzinfo]
+Times = Union[Time, Sequence[Time], ArrayLike]
 
 _EPOCH = datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)
 _MICROSECOND = datetime.timedelta(microseconds=1)
@@ -104,7 +106,7 @@ def _seconds_of_datetime64(times: NDArray[Any]) -> NDArray[numpy.float64]:
     return seconds_since_1970
 
 
-def seconds(times: Any, zone: Optional[Zone] = None) -> NDArray[numpy.float64]:
+def seconds(times: Times, zone: Optional[Zone] = None) -> NDArray[numpy.float64]:
     """Seconds since 1970-01-01T00:00Z, in the shape of `times`: one or many of
 
     - datetime.datetime and pandas.Timestamp

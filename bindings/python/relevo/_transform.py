@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
+
+import numpy
+from numpy.typing import NDArray
 
 from ._errors import BadInput
+
+Number = TypeVar("Number", float, NDArray[numpy.float64])
 
 
 class Transform(NamedTuple):
@@ -32,7 +37,7 @@ class Transform(NamedTuple):
         """In the order of GDAL's geotransform."""
         return (self.c, self.a, self.b, self.f, self.d, self.e)
 
-    def apply(self, column: Any, row: Any) -> tuple[Any, Any]:
+    def apply(self, column: Number, row: Number) -> tuple[Number, Number]:
         """(x, y) of columns and rows, numbers or arrays. The centre of the first cell is at (0.5, 0.5)."""
         return self.a * column + self.b * row + self.c, self.d * column + self.e * row + self.f
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _relevo
 from ._errors import BadInput, messages
-from ._options import json_text
+from ._options import Json, json_text
 from ._times import Date, Time, Zone, date_text, time_text, zone_text
 
 Camera = Mapping[str, Any]
@@ -70,7 +70,7 @@ class View:
     of a `with`, or with the last reference to it.
     """
 
-    def __init__(self, dem: _relevo.Dem, scene: dict[str, Any], device: str, name: str) -> None:
+    def __init__(self, dem: _relevo.Dem, scene: Mapping[str, object], device: str, name: str) -> None:
         self._name = name
         self._zone = _zone_of(scene)
         with messages():
@@ -98,9 +98,9 @@ class View:
         self._zone = _zone_of(change) or self._zone
 
     @property
-    def scene(self) -> dict[str, Any]:
+    def scene(self) -> dict[str, Json]:
         """The scene with what was chosen for it, as a scene file has it; the time in UTC."""
-        scene: dict[str, Any] = json.loads(self._session.scene())
+        scene: dict[str, Json] = json.loads(self._session.scene())
         return scene
 
     @property

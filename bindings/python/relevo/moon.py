@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import NamedTuple, Optional
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ._answers import answer
 from ._places import OfMoon
-from ._times import Zone, seconds
+from ._times import Times, Zone, seconds
 
 __all__ = ["Position", "day", "position"]
 
@@ -46,7 +46,7 @@ _KEYS = (
 
 
 def position(
-    lat: float, lon: float, times: ArrayLike, *, tz: Optional[Zone] = None, height: float = 0.0,
+    lat: float, lon: float, times: Times, *, tz: Optional[Zone] = None, height: float = 0.0,
     refraction: str = "standard",
 ) -> Position:
     """Where the moon stands.

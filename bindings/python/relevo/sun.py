@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import datetime
-from typing import Any, NamedTuple, Optional
+from typing import NamedTuple, Optional, Union
 
 import numpy
+from numpy.typing import ArrayLike, NDArray
 
 from . import _relevo
 from ._errors import messages
 from ._places import OfSun
-from ._times import Date, Zone, date_text, seconds, utc, zone_text
+from ._times import Date, Times, Zone, date_text, seconds, utc, zone_text
 
 __all__ = ["Event", "Position", "day", "eclipses", "events", "position"]
 
@@ -20,11 +21,11 @@ day, eclipses = OfSun().day, OfSun().eclipses
 class Position(NamedTuple):
     """Where the sun stands: floats, or float64 arrays in the shape of places and times."""
 
-    azimuth: Any
+    azimuth: Union[float, NDArray[numpy.float64]]
     """Degrees clockwise from true north."""
-    elevation: Any
+    elevation: Union[float, NDArray[numpy.float64]]
     """Degrees, without an atmosphere."""
-    apparent: Any
+    apparent: Union[float, NDArray[numpy.float64]]
     """Degrees, elevation with refraction."""
 
 
@@ -42,7 +43,7 @@ class Event(NamedTuple):
 
 
 def position(
-    lat: Any, lon: Any, times: Any, *, tz: Optional[Zone] = None, height: Any = 0.0, refraction: str = "standard"
+    lat: ArrayLike, lon: ArrayLike, times: Times, *, tz: Optional[Zone] = None, height: ArrayLike = 0.0, refraction: str = "standard"
 ) -> Position:
     """Where the sun stands.
 

@@ -7,21 +7,29 @@ does where xarray is imported already.
 
 from __future__ import annotations
 
-from typing import Any
+import functools
+import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy
 import xarray
-from numpy.typing import NDArray
 
 from ._dem import Dem, open
+from ._errors import Warning
 from ._raster import Raster
-from ._sun_over_dem import Horizon
+from ._sun_over_dem import SunOverDem
 
+if TYPE_CHECKING:
+    from typing import Concatenate, ParamSpec
+
+    P = ParamSpec("P")
+R = TypeVar("R")
 
 _UDUNITS = {"deg": "degree", "kWh/m2": "kW h m-2"}
 
 
-def to_dataarray(raster: Raster) -> Any:
+def to_dataarray(raster: Raster) -> xarray.DataArray:
     """`Raster.to_xarray()`."""
     rows, columns = raster.shape[-2:]
     transform = raster.transform
@@ -68,54 +76,101 @@ def _described(array: Any, raster: Raster) -> Any:
     return array
 
 
+def _of_dem(function: Callable[Concatenate[Dem, P], R]) -> Callable[Concatenate[Accessor, P], R]:
+    """A method of a DEM as one of the accessor."""
+
+    @functools.wraps(function)
+    def call(of: Accessor, /, *arguments: P.args, **options: P.kwargs) -> R:
+        with open(of._array) as dem:
+            return function(dem, *arguments, **options)
+
+    return call
+
+
+def _of_sun(function: Callable[Concatenate[SunOverDem, P], R]) -> Callable[Concatenate[Accessor, P], R]:
+    """A method of `Dem.sun` as one of the accessor."""
+
+    @functools.wraps(function)
+    def call(of: Accessor, /, *arguments: P.args, **options: P.kwargs) -> R:
+        with open(of._array) as dem:
+            return function(dem.sun, *arguments, **options)
+
+    return call
+
+
+def _raster(function: Callable[Concatenate[SunOverDem, P], Raster]) -> Callable[Concatenate[Accessor, P], xarray.DataArray]:
+    """A raster of `Dem.sun`, lazy where the heights are chunked."""
+
+    @functools.wraps(function)
+    def call(of: Accessor, /, *arguments: P.args, **options: P.kwargs) -> xarray.DataArray:
+        array = of._array.squeeze(drop=False)
+        if array.chunks is None:
+            with open(array) as dem:
+                return _aligned(array, function(dem.sun, *arguments, **options))
+        import dask
+        import dask.array
+
+        figure: Any = function
+        named: Any = options
+        with warnings.catch_warnings(), open(_level(array)) as dem:  # says bands and units, and what is wrong
+            warnings.simplefilter("ignore", Warning)
+            said = _aligned(array, figure(dem.sun, *arguments, **{**named, "clip": None, "progress": None}))
+        made = dask.delayed(_values)(array, function, arguments, options)
+        values = dask.array.from_delayed(made, said.shape, numpy.float32)
+        told = {key: said.attrs[key] for key in ("figure", "options", "long_name", "units") if key in said.attrs}
+        lazy = said.copy(data=values.rechunk((-1,) * (said.ndim - 2) + array.chunks))
+        lazy.attrs = told
+        return lazy
+
+    return call
+
+
+def _values(array: Any, function: Any, arguments: Any, options: Any) -> Any:
+    """In a process of dask."""
+    with open(array) as dem:
+        return function(dem.sun, *arguments, **options).values
+
+
+def _level(array: Any) -> Any:
+    """A few posts without heights, at the place of an array."""
+    return array[:4, :4].copy(data=numpy.zeros(array[:4, :4].shape, numpy.float32))
+
+
 @xarray.register_dataarray_accessor("relevo")
 class Accessor:
     """Relevo on a DataArray of heights, (y, x). Each call opens the DEM anew, as heights may change; `open()` keeps it.
 
     Keywords of relevo.open() that the array does not say are those of `open()`; results of the other functions are
-    DataArrays with the array's dimensions and coordinates.
+    DataArrays with the array's dimensions and coordinates. Of a chunked array they are lazy and have its chunks: the
+    whole DEM is one task, because ground anywhere can shade a post.
     """
 
-    def __init__(self, array: Any) -> None:
+    def __init__(self, array: xarray.DataArray) -> None:
         self._array = array
 
-    def open(self, **options: Any) -> Dem:
+    hours = _raster(SunOverDem.hours)
+    shadow = _raster(SunOverDem.shadow)
+    sky_view = _raster(SunOverDem.sky_view)
+    horizons = _raster(SunOverDem.horizons)
+    horizon = _of_sun(SunOverDem.horizon)
+    capture = _of_dem(Dem.capture)
+
+    @functools.wraps(open)
+    def open(self, *arguments: Any, **options: Any) -> Dem:
         """relevo.open() of the array."""
-        return open(self._array, **options)
+        return open(self._array, *arguments, **options)
 
-    def hours(self, *arguments: Any, **options: Any) -> Any:
-        """`Dem.sun.hours()` as a DataArray."""
-        with self.open() as dem:
-            return self._aligned(dem.sun.hours(*arguments, **options))
 
-    def shadow(self, *arguments: Any, **options: Any) -> Any:
-        """`Dem.sun.shadow()` as a DataArray."""
-        with self.open() as dem:
-            return self._aligned(dem.sun.shadow(*arguments, **options))
-
-    def sky_view(self, *arguments: Any, **options: Any) -> Any:
-        """`Dem.sun.sky_view()` as a DataArray."""
-        with self.open() as dem:
-            return self._aligned(dem.sun.sky_view(*arguments, **options))
-
-    def horizon(self, *arguments: Any, **options: Any) -> Horizon:
-        """`Dem.sun.horizon()`."""
-        with self.open() as dem:
-            return dem.sun.horizon(*arguments, **options)
-
-    def capture(self, *arguments: Any, **options: Any) -> NDArray[numpy.uint8]:
-        """`Dem.capture()`."""
-        with self.open() as dem:
-            return dem.capture(*arguments, **options)
-
-    def _aligned(self, raster: Raster) -> Any:
-        """With dimensions and coordinates of the array that the DEM was made of."""
-        array = self._array.squeeze(drop=False)
-        dims, coords = array.dims, dict(array.coords)
-        if raster.values.ndim == 3:
-            coords.pop("band", None)
-            dims = ("band", *dims)
-            coords["band"] = list(raster.bands)
-        if "spatial_ref" not in coords:
-            coords["spatial_ref"] = _spatial_ref(raster)
-        return _described(xarray.DataArray(raster.values, coords=coords, dims=dims), raster)
+def _aligned(array: Any, raster: Raster) -> Any:
+    """With dimensions and coordinates of the array that the DEM was made of."""
+    dims, coords = array.dims, dict(array.coords)
+    if raster.values.ndim == 3:
+        coords.pop("band", None)
+        dims = ("band", *dims)
+        coords["band"] = list(raster.bands)
+    if "spatial_ref" not in coords:
+        coords["spatial_ref"] = _spatial_ref(raster)
+    values = numpy.broadcast_to(raster.values[..., :1, :1], (*raster.values.shape[:-2], *array.shape)) if (
+        raster.values.shape[-2:] != array.shape
+    ) else raster.values
+    return _described(xarray.DataArray(values, coords=coords, dims=dims), raster)
