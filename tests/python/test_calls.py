@@ -188,10 +188,10 @@ def test_classes_of_errors():
         (lambda dem: dem.sun.sky_view(3), "directions"),
         (lambda dem: dem.sun.sky_view(10**30), "directions"),
         (lambda dem: dem.sun.horizon(0, 0), "."),
-        (lambda dem: dem.sun.horizon(float("nan"), 0), "place"),
+        (lambda dem: dem.sun.horizon(float("nan"), 0), "^lat: "),
         (lambda dem: dem.sun.horizon(*dem.centre, step=0), "step"),
         (lambda dem: dem.sun.horizon(*dem.centre, azimuth=[float("inf")]), "finite"),
-        (lambda dem: dem.height(91, 0), "place"),
+        (lambda dem: dem.height(91, 0), "^lat and lon: "),
     ],
 )
 def test_bad_input(dem, call, message):

@@ -89,9 +89,9 @@ def test_what_is_no_time(time, message):
 
 def test_what_is_no_place():
     for lat, lon in ((91, 0), (float("nan"), 0), (0, 400)):
-        with pytest.raises(relevo.BadInput, match="place"):
+        with pytest.raises(relevo.BadInput, match="^lat"):
             relevo.sun.position(lat, lon, 0)
-        with pytest.raises(relevo.BadInput, match="place"):
+        with pytest.raises(relevo.BadInput, match="^l(at|on)"):
             relevo.sun.events(lat, lon, "2026-06-21")
     with pytest.raises(relevo.BadInput, match="refraction"):
         relevo.sun.position(0, 0, 0, refraction="mist")

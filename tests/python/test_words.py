@@ -79,7 +79,7 @@ def test_errors(dem, wrong):
 def test_errors_name_the_argument(dem):
     for wrong, name in (
         (lambda: dem.capture("2026-06-21T12:00Z", size=(0, 1)), "size: "),
-        (lambda: dem.sun.hours("2026-06-21", tz="Europe/Zurih"), "time zone: "),
+        (lambda: dem.sun.hours("2026-06-21", tz="Europe/Zurih"), "tz: "),
         (lambda: dem.sun.hours(start="2026-06-21", end="2026-01-01"), "start: "),
         (lambda: relevo.open(dem.name, unit="furlong"), "unit: "),
     ):

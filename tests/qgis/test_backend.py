@@ -105,7 +105,7 @@ class Backend(unittest.TestCase):
     def test_errors_are_the_sentences_of_the_program(self):
         with self.assertRaisesRegex(RelevoError, "^/no/such.tif: no such file; there is no folder /no$"):
             self.raster("sky_view", {"directions": 36}, Dem("/no/such.tif"))
-        with self.assertRaisesRegex(RelevoError, "^time zone: Nowhere/X: no such time zone, expected "):
+        with self.assertRaisesRegex(RelevoError, "^(time zone|tz): Nowhere/X: no such time zone, expected "):
             self.raster("shadow", {"time": "2026-06-21T12:00", "zone": "Nowhere/X"})
         with self.assertRaisesRegex(RelevoError, "^/no/relevo: cannot be run: No such file or directory$"):
             program.Program("/no/relevo").description()

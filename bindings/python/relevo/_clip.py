@@ -40,11 +40,11 @@ def part_of(dem: Dem, clip: Union[Clip, str, None], clip_crs: Any) -> Part:
     """Of arguments `clip` and `clip_crs`. Raises BadInput for what is neither a rectangle nor a shape with an area."""
     if clip is None or isinstance(clip, str) or not (hasattr(clip, "__geo_interface__") or isinstance(clip, Mapping)):
         text = clip if clip is None or isinstance(clip, str) else _rectangle(clip)
-        asked = {"clip": text, "clip_crs": None if clip_crs is None else crs_text(clip_crs)}
+        asked = {"clip": text, "clip_crs": None if clip_crs is None else crs_text(clip_crs, "clip_crs")}
         return Part(asked, asked, None)
     shapes = _shapes(clip if isinstance(clip, Mapping) else clip.__geo_interface__)
     of_shapes = clip_crs if clip_crs is not None else getattr(clip, "crs", None)
-    crs = None if of_shapes is None else crs_text(of_shapes)
+    crs = None if of_shapes is None else crs_text(of_shapes, "clip_crs")
     said = {"clip": {"type": "GeometryCollection", "geometries": shapes}, "clip_crs": crs}
     try:
         import rasterio.features

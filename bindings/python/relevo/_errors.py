@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import sys
 import warnings
+from typing import Any
+
+import numpy
+from numpy.typing import NDArray
 
 from ._words import python_words
 
@@ -55,6 +60,22 @@ def keep_message(level: int, text: str) -> None:
     """Keeps what the library says, on any thread, for messages(): all warnings, and as much else as anybody reads."""
     if level > _INFO or len(_kept) < 1000:
         _kept.append((level, text))
+
+
+def numbers(name: str, given: Any) -> NDArray[numpy.float64]:
+    """Of an argument. Raises BadInput for others."""
+    try:
+        return numpy.asarray(given, dtype=numpy.float64)
+    except (TypeError, ValueError):
+        raise BadInput(f"{name}: expected numbers but got {given!r}") from None
+
+
+def number(name: str, given: Any, low: float = -math.inf, high: float = math.inf) -> float:
+    """Of an argument. Raises BadInput for others."""
+    one = numbers(name, given)
+    if one.ndim or not low <= one <= high:
+        raise BadInput(f"{name}: expected a number{'' if low == -math.inf else f' from {low} to {high}'} but got {given!r}")
+    return float(one)
 
 
 def _level_of_caller() -> int:

@@ -96,7 +96,7 @@ def of_array(array: Any, transform: Any, crs: Any, nodata: Nodata, unit: Optiona
     return Heights(values, read_transform(transform), crs_text(crs), unit, known)
 
 
-def crs_text(crs: Any) -> str:
+def crs_text(crs: Any, name: str = "crs") -> str:
     """A text that the library takes of one, of a number of EPSG, or of a CRS of rasterio or pyproj."""
     if isinstance(crs, str):
         return crs
@@ -105,7 +105,7 @@ def crs_text(crs: Any) -> str:
     for method in ("to_wkt", "ExportToWkt"):
         if hasattr(crs, method):
             return str(getattr(crs, method)())
-    raise BadInput(f'crs: expected a text such as "EPSG:32632", or a CRS of rasterio or pyproj, but got {crs!r}')
+    raise BadInput(f'{name}: expected a text such as "EPSG:32632", or a CRS of rasterio or pyproj, but got {crs!r}')
 
 
 def is_rasterio(source: Any) -> bool:

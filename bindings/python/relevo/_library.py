@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy
 
-from ._errors import BadCall, error_of, keep_message
+from ._errors import BadCall, BadInput, error_of, keep_message
 
 Progress = Optional[Callable[[float], object]]
 Address = Optional[int]
@@ -205,7 +205,9 @@ def array(given: Any, kind: str, write: bool = True) -> Array:
     return Array(given, address, given.size)
 
 
-def text(given: Optional[str]) -> Optional[bytes]:
+def text(given: Optional[str], name: str = "text") -> Optional[bytes]:
+    if not isinstance(given, (str, type(None))):
+        raise BadInput(f"{name}: expected a text but got {given!r}")
     return None if given is None else given.encode()
 
 

@@ -195,7 +195,7 @@ def band_list(bands: Union[str, list[str], tuple[str, ...]]) -> tuple[list[str],
     """Names of bands, and whether there is one alone, whose values are then without a dimension of bands."""
     if isinstance(bands, str):
         return [bands], True
-    names = list(bands)
+    names = list(bands) if isinstance(bands, (list, tuple)) else []
     if not names or not all(isinstance(name, str) for name in names):
         raise BadInput("bands: expected a name or a list of names")
     return names, False

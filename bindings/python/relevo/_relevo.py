@@ -236,7 +236,7 @@ def dem_from_heights(heights_m: Any, transform: tuple[float, ...], crs: str, opt
 
 
 def open_session(scene: Optional[str], dem: Dem, device: Optional[str]) -> Session:
-    options = _OpenOptions(device=text(device), dem=dem.address)
+    options = _OpenOptions(device=text(device, "device"), dem=dem.address)
     opened: Session = _opened(Session, _open, text(scene), byref(options))
     return opened
 
@@ -265,7 +265,7 @@ def sun_position(places: Any, times_s: Any, refraction: Optional[str], results: 
     one = place.length == 3
     if not one:
         _check_length(place, 3 * times.length)
-    step, row, model, at = times.length if one else 1, 8 * times.length, text(refraction), _Place()
+    step, row, model, at = times.length if one else 1, 8 * times.length, text(refraction, "refraction"), _Place()
 
     def each() -> int:
         many = places.reshape(-1, 3).tolist()

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._answers import Carpet, When, answer
 from ._clip import Clip, part_of
-from ._errors import BadInput, messages
+from ._errors import BadInput, messages, number, numbers
 from ._inputs import Crs
 from ._options import library_options, options_text
 from ._places import OfMoon, OfSun
@@ -65,16 +65,15 @@ class _OverDem:
         Raises BadInput for a place without ground.
         """
         if azimuth is None:
-            if not 0.001 <= step <= 360:
-                raise BadInput(f"step: expected 0.001 to 360 degrees but got {step}")
+            step = number("step", step, 0.001, 360)
             azimuth = numpy.arange(int(numpy.ceil(round(360 / step, 6)))) * step
-        azimuths = numpy.ascontiguousarray(numpy.atleast_1d(azimuth), dtype=numpy.float64)
+        azimuths = numpy.ascontiguousarray(numpy.atleast_1d(numbers("azimuth", azimuth)))
         elevation, distance = numpy.empty_like(azimuths), numpy.empty_like(azimuths)
         options = options_text(
             {"eye_height": eye_height, "terrestrial_refraction": terrestrial_refraction}
         )
         with messages():
-            self._dem._handle.horizon(float(lat), float(lon), options, azimuths, elevation, distance)
+            self._dem._handle.horizon(number("lat", lat), number("lon", lon), options, azimuths, elevation, distance)
         return Horizon(azimuths, elevation, distance)
 
 

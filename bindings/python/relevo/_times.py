@@ -116,6 +116,8 @@ def seconds(times: Times, zone: Optional[Zone] = None) -> NDArray[numpy.float64]
 
     zone: of datetimes and texts that have none. Raises BadInput where neither has one, and for what is no time.
     """
+    if zone is not None:
+        _tzinfo_of(zone)
     array = numpy.asarray(times)
     if array.dtype.kind == "M":
         return _seconds_of_datetime64(array)
@@ -133,7 +135,10 @@ def seconds(times: Times, zone: Optional[Zone] = None) -> NDArray[numpy.float64]
 
 def utc(seconds_since_1970: float) -> datetime.datetime:
     """A datetime in UTC."""
-    return _EPOCH + datetime.timedelta(microseconds=round(seconds_since_1970 * 1e6))
+    try:
+        return _EPOCH + datetime.timedelta(microseconds=round(seconds_since_1970 * 1e6))
+    except OverflowError:
+        raise BadInput(f"time: expected seconds since 1970 but got {seconds_since_1970!r}") from None
 
 
 def time_text(time: Time, zone: Optional[Zone] = None) -> str:
@@ -141,6 +146,8 @@ def time_text(time: Time, zone: Optional[Zone] = None) -> str:
 
     zone: of a datetime or text that has none. Raises BadInput where neither has one.
     """
+    if zone is not None:
+        zone_text(zone)
     if isinstance(time, str):
         _check_zone(time, zone)
         return time

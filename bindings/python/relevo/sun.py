@@ -9,7 +9,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _relevo
-from ._errors import messages
+from ._errors import messages, number, numbers
 from ._places import OfSun
 from ._times import Date, Times, Zone, date_text, seconds, utc, zone_text
 
@@ -57,17 +57,17 @@ def position(
     Arrays are broadcast as numpy does it. Accurate to 0.1 arc-seconds from 1962 to 2026.
     Raises BadInput for times without a zone where none is given, and for places and times that are none.
     """
-    numbers = [numpy.asarray(value, dtype=numpy.float64) for value in (lat, lon, height)]
+    places = [numbers(name, value) for name, value in (("lat", lat), ("lon", lon), ("height", height))]
     given = seconds(times, tz)
-    one_place = all(number.ndim == 0 for number in numbers)
-    shape = given.shape if one_place else numpy.broadcast_shapes(given.shape, *(number.shape for number in numbers))
+    one_place = all(one.ndim == 0 for one in places)
+    shape = given.shape if one_place else numpy.broadcast_shapes(given.shape, *(one.shape for one in places))
     if not one_place:
-        numbers = [numpy.broadcast_to(number, shape).ravel() for number in numbers]
-    places = numpy.stack(numbers, axis=-1) if numbers[0].ndim else numpy.array(numbers)
+        places = [numpy.broadcast_to(one, shape).ravel() for one in places]
+    where = numpy.stack(places, axis=-1) if places[0].ndim else numpy.array(places)
     times_s = numpy.ascontiguousarray(numpy.broadcast_to(given, shape)).ravel()
     results = numpy.empty((3, times_s.size))
     with messages():
-        _relevo.sun_position(numpy.ascontiguousarray(places), times_s, refraction, results)
+        _relevo.sun_position(numpy.ascontiguousarray(where), times_s, refraction, results)
     if shape == ():
         return Position(*(float(result[0]) for result in results))
     return Position(*(result.reshape(shape) for result in results))
@@ -83,5 +83,5 @@ def events(lat: float, lon: float, date: Date, tz: Optional[Zone] = None, *, hei
     """
     name = None if tz is None else zone_text(tz)
     with messages():
-        found = _relevo.sun_events(float(lat), float(lon), float(height), date_text(date), name)
+        found = _relevo.sun_events(number("lat", lat), number("lon", lon), number("height", height), date_text(date), name)
     return [Event(kind, utc(time_s), azimuth, elevation) for kind, time_s, azimuth, elevation in found]
