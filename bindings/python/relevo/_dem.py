@@ -129,16 +129,9 @@ class Dem:
         return float(heights) if heights.ndim == 0 else heights
 
     def view(
-        self,
-        time: Optional[Time] = None,
-        size: Optional[tuple[int, int]] = None,
-        *,
-        date: Optional[Date] = None,
-        tz: Optional[Zone] = None,
-        camera: Optional[Camera] = None,
-        exaggeration: Optional[float] = None,
-        scene: Optional[Change] = None,
-        device: str = "auto",
+        self, time: Optional[Time] = None, size: Optional[tuple[int, int]] = None, *, date: Optional[Date] = None,
+        tz: Optional[Zone] = None, camera: Optional[Camera] = None, exaggeration: Optional[float] = None,
+        scene: Optional[Change] = None, device: str = "auto",
     ) -> View:
         """Opens a scene of the DEM that stays on its device: for many pictures, and for depth, positions and normals.
 
@@ -163,30 +156,16 @@ class Dem:
         )
 
     def capture(
-        self,
-        time: Optional[Time] = None,
-        size: Optional[tuple[int, int]] = None,
-        *,
-        date: Optional[Date] = None,
-        tz: Optional[Zone] = None,
-        camera: Optional[Camera] = None,
-        exaggeration: Optional[float] = None,
-        scene: Optional[Change] = None,
-        device: str = "auto",
+        self, time: Optional[Time] = None, size: Optional[tuple[int, int]] = None, *, date: Optional[Date] = None,
+        tz: Optional[Zone] = None, camera: Optional[Camera] = None, exaggeration: Optional[float] = None,
+        scene: Optional[Change] = None, device: str = "auto",
     ) -> NDArray[numpy.uint8]:
         """A picture, as `view()` draws it: uint8, (rows, columns, 4), sRGB and alpha, the first row at the top.
 
         Arguments and errors are those of `view()`, which is faster for several pictures.
         """
         with self.view(
-            time,
-            size,
-            date=date,
-            tz=tz,
-            camera=camera,
-            exaggeration=exaggeration,
-            scene=scene,
-            device=device,
+            time, size, date=date, tz=tz, camera=camera, exaggeration=exaggeration, scene=scene, device=device
         ) as view:
             return view.draw()
 
@@ -210,11 +189,7 @@ class Dem:
         raise TypeError("a relevo.Dem cannot be pickled; open it in each process")
 
     def _raster(
-        self,
-        values: NDArray[numpy.float32],
-        bands: tuple[str, ...],
-        names: tuple[str, ...],
-        units: tuple[str, ...],
+        self, values: NDArray[numpy.float32], bands: tuple[str, ...], names: tuple[str, ...], units: tuple[str, ...],
         about: dict[str, Any],
     ) -> Raster:
         return Raster(values, self._transform, *horizontal(self._crs, self._wkt), bands, names, units, about)
@@ -224,18 +199,10 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def open(
-    source: _inputs.Source,
-    *,
-    transform: Optional[Sequence[float]] = None,
-    crs: Optional[_inputs.Crs] = None,
-    band: Optional[int] = None,
-    unit: Optional[str] = None,
-    nodata: _inputs.Nodata = None,
-    encoding: Optional[str] = None,
-    bounds: Optional[Sequence[float]] = None,
-    crop: Union[str, Sequence[float], None] = None,
-    memory_mib: Optional[int] = None,
-    holes: Optional[str] = None,
+    source: _inputs.Source, *, transform: Optional[Sequence[float]] = None, crs: Optional[_inputs.Crs] = None,
+    band: Optional[int] = None, unit: Optional[str] = None, nodata: _inputs.Nodata = None,
+    encoding: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
+    crop: Union[str, Sequence[float], None] = None, memory_mib: Optional[int] = None, holes: Optional[str] = None,
 ) -> Dem:
     """Opens a DEM.
 

@@ -28,15 +28,8 @@ class Raster:
     """
 
     def __init__(
-        self,
-        values: NDArray[numpy.float32],
-        transform: Transform,
-        crs: str,
-        wkt: str,
-        bands: tuple[str, ...],
-        names: tuple[str, ...],
-        units: tuple[str, ...],
-        about: Mapping[str, Union[str, int]],
+        self, values: NDArray[numpy.float32], transform: Transform, crs: str, wkt: str, bands: tuple[str, ...],
+        names: tuple[str, ...], units: tuple[str, ...], about: Mapping[str, Union[str, int]],
     ) -> None:
         self.values = values
         """float32, (rows, columns), or (bands, rows, columns) where a list of bands was asked for. Rows are in the

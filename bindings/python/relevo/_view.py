@@ -33,13 +33,8 @@ class Layers(NamedTuple):
 
 
 def change_of(
-    time: Optional[Time],
-    size: Optional[tuple[int, int]],
-    date: Optional[Date],
-    zone: Optional[Zone],
-    camera: Optional[Camera],
-    exaggeration: Optional[float],
-    scene: Optional[Change],
+    time: Optional[Time], size: Optional[tuple[int, int]], date: Optional[Date], zone: Optional[Zone],
+    camera: Optional[Camera], exaggeration: Optional[float], scene: Optional[Change],
     zone_before: Optional[str] = None,
 ) -> dict[str, Any]:
     """A part of a scene from arguments.
@@ -77,14 +72,8 @@ class View:
             self._session = _relevo.open_session(json_text("scene", scene), dem, device)
 
     def set(
-        self,
-        time: Optional[Time] = None,
-        size: Optional[tuple[int, int]] = None,
-        *,
-        date: Optional[Date] = None,
-        tz: Optional[Zone] = None,
-        camera: Optional[Camera] = None,
-        exaggeration: Optional[float] = None,
+        self, time: Optional[Time] = None, size: Optional[tuple[int, int]] = None, *, date: Optional[Date] = None,
+        tz: Optional[Zone] = None, camera: Optional[Camera] = None, exaggeration: Optional[float] = None,
         scene: Optional[Change] = None,
     ) -> None:
         """Changes the scene; what is not given stays. Arguments are those of `Dem.view()`.
