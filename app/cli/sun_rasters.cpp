@@ -16,11 +16,9 @@
 #include "base/held_notices.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "base/sha256.h"
 #include "base/text.h"
 #include "cli/shard.h"
 #include "dem/clip.h"
-#include "dem/file_state.h"
 #include "dem/files_of.h"
 
 namespace relevo::cli {
@@ -161,19 +159,6 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
     return nullptr;
 }
 
-namespace {
-
-/// Of all files that the DEM is read from, also those that a name stands for, and of how they are
-/// read.
-std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
-    std::vector<std::string> files = paths;
-    for (const std::filesystem::path& file : dem::files_of(paths))
-        files.push_back(file.string());
-    return sha256_of_text(output::stamp_of(files) + dem::text_of(options));
-}
-
-}  // namespace
-
 figure::RasterGround RasterArguments::load() const {
     if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
     std::optional<dem::Clip> rectangle;
@@ -187,7 +172,7 @@ figure::RasterGround RasterArguments::load() const {
         if (!dem.values.has("--memory")) options.memory = memory_of_allocation(options.memory);
         say_allocation(options.memory);
         const auto known = figure::plan_of(output.path, output.overwrite);
-        stamp = stamp_of_dem(dem.paths, options);
+        stamp = figure::stamp_of_dem(dem.paths, options);
         is_planned = known && known->stamp == stamp;
         if (is_planned) facts = output::read_posts_facts(output.path, *known);
     }

@@ -22,6 +22,7 @@ class Dem {
     explicit Dem(scene::Scene named, std::optional<dem::MemoryRaster> held = {});
 
     const scene::Scene& named() const { return named_; }
+    bool is_of_memory() const { return held_.has_value(); }
     const dem::Grid& grid() const { return source_->grid(); }
     const dem::Source& source() const { return *source_; }
     /// All posts, for figures. @throws Error as dem::Posts::load()

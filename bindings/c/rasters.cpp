@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,8 +16,10 @@
 #include "base/log.h"
 #include "dem.h"
 #include "dem/clip.h"
+#include "dem/files_of.h"
 #include "figure/horizons.h"
 #include "figure/hours.h"
+#include "figure/raster_run.h"
 #include "figure/run.h"
 #include "figure/shadow.h"
 #include "options.h"
@@ -28,19 +32,17 @@ std::string refraction_of(json::ObjectReader& reader) {
     return refraction_name(reader.string("refraction", "standard"), "options: ");
 }
 
-/// Values for the caller, made part by part.
-class RasterCall {
+/// A raster of light that is asked for.
+class FigureCall {
   public:
     /// @throws BadCall
-    RasterCall(relevo_dem* dem, float* values, std::size_t count, const relevo_progress* progress,
-               const char** about)
-        : dem_(dems().get(dem, "dem")),
-          values_(&need(values, "values")),
-          count_(count),
-          progress_(progress),
-          about_(about) {
+    FigureCall(relevo_dem* dem, const relevo_progress* progress, const char** about)
+        : dem_(dems().get(dem, "dem")), progress_(progress), about_(about) {
         if (about_) *about_ = nullptr;
     }
+    virtual ~FigureCall() = default;
+    FigureCall(const FigureCall&) = delete;
+    FigureCall& operator=(const FigureCall&) = delete;
 
     /// Takes the options that all figures have.
     void take_common(json::ObjectReader& reader, figure::Figure& figure) {
@@ -59,12 +61,33 @@ class RasterCall {
                 .posts = [this]() -> const dem::Posts& { return posts(); }};
     }
 
-    /// Makes all values, and says what came of them. @throws BadCall
-    void run(const figure::Figure& figure) {
+    /// Does it, and says what came of it. @throws BadCall
+    virtual void run(const figure::Figure& figure) = 0;
+
+  protected:
+    dem::Window window() const {
+        return clip_ ? dem::window_of(dem_->grid(), *clip_, "options: clip")
+                     : figure::whole_window(dem_->grid());
+    }
+
+    std::shared_ptr<Dem> dem_;
+    Progress progress_;
+    const char** about_;
+    std::optional<dem::Clip> clip_;
+};
+
+/// Values for the caller, made part by part.
+class RasterCall : public FigureCall {
+  public:
+    /// @throws BadCall
+    RasterCall(relevo_dem* dem, float* values, std::size_t count, const relevo_progress* progress,
+               const char** about)
+        : FigureCall(dem, progress, about), values_(&need(values, "values")), count_(count) {}
+
+    void run(const figure::Figure& figure) override {
         const std::vector<output::RasterBand> bands = figure.bands();
         check_count("count", count_, band_size() * bands.size());
-        const dem::Window window = clip_ ? dem::window_of(dem_->grid(), *clip_, "options: clip")
-                                         : figure::whole_window(dem_->grid());
+        const dem::Window window = this->window();
         if (clip_) std::fill_n(values_, count_, std::nanf(""));
         const std::optional<light::Beyond> beyond = figure.beyond(posts(), window);
         if (beyond) log::warning(beyond->advice());
@@ -98,15 +121,78 @@ class RasterCall {
                 to + part.column + std::ptrdiff_t{part.row + row} * dem_->grid().columns());
     }
 
-    std::shared_ptr<Dem> dem_;
     float* values_;
     std::size_t count_;
-    Progress progress_;
-    const char** about_;
-    std::optional<dem::Clip> clip_;
 };
 
-void shadow(RasterCall& call, json::ObjectReader& reader) {
+/// A folder of tiles, or what the work takes.
+class TilesCall : public FigureCall {
+  public:
+    TilesCall(relevo_dem* dem, const char* figure, const char* options, const char* files,
+              const relevo_progress* progress, const char** about)
+        : FigureCall(dem, progress, about) {
+        Options given(files, "relevo_tiles");
+        json::ObjectReader& reader = given.reader();
+        options_.output = reader.string("folder", "");
+        if (options_.output.empty()) {
+            options_.purpose = figure::RasterRunOptions::Purpose::Estimate;
+        } else {
+            options_.overwrite = reader.boolean("overwrite", false);
+            options_.tiles.tiles =
+                fmt::format("{:.0f}", reader.number("tiles", 512, 1, 1 << 20, true));
+            if (reader.has("halo")) options_.tiles.halo_km = number(reader, figure::kHalo_km);
+            options_.tiles.resume = reader.boolean("resume", false);
+        }
+        reader.finish();
+        options_.version = RELEVO_VERSION;
+        options_.command = fmt::format("relevo_tiles {} {}", figure, options ? options : "");
+        options_.meaning = "relevo " RELEVO_VERSION "\n" + options_.command + "\n";
+        options_.done = [this](double share) { progress_.add(share); };
+    }
+
+    void run(const figure::Figure& figure) override {
+        const scene::Scene& named = dem_->named();
+        const bool is_make = options_.purpose == figure::RasterRunOptions::Purpose::Make;
+        FilesInUse files;
+        if (is_make) check_files(named.dems, files);
+        const std::string stamp = is_make ? figure::stamp_of_dem(named.dems, named.dem) : "";
+        const figure::RasterGround ground{
+            dem::Posts::load(named.dems, named.dem), window(), named.dems, named.dem, false, stamp};
+        figure::RasterRun run(options_, nullptr, files, ground, figure);
+        run.make_all();
+        nlohmann::ordered_json json;
+        if (const figure::TileFolder* folder = run.folder()) {
+            json = {{"made", run.todo().size()}, {"there", folder->there()}};
+        } else {
+            const figure::RasterEstimate found = run.estimate();
+            json = {{"posts", found.posts},
+                    {"parts", found.parts},
+                    {"memory_mib", found.memory_mib},
+                    {"computing_s", found.computing_s},
+                    {"sampled_share", found.sampled_share},
+                    {"threads", found.threads},
+                    {"bands", found.bands},
+                    {"result_bytes", found.result_bytes}};
+        }
+        if (about_) *about_ = returned_text(json.dump());
+    }
+
+  private:
+    void check_files(const std::vector<std::string>& paths, FilesInUse& files) {
+        if (dem_->is_of_memory())
+            bad_input("folder: tiles are of a DEM of files; this one is in memory");
+        dem::add_named(paths, files);
+        dem::add_all(paths, files);
+        std::vector<std::filesystem::path> results = output::plan_files(options_.output);
+        results.emplace_back(options_.output);
+        files.check_planned(results, "folder");
+        if (!options_.overwrite) figure::check_plan_files(options_.output);
+    }
+
+    figure::RasterRunOptions options_;
+};
+
+void shadow(FigureCall& call, json::ObjectReader& reader) {
     scene::TimeSpec spec;
     spec.at = reader.string("time");
     spec.date = reader.string("date", "");
@@ -162,7 +248,7 @@ void take_bands(json::ObjectReader& reader, figure::Hours& figure) {
     if (!repeated.empty()) refuse(repeated + " is named twice");
 }
 
-void sun_hours(RasterCall& call, json::ObjectReader& reader) {
+void sun_hours(FigureCall& call, json::ObjectReader& reader) {
     figure::Hours figure;
     const Days days = days_of(reader);
     const std::string zone = reader.string("zone", "");
@@ -182,7 +268,7 @@ void sun_hours(RasterCall& call, json::ObjectReader& reader) {
     call.run(figure);
 }
 
-void sky_view(RasterCall& call, json::ObjectReader& reader) {
+void sky_view(FigureCall& call, json::ObjectReader& reader) {
     figure::SkyView figure;
     figure.directions = static_cast<int>(number(reader, figure::kSkyDirections, true));
     figure.level = reader.boolean("level", false);
@@ -191,12 +277,24 @@ void sky_view(RasterCall& call, json::ObjectReader& reader) {
     call.run(figure);
 }
 
-void horizons(RasterCall& call, json::ObjectReader& reader) {
+void horizons(FigureCall& call, json::ObjectReader& reader) {
     figure::Horizons figure;
     figure.directions = static_cast<int>(number(reader, figure::kHorizonDirections, true));
     call.take_common(reader, figure);
     reader.finish();
     call.run(figure);
+}
+
+using Make = void (*)(FigureCall&, json::ObjectReader&);
+
+/// @throws Error (BadInput) for an unknown figure
+Make maker_of(std::string_view figure) {
+    if (figure == "shadow") return shadow;
+    if (figure == "sun_hours") return sun_hours;
+    if (figure == "sky_view") return sky_view;
+    if (figure == "horizons") return horizons;
+    bad_input(fmt::format(
+        "figure: expected one of shadow, sun_hours, sky_view, horizons but got {}", figure));
 }
 
 /// @param function  of the interface
@@ -235,4 +333,15 @@ relevo_result relevo_horizons(relevo_dem* dem, const char* options, float* eleva
                               size_t count, const relevo_progress* progress, const char** about) {
     return c::raster<c::horizons>("relevo_horizons", dem, options, elevation_deg, count, progress,
                                   about);
+}
+
+relevo_result relevo_tiles(relevo_dem* dem, const char* figure, const char* options,
+                           const char* files, const relevo_progress* progress,
+                           const char** answer) {
+    return c::guarded("relevo_tiles", [&] {
+        const c::Make make = c::maker_of(&c::need(figure, "figure"));
+        c::TilesCall call(dem, figure, options, files, progress, answer);
+        c::Options given(options, "relevo_tiles");
+        make(call, given.reader());
+    });
 }

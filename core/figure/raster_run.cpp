@@ -11,7 +11,10 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
+#include "base/sha256.h"
 #include "base/text.h"
+#include "dem/file_state.h"
+#include "dem/files_of.h"
 #include "light/sweep/sweep.h"
 
 namespace relevo::figure {
@@ -50,6 +53,13 @@ dem::Window around(const dem::Window& a, const dem::Window& b) {
 
 }  // namespace
 
+std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
+    std::vector<std::string> files = paths;
+    for (const std::filesystem::path& file : dem::files_of(paths))
+        files.push_back(file.string());
+    return sha256_of_text(output::stamp_of(files) + dem::text_of(options));
+}
+
 RasterRun::RasterRun(const RasterRunOptions& options, OutputFile* file, FilesInUse& files,
                      const RasterGround& ground, const Figure& figure)
     : options_(options),
@@ -67,7 +77,7 @@ RasterRun::RasterRun(const RasterRunOptions& options, OutputFile* file, FilesInU
         window_ = around(window_, tile.window);
         posts_ += posts_of(tile.window);
     }
-    if (!is_dry() && !is_done()) bar_.emplace(printable(options.output));
+    if (!is_dry() && !is_done() && !options.done) bar_.emplace(printable(options.output));
     began_ = Progress::Clock::now();
     if (is_done() && options.purpose != RasterRunOptions::Purpose::Plan)
         log::info(fmt::format("no tile is to be made; {} are there already", folder_->there()));
@@ -133,6 +143,7 @@ void RasterRun::count(double of_call) {
     passed_s_ = seconds_since(began_);
     sampled_.end_step(step, passed_s_);
     if (bar_) bar_->show(share_);
+    if (options_.done) options_.done(step);
     const double worked_s = passed_s_ - ready_s_ - sites_s_;
     if (is_dry() && worked_s > kEnough_s && share_ < 1 && sampled_.suffices()) throw Enough();
 }

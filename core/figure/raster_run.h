@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,13 @@ struct RasterRunOptions {
     std::string command;  ///< TilePlan::command
     /// Options that change values, in lines: with metadata and the DEM TilePlan::digest.
     std::string meaning;
+    /// Told of each share that is done, instead of a bar; an exception from it ends the work.
+    std::function<void(double)> done{};
 };
+
+/// Of all files that a DEM is read from, also those that a name stands for, and of how they are
+/// read: RasterGround::stamp.
+std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options);
 
 /// Rasters being made, part by part, with a bar on a terminal: one, or the tiles of a folder.
 class RasterRun {

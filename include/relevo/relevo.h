@@ -248,6 +248,18 @@ RELEVO_API relevo_result relevo_horizons(relevo_dem* dem, const char* options, f
                                          size_t count, const relevo_progress* progress,
                                          const char** about);
 
+/* A raster of light as tiles in a folder, GeoTIFFs of the program's kind, or what it would take.
+ * Since 0.2.
+ * @param figure   "shadow", "sun_hours", "sky_view", "horizons"
+ * @param options  of that figure
+ * @param files    "folder"; with it "tiles", posts a side (512), "halo" [km], "resume" and
+ *     "overwrite" (false). Null: one raster is estimated from a small part, and nothing is written
+ * @param answer   may be null; receives JSON. Of tiles: "made" and "there", how many. Else: "posts",
+ *     "parts", "memory_mib", "computing_s", "sampled_share", "threads", "bands", "result_bytes" */
+RELEVO_API relevo_result relevo_tiles(relevo_dem* dem, const char* figure, const char* options,
+                                      const char* files, const relevo_progress* progress,
+                                      const char** answer);
+
 /* ---- pictures ---- */
 
 /* A scene on a device: what the program draws. It has a thread of its own. */

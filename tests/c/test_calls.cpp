@@ -43,6 +43,7 @@ TEST(BadCalls, NullIsAnError) {
         relevo_sun_hours(nullptr, R"({"date": "2026-06-21"})", nullptr, 0, nullptr, nullptr),
         relevo_sky_view(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
         relevo_horizons(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
+        relevo_tiles(nullptr, "shadow", nullptr, nullptr, nullptr, nullptr),
         relevo_open(nullptr, nullptr, nullptr),
         relevo_set(nullptr, nullptr),
         relevo_resize(nullptr, 1, 1),

@@ -326,5 +326,23 @@ TEST_F(Figures, AnswersAreThoseOfTheProgram) {
         "relevo_answer: options:1: dates: no such key; did you mean \"date\"?");
 }
 
+TEST_F(Figures, EstimatesAndTilesCanBeCancelled) {
+    const char* answer = nullptr;
+    expect_ok(
+        relevo_tiles(dem_.get(), "sky_view", R"({"directions": 8})", nullptr, nullptr, &answer));
+    EXPECT_EQ(nlohmann::json::parse(answer)["posts"], static_cast<double>(posts_of(dem_.get())));
+    const auto folder = std::filesystem::path(testing::TempDir()) / "relevo_c_tiles";
+    std::filesystem::remove_all(folder);
+    const std::string files = fmt::format(R"({{"folder": "{}", "tiles": 200}})", folder.string());
+    auto progress = sized<relevo_progress>();
+    progress.done = [](void*, double) { return 1; };
+    expect_error(relevo_tiles(dem_.get(), "sky_view", R"({"directions": 8})", files.c_str(),
+                              &progress, nullptr),
+                 RELEVO_RESULT_CANCELLED, "relevo_tiles: cancelled");
+    expect_error(relevo_tiles(dem_.get(), "dial", nullptr, nullptr, nullptr, &answer),
+                 RELEVO_RESULT_BAD_INPUT,
+                 "figure: expected one of shadow, sun_hours, sky_view, horizons but got dial");
+}
+
 }  // namespace
 }  // namespace relevo::test

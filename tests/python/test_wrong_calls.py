@@ -29,6 +29,7 @@ CALLS = {
     "Dem.sun.shadow": (lambda dem: dem.sun.shadow, {"time": "2026-06-21T12:00Z"}),
     "Dem.sun.sky_view": (lambda dem: dem.sun.sky_view, {"directions": 8}),
     "Dem.sun.horizons": (lambda dem: dem.sun.horizons, {"directions": 8}),
+    "Dem.sun.estimate": (lambda dem: dem.sun.estimate, {"figure": "hours", **DAY}),
 }
 # Other names than the argument's, by which errors may name it.
 ALSO = {"times": "time", "azimuth": "azimuth_deg"}

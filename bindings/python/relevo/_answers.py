@@ -74,6 +74,13 @@ When = TypedDict("When", {
     "passages": list[Passage],
 })
 
+# Of a raster: memory_mib of the process, computing_s on `threads`, of which sampled_share was done to tell.
+Estimate = TypedDict("Estimate", {
+    "posts": float, "parts": int, "memory_mib": float, "computing_s": float, "sampled_share": float, "threads": int,
+    "bands": int, "result_bytes": float,
+})
+Tiles = TypedDict("Tiles", {"made": int, "there": int})
+
 
 def _with_times(found: dict[str, Any]) -> dict[str, Any]:
     for key, value in found.items():

@@ -48,4 +48,6 @@ _TEXTS: dict[str, Callable[[Any], str]] = {"date": date_text, "from": date_text,
 def library_options(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Options of the library by arguments of a method: with the library's names, dates and zones as texts."""
     options = {_NAMES.get(key, key): value for key, value in arguments.items() if key not in _OTHER and value is not None}
+    if isinstance(options.get("step"), datetime.timedelta):
+        options["step"] = options["step"].total_seconds()
     return {key: _TEXTS[key](value) if key in _TEXTS else value for key, value in options.items()}

@@ -69,6 +69,7 @@ _shadow, _sun_hours, _sky_view, _horizons = (
     function(f"relevo_{name}", _HANDLE, _TEXT, _DATA, c_size_t, PROGRESS, _SAID)
     for name in ("shadow", "sun_hours", "sky_view", "horizons")
 )
+_tiles = function("relevo_tiles", _HANDLE, _TEXT, _TEXT, _TEXT, PROGRESS, _SAID)
 _open = function("relevo_open", _TEXT, POINTER(_OpenOptions), _RECEIVED)
 _close = function("relevo_close", _HANDLE, result=None)
 _set = function("relevo_set", _HANDLE, _TEXT)
@@ -139,6 +140,19 @@ class Dem(Handle):
 
     def horizons(self, options: str, elevation_deg: Any, progress: Progress) -> str:
         return self._raster(_horizons, options, elevation_deg, progress)
+
+    def tiles(self, figure: str, options: str, files: Optional[str], progress: Progress) -> str:
+        """Tiles, or without `files` what a raster takes. Returns JSON."""
+        handle = self.address
+
+        def work(done: Any) -> str:
+            said = c_char_p()
+            check(_tiles(handle, figure.encode(), options.encode(), text(files), done, byref(said)))
+            assert said.value is not None
+            return said.value.decode()
+
+        made: str = call_long(work, progress)
+        return made
 
     def _raster(self, figure: Any, options: str, values: Any, progress: Progress) -> str:
         """A raster of light. Returns its `about`."""

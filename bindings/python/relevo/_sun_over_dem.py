@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-from ._answers import Carpet, When, answer
+from ._answers import Carpet, Estimate, Tiles, When, answer
 from ._clip import Clip, part_of
 from ._errors import BadInput, messages, number, numbers
 from ._inputs import Crs
@@ -128,8 +129,6 @@ class SunOverDem(OfSun, _OverDem):
         """
         options = library_options(locals())
         options["bands"], alone = band_list(bands)
-        if isinstance(step, datetime.timedelta):
-            options["step"] = step.total_seconds()
         return self._raster("sun_hours", options["bands"], alone, options, progress)
 
     def shadow(
@@ -183,10 +182,7 @@ class SunOverDem(OfSun, _OverDem):
 
         step: of the time of day, of whole seconds [s] (180)
         """
-        options = library_options(locals())
-        if isinstance(step, datetime.timedelta):
-            options["step"] = step.total_seconds()
-        found: Carpet = answer(self._dem, "sun carpet", options)
+        found: Carpet = answer(self._dem, "sun carpet", locals())
         return found
 
     def when(
@@ -210,6 +206,63 @@ class SunOverDem(OfSun, _OverDem):
             raise BadInput(f"over: expected (lat, lon) or (lat, lon, height) but got {over!r}") from None
         found: When = answer(self._dem, "sun when", options)
         return found
+
+    def estimate(
+        self, figure: str, *, time: Optional[Time] = None, date: Optional[Date] = None, start: Optional[Date] = None,
+        end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
+        bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
+        directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
+        refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Sequence[float]] = None,
+        clip_crs: Optional[Crs] = None, progress: Optional[Progress] = None,
+    ) -> Estimate:
+        """Time and memory that a raster takes, estimated from a small part of it.
+
+        figure: "hours", "shadow", "sky_view" or "horizons"; other arguments are those of that method
+        """
+        found: Estimate = self._files(figure, library_options(locals()), None, progress)
+        return found
+
+    def tiles(
+        self, figure: str, folder: Union[str, os.PathLike[str]], *, tiles: int = 512, halo: Optional[float] = None,
+        resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, date: Optional[Date] = None,
+        start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
+        bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
+        directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
+        refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Sequence[float]] = None,
+        clip_crs: Optional[Crs] = None, progress: Optional[Progress] = None,
+    ) -> Tiles:
+        """Writes a raster as GeoTIFFs of tiles, also of DEMs that memory does not hold. `relevo merge` joins them.
+
+        figure: "hours", "shadow", "sky_view" or "horizons"; other arguments are those of that method
+        tiles: posts a side
+        halo: posts only so many km around a tile, ground beyond as means, exact to 0.1 degrees (all posts)
+        resume: keep tiles that are there, complete and of the same call
+        overwrite: replace files
+        """
+        options = library_options(locals())
+        files = {key: options.pop(key) for key in ("folder", "tiles", "halo", "resume", "overwrite") if key in options}
+        try:
+            files["folder"] = os.fspath(folder)
+        except TypeError:
+            raise BadInput(f"folder: expected a name but got {folder!r}") from None
+        found: Tiles = self._files(figure, options, options_text(files), progress)
+        return found
+
+    def _files(self, figure: str, options: dict[str, Any], files: Optional[str], progress: Optional[Progress]) -> Any:
+        """`relevo_tiles()` of the library."""
+        if figure not in ("hours", "shadow", "sky_view", "horizons"):
+            raise BadInput(f"figure: expected hours, shadow, sky_view or horizons but got {figure!r}")
+        del options["figure"]
+        if "bands" in options:
+            options["bands"], _ = band_list(options["bands"])
+        if "time" in options:
+            options["time"] = time_text(options["time"], options.get("zone"))
+        part = part_of(self._dem, options.pop("clip", None), options.pop("clip_crs", None))
+        name = figure if figure != "hours" else "sun_hours"
+        with messages():
+            return json.loads(self._dem._handle.tiles(name, options_text({**options, **part.asked}), files, progress))
 
     def _raster(
         self, figure: str, names: list[str], alone: bool, options: dict[str, Any], progress: Optional[Progress]

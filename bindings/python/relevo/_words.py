@@ -17,6 +17,7 @@ _PHRASES: Final = (
     (re.compile(r"^scene: (time\.)?zone(?=[.:])|^zone(?=:)"), "tz"),
     (re.compile(r"^place: "), "lat and lon: "),
     (re.compile(r"^time zone: "), "tz: "),
+    (re.compile(r"^-o: "), "folder: "),
     (re.compile(r"^from: "), "start: "),
     (re.compile(r"\ba height in --at\b"), "height="),
     (re.compile(r"\bdate, from and to, or year\b"), "date, start and end, or year"),
