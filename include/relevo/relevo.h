@@ -254,8 +254,9 @@ RELEVO_API relevo_result relevo_horizons(relevo_dem* dem, const char* options, f
  * @param options  of that figure
  * @param files    "folder"; with it "tiles", posts a side (512), "halo" [km], "resume" and
  *     "overwrite" (false). Null: one raster is estimated from a small part, and nothing is written
- * @param answer   may be null; receives JSON. Of tiles: "made" and "there", how many. Else: "posts",
- *     "parts", "memory_mib", "computing_s", "sampled_share", "threads", "bands", "result_bytes" */
+ * @param answer   may be null; receives JSON. Of tiles: "made" and "there", how many. Else:
+ * "posts", "parts", "memory_mib", "computing_s", "sampled_share", "threads", "bands",
+ * "result_bytes" */
 RELEVO_API relevo_result relevo_tiles(relevo_dem* dem, const char* figure, const char* options,
                                       const char* files, const relevo_progress* progress,
                                       const char** answer);
