@@ -1,0 +1,142 @@
+'use strict';
+// Draws the ground and the sky with WebGL2.
+
+const SKY = `
+uniform vec3 sun; uniform float sunUp;
+vec3 skyOf(vec3 d) {
+  float day = smoothstep(-14.0, 8.0, sunUp), low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0);
+  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.07, .17, .48), day), rim = mix(vec3(.012, .018, .04), vec3(.50, .64, .86), day);
+  float towards = pow(max(0.0, dot(normalize(d.xz + 1e-5), normalize(sun.xz + 1e-5)) * .5 + .5), 2.0);
+  rim = mix(rim, vec3(.95, .50, .26) * (.25 + day), low * (.25 + .6 * towards));
+  vec3 c = mix(rim, zenith, 1.0 - exp(-4.5 * up));
+  float glow = max(dot(d, sun), 0.0);
+  return c + vec3(1., .72, .42) * day * (.10 * pow(glow, 24.0) + .5 * pow(glow, 900.0));
+}
+vec3 shown(vec3 c) {
+  c = max(c, 0.0) * 1.05;
+  c = c * (2.51 * c + .03) / (c * (2.43 * c + .59) + .14);
+  return mix(12.92 * c, 1.055 * pow(max(c, 1e-5), vec3(1. / 2.4)) - .055, step(.0031308, c));
+}`;
+const GROUND_VERTEX = `#version 300 es
+precision highp float; precision highp sampler2D;
+uniform sampler2D heights; uniform mat4 clip; uniform vec3 world; uniform ivec2 size; uniform int every; uniform float base;
+out vec2 uv; out vec3 at; out float solid;
+void main() {
+  ivec2 p = min(ivec2((gl_VertexID >> 1), gl_InstanceID + (gl_VertexID & 1)) * every, size - 1);
+  float h = texelFetch(heights, p, 0).r;
+  solid = h < -1e8 ? 0.0 : 1.0;
+  uv = (vec2(p) + .5) / vec2(size);
+  at = vec3((float(p.x) - float(size.x - 1) * .5) * world.x, (max(h, base) - base) * world.y, (float(p.y) - float(size.y - 1) * .5) * world.z);
+  gl_Position = clip * vec4(at, 1.0);
+}`;
+const GROUND_FRAGMENT = `#version 300 es
+precision highp float;
+uniform sampler2D normals, light, colour, open; uniform vec3 eye; uniform float air;
+in vec2 uv; in vec3 at; in float solid; out vec4 result;
+${SKY}
+void main() {
+  if (solid < 0.99) discard;
+  vec2 n2 = texture(normals, uv).rg * 2.0 - 1.0;
+  vec3 n = vec3(n2.x, sqrt(max(0.0, 1.0 - dot(n2, n2))), n2.y), albedo = pow(texture(colour, uv).rgb, vec3(2.2));
+  float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
+  vec3 beam = 3.1 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
+  float day = smoothstep(-12.0, 14.0, sunUp);
+  vec3 fill = mix(vec3(.010, .014, .030), vec3(.26, .36, .56), day) * (.45 + .55 * n.y) * texture(open, uv).r;
+  float lit = clamp((texture(light, uv).r - .02) * 1.04, 0.0, 1.0);
+  vec3 bounced = beam * max(sun.y, 0.0) * .06;
+  vec3 c = albedo * (beam * lit * max(dot(n, sun), 0.0) + fill + bounced);
+  vec3 way = at - eye; float d = length(way); vec3 dir = way / d;
+  vec3 haze = skyOf(normalize(vec3(dir.x, max(dir.y, .0) + .01, dir.z)));
+  vec2 e = min(uv, 1.0 - uv);
+  float edge = smoothstep(0.0, .035, min(e.x, e.y)), f = 1.0 - exp(-d * air);
+  result = vec4(shown(mix(haze * .92, c, edge * (1.0 - f * vec3(.75, .88, 1.0)))), 1.0);
+}`;
+const SKY_VERTEX = `#version 300 es
+out vec2 p; void main() { p = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0; gl_Position = vec4(p, 1.0, 1.0); }`;
+const SKY_FRAGMENT = `#version 300 es
+precision highp float;
+in vec2 p; out vec4 result; uniform mat3 rays;
+${SKY}
+void main() {
+  vec3 d = normalize(rays * vec3(p, 1.0));
+  result = vec4(shown(skyOf(normalize(vec3(d.x, max(d.y, 0.0) + .01, d.z))) * (d.y < 0.0 ? .92 : mix(.92, 1.0, smoothstep(0.0, .03, d.y)))), 1.0);
+}`;
+
+function program(gl, vertex, fragment) {
+  const p = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    const s = gl.createShader(kind);
+    gl.shaderSource(s, text); gl.compileShader(s); gl.attachShader(p, s);
+  }
+  gl.linkProgram(p);
+  if (!gl.getProgramParameter(p, gl.LINK_STATUS) && !gl.isContextLost()) throw Error(gl.getProgramInfoLog(p) || 'shader');
+  return p;
+}
+
+// Normals of the drawn ground, two bytes a post.
+function normalsOf({meta, height}) {
+  const [columns, rows] = meta.size, [sx, sy] = meta.step_m, e = meta.exaggeration, out = new Uint8Array(2 * columns * rows);
+  for (let r = 0, i = 0; r < rows; r++)
+    for (let c = 0; c < columns; c++, i++) {
+      const l = c ? 1 : 0, R = c < columns - 1 ? 1 : 0, u = r ? columns : 0, d = r < rows - 1 ? columns : 0;
+      const gx = (height[i - l] - height[i + R]) * e / ((l + R) * sx) || 0;
+      const gz = (height[i - u] - height[i + d]) * e / (((u + d) / columns) * sy) || 0, k = 1 / Math.sqrt(1 + gx * gx + gz * gz);
+      out[2 * i] = 127.5 + 127.5 * gx * k; out[2 * i + 1] = 127.5 + 127.5 * gz * k;
+    }
+  return out;
+}
+
+class Drawer {
+  constructor(canvas, ground) {
+    const gl = this.gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
+    if (!gl) throw Error('no WebGL2');
+    this.ground = ground; this.bytes = 0; this.names = new Map();
+    this.terrain = program(gl, GROUND_VERTEX, GROUND_FRAGMENT); this.sky = program(gl, SKY_VERTEX, SKY_FRAGMENT);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1); gl.bindVertexArray(gl.createVertexArray());
+    const [w, h] = ground.meta.size, count = w * h, filled = ground.height.map(v => v === v ? v : -1e9);
+    this.texture(0, gl.R32F, w, h, gl.RED, gl.FLOAT, filled, gl.NEAREST, 4);
+    this.texture(1, gl.RG8, w, h, gl.RG, gl.UNSIGNED_BYTE, normalsOf(ground), gl.LINEAR, 2);
+    this.texture(2, gl.R8, w, h, gl.RED, gl.UNSIGNED_BYTE, new Uint8Array(count).fill(255), gl.LINEAR, 1);
+    this.texture(3, gl.RGBA8, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array([150, 142, 122, 255]), gl.LINEAR, 4);
+    this.texture(4, gl.R8, 1, 1, gl.RED, gl.UNSIGNED_BYTE, new Uint8Array([255]), gl.LINEAR, 1);
+  }
+  texture(unit, format, w, h, channels, type, data, filter, bytes) {
+    const gl = this.gl;
+    gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.texImage2D(gl.TEXTURE_2D, 0, format, w, h, 0, channels, type, data);
+    for (const [k, v] of [[gl.TEXTURE_MIN_FILTER, filter], [gl.TEXTURE_MAG_FILTER, filter], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+      gl.texParameteri(gl.TEXTURE_2D, k, v);
+    this.bytes += w * h * bytes;
+  }
+  setColour(bitmap) {
+    const gl = this.gl;
+    gl.activeTexture(gl.TEXTURE3); gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+    gl.generateMipmap(gl.TEXTURE_2D); gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    this.bytes += bitmap.width * bitmap.height * 4 * 4 / 3;
+  }
+  setSkyView(bytes, {columns, rows}) { this.texture(4, this.gl.R8, columns, rows, this.gl.RED, this.gl.UNSIGNED_BYTE, bytes, this.gl.LINEAR, 1); }
+  setLight(light) {
+    const gl = this.gl, [w, h] = this.ground.meta.size;
+    gl.activeTexture(gl.TEXTURE2); gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, w, h, gl.RED, gl.UNSIGNED_BYTE, light);
+  }
+  at(p, name) { return this.gl.getUniformLocation(p, name); }
+  draw(camera, sun, every) {
+    const gl = this.gl, {meta, base} = this.ground, [w, h] = meta.size, a = (sun.azimuth - gridValue(meta, 'convergence', w / 2, h / 2)) * RAD;
+    const e = sun.apparent * RAD, direction = [Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e)];
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight); gl.clear(gl.DEPTH_BUFFER_BIT);
+    for (const p of [this.sky, this.terrain]) {
+      gl.useProgram(p); gl.uniform3fv(this.at(p, 'sun'), direction); gl.uniform1f(this.at(p, 'sunUp'), sun.apparent);
+      if (p === this.sky) {
+        gl.disable(gl.DEPTH_TEST); gl.uniformMatrix3fv(this.at(p, 'rays'), false, camera.rays); gl.drawArrays(gl.TRIANGLES, 0, 3);
+        continue;
+      }
+      ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(this.at(p, n), i));
+      gl.uniformMatrix4fv(this.at(p, 'clip'), false, camera.clip); gl.uniform3fv(this.at(p, 'eye'), camera.eye);
+      gl.uniform3f(this.at(p, 'world'), meta.step_m[0], meta.exaggeration, meta.step_m[1]); gl.uniform2i(this.at(p, 'size'), w, h);
+      gl.uniform1i(this.at(p, 'every'), every); gl.uniform1f(this.at(p, 'base'), base);
+      gl.uniform1f(this.at(p, 'air'), 0.42 / Math.hypot(w * meta.step_m[0], h * meta.step_m[1]));
+      gl.enable(gl.DEPTH_TEST);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (Math.ceil((w - 1) / every) + 1), Math.ceil((h - 1) / every));
+    }
+  }
+}
