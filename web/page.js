@@ -49,7 +49,8 @@ async function start() {
       .map(([k, v]) => k + '=' + +v.toFixed(2)).join('&')), 250);
   };
   const bar = new Bar(meta, centre, s => { sun = s; wanted = bar.unix; sweep(); changed(); if (point) tell(); });
-  const view = new View(ground, () => bar && view && changed());
+  const view = new View(ground, () => {});
+  view.changed = changed;
   const tell = () => {
     const text = spells(point, bar.midnight).map(([a, b]) => `${clock(meta.zone, a)}–${clock(meta.zone, b)}`).join(', ');
     $('spells').textContent = text ? `Direct sun ${text}` : 'No direct sun on this day';
