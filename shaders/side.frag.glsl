@@ -22,6 +22,9 @@ layout(location = 1) out vec4 overlay_out;
 #ifdef SURFACE_OUTPUT
 layout(location = SURFACE_OUTPUT) out vec4 surface_out;
 #endif
+#ifdef ALBEDO_OUTPUT
+layout(location = ALBEDO_OUTPUT) out vec4 albedo_out;
+#endif
 #ifdef WALLS_OUTPUT
 layout(location = WALLS_OUTPUT) out float walls_out;  // lib/edge_depth.glsl
 #endif
@@ -73,6 +76,9 @@ void main() {
 #endif
 #ifdef SURFACE_OUTPUT
     surface_out = vec4(0.0);
+#endif
+#ifdef ALBEDO_OUTPUT
+    albedo_out = vec4(0.0);
 #endif
 #ifdef WALLS_OUTPUT
     walls_out = clamp(0.5 + 0.25 * s.normal.x + 0.125 * s.normal.y, 0.1, 1.0);

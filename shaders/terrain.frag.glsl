@@ -1,6 +1,7 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     gbuffer (geometry.frag.glsl), normal pages
 //! writes    with SURFACE_OUTPUT the normal and the visible part of the sun, for passes of plugins;
+//!           with ALBEDO_OUTPUT the diffuse colour, linear;
 //!           with AUDITED what the point is and how much of the sun is drawn there (render::SunSeen);
 //!           with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
@@ -31,6 +32,9 @@ layout(location = 1) out vec4 overlay_out;
 #endif
 #ifdef SURFACE_OUTPUT
 layout(location = SURFACE_OUTPUT) out vec4 surface_out;
+#endif
+#ifdef ALBEDO_OUTPUT
+layout(location = ALBEDO_OUTPUT) out vec4 albedo_out;
 #endif
 #ifdef AUDITED
 layout(location = AUDITED) out vec4 audit_out;
@@ -201,6 +205,9 @@ void main() {
     // The audit is of the terrain's shadows: not where instances stand or their shadows lie.
     float audited = !is_ground ? -1.0 : sunlight < 1.0 ? -2.0 : seen;
     audit_out = vec4(s.post, audited, faces ? s.pixel_posts : -s.pixel_posts);
+#endif
+#ifdef ALBEDO_OUTPUT
+    albedo_out = vec4(s.diffuse, 1.0);
 #endif
 #ifdef SURFACE_OUTPUT
     float visible = 1.0;

@@ -19,7 +19,8 @@ void FormatArguments::add_to(Verb verb, bool with_format) {
         .check(in_range(1, 100))
         .group("Format");
     verb.add_option("--layers", layers,
-                    "Data in an exr: a list of depth, normal, position, shadow, ids; or all")
+                    "Data in an exr: a list of depth, normal, position, shadow, albedo, ids; "
+                    "or all")
         .delimiter(',')
         .group("Format");
 }

@@ -61,6 +61,9 @@ class Declaration {
         else if (facts.overlays)
             end_defines_.push_back({"DISPLAY_OVERLAY", ""});
         if (facts.surface) end_defines_.push_back({kSurfaceDefine, has_overlay() ? "2" : "1"});
+        if (facts.albedo)
+            end_defines_.push_back(
+                {kAlbedoDefine, std::to_string(1 + has_overlay() + facts.surface)});
     }
 
     CoreFrame run() {
@@ -128,6 +131,9 @@ class Declaration {
         if (facts_.surface)
             add(Resource{
                 .name = kSurfaceTexture, .format = RGBA16F, .linear = true, .output = facts_.data});
+        if (facts_.albedo)
+            add(Resource{
+                .name = kAlbedoTexture, .format = RGBA16F, .linear = true, .output = true});
         if (facts_.audited)
             add(Resource{.name = "sun_seen", .format = RGBA32F, .linear = true, .output = true});
         if (facts_.antialias) {
@@ -341,6 +347,8 @@ class Declaration {
     const char* outside_word() const {
         return facts_.outside && facts_.wants_outside ? kOutsideWord : nullptr;
     }
+    /// The output behind those that all shading programs of the ground have.
+    int first_extra_output() const { return 1 + has_overlay() + facts_.surface + facts_.albedo; }
     bool has_overlay() const { return facts_.radiance && facts_.overlays; }
 
     /// Shades the pixels of the geometry pass.
@@ -354,8 +362,7 @@ class Declaration {
         if (facts_.overlay_raster) recipe.defines.push_back({"OVERLAY_RASTER", ""});
         recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited)
-            recipe.defines.push_back(
-                {kAuditedDefine, std::to_string(1 + has_overlay() + facts_.surface)});
+            recipe.defines.push_back({kAuditedDefine, std::to_string(first_extra_output())});
         Pass pass{.name = "terrain",
                   .program = program("terrain", recipe, outside_word()),
                   .colours = {{shaded_}},
@@ -364,6 +371,7 @@ class Declaration {
             pass.plain = PlainProgram{plain_program("terrain", recipe), parts_of_ground};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
         if (facts_.surface) pass.colours.push_back({kSurfaceTexture, kNothing});
+        if (facts_.albedo) pass.colours.push_back({kAlbedoTexture, kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
         add(std::move(pass));
     }
@@ -374,8 +382,7 @@ class Declaration {
                                      .fragment_main = "side.frag.glsl",
                                      .defines = end_defines_};
         if (facts_.antialias)
-            recipe.defines.push_back(
-                {"WALLS_OUTPUT", std::to_string(1 + has_overlay() + facts_.surface)});
+            recipe.defines.push_back({"WALLS_OUTPUT", std::to_string(first_extra_output())});
         Pass pass{.name = "side",
                   .kind = PassKind::Geometry,
                   .program = program("side", std::move(recipe), outside_word()),
@@ -390,6 +397,7 @@ class Declaration {
                   }};
         if (has_overlay()) pass.colours.push_back({.resource = "overlay", .updates = true});
         if (facts_.surface) pass.colours.push_back({.resource = kSurfaceTexture, .updates = true});
+        if (facts_.albedo) pass.colours.push_back({.resource = kAlbedoTexture, .updates = true});
         if (facts_.antialias) pass.colours.push_back({"walls", kNothing});
         add(std::move(pass));
     }

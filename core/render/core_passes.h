@@ -37,6 +37,10 @@ inline constexpr const char* kOrthographicDefine = "ORTHOGRAPHIC";
 inline constexpr const char* kSurfaceTexture = "surface";
 inline constexpr const char* kSurfaceDefine = "SURFACE_OUTPUT";
 
+/// The diffuse colour of the shaded ground, and the define with the number of the output.
+inline constexpr const char* kAlbedoTexture = "albedo";
+inline constexpr const char* kAlbedoDefine = "ALBEDO_OUTPUT";
+
 /// Define with the number of the output for audits.
 inline constexpr const char* kAuditedDefine = "AUDITED";
 
@@ -55,6 +59,7 @@ struct FrameFacts {
     bool surface = false;                ///< plugins read core.normal or core.shadow
     bool deep = false;                   ///< display-referred colours have 16 bits, not 8
     bool data = false;                   ///< keeps what read_normals() and the like read
+    bool albedo = false;                 ///< keeps the diffuse colour of the ground
     bool audited = false;                ///< the terrain pass also writes the data of SunSeen
     bool vertex_normals = false;         ///< computed per vertex, not per fragment
     bool displaced = false;              ///< effects displace the ground

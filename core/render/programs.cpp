@@ -84,6 +84,7 @@ class Stitcher {
         facts_.overlay_raster = options.overlay_raster;
         facts_.surface = options.data || reads(input, "core.normal") || reads(input, "core.shadow");
         facts_.data = options.data;
+        facts_.albedo = options.albedo;
         facts_.deep = options.deep;
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;

@@ -31,8 +31,9 @@ struct ProgramOptions {
     /// "post".
     bool shown = false;
     bool antialias = true;
-    bool deep = false;  ///< display-referred colours have 16 bits
-    bool data = false;  ///< keeps the data of PixelData of readback.h
+    bool deep = false;    ///< display-referred colours have 16 bits
+    bool data = false;    ///< keeps the data of PixelData of readback.h
+    bool albedo = false;  ///< and its albedo
     /// Terrain programs also write what audits read: SunSeen of readback.h.
     bool audited = false;
     bool orthographic = false;  ///< frames are of Camera::map

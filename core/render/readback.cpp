@@ -69,10 +69,13 @@ image::Image16 read_output16(const gl::Texture& output, int* non_finite) {
     return picture;
 }
 
-PixelData read_data(const gl::Texture& surface, const gl::Texture& depth) {
+PixelData read_data(const gl::Texture& surface, const gl::Texture& depth,
+                    const gl::Texture* albedo) {
     const auto [width, height, layers] = surface.extent();
     std::vector<float> seen(4 * texels_of(surface));
     surface.read_floats(seen);
+    std::vector<float> colours(albedo ? 4 * texels_of(*albedo) : 0);
+    if (albedo) albedo->read_floats(colours);
     const std::vector<float> depths_m = read_depths(depth);
     PixelData data;
     for (int y = height - 1; y >= 0; --y)
@@ -86,6 +89,8 @@ PixelData read_data(const gl::Texture& surface, const gl::Texture& depth) {
             data.normals.push_back(normal);
             data.sun.push_back(seen[4 * i + 3]);
             data.walls.push_back(wall ? 1 : 0);
+            if (albedo)
+                data.albedo.emplace_back(colours[4 * i], colours[4 * i + 1], colours[4 * i + 2]);
         }
     return data;
 }

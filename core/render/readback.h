@@ -31,6 +31,8 @@ struct PixelData {
     std::vector<glm::vec3> normals;
     std::vector<float> sun;           ///< visible fraction of the sun, 0 to 1; 0 without ground
     std::vector<std::uint8_t> walls;  ///< 1 where a cut side of the DEM is seen
+    /// Diffuse colour of the ground, linear; 0 on walls and without ground. Empty unless asked for.
+    std::vector<glm::vec3> albedo;
 };
 
 /// Number of RGBA8 pixels that were NaN or infinite before clamping. Shaders mark them with an
@@ -49,7 +51,9 @@ NonFinite find_non_finite(const gl::Texture& output);
 image::Image8 read_output(const gl::Texture& output, int* non_finite);
 /// The same of RGBA16.
 image::Image16 read_output16(const gl::Texture& output, int* non_finite);
-PixelData read_data(const gl::Texture& surface, const gl::Texture& depth);
+/// @param albedo  null: PixelData::albedo stays empty
+PixelData read_data(const gl::Texture& surface, const gl::Texture& depth,
+                    const gl::Texture* albedo);
 /// Linear radiance, RGB, rows from the top. @param exposure  factor in the stored values
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite);
 /// Depth along the optical axis [m] of a stored depth.

@@ -472,7 +472,9 @@ image::Image16 Renderer::read_output16(int* non_finite) const {
 
 PixelData Renderer::read_data() const {
     assert(impl_->options.data);
-    return render::read_data(impl_->runner.texture(kSurfaceTexture), depth());
+    const gl::Texture* const albedo =
+        impl_->options.albedo ? &impl_->runner.texture(kAlbedoTexture) : nullptr;
+    return render::read_data(impl_->runner.texture(kSurfaceTexture), depth(), albedo);
 }
 
 NonFinite Renderer::non_finite() const {

@@ -36,6 +36,8 @@ struct RendererOptions {
     bool orthographic = false;
     /// Stores the data for read_data().
     bool data = false;
+    /// The same with PixelData::albedo.
+    bool albedo = false;
     /// Draws an overlay: Terrain::set_overlay. Not with normals per vertex.
     bool overlay_raster = false;
     /// Whether the first frame is probably seen from outside the DEM. Programs of the other graph

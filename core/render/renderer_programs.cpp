@@ -41,6 +41,7 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                           .antialias = options.antialias,
                           .deep = options.deep,
                           .data = options.data,
+                          .albedo = options.albedo,
                           .audited = options.audited,
                           .orthographic = options.orthographic,
                           .software = info.device.software};

@@ -19,7 +19,7 @@ namespace relevo::session {
 namespace {
 
 // In the order of DataLayer.
-const std::vector<std::string> kWords = {"depth", "normal", "position", "shadow", "ids"};
+const std::vector<std::string> kWords = {"depth", "normal", "position", "shadow", "albedo", "ids"};
 
 enum Kind { kNothing = 0, kGround = 1, kWater = 2, kWall = 3 };
 
@@ -42,6 +42,9 @@ class Layers {
             case DataLayer::Shadow:
                 to.push_back({.name = "shadow.Y", .values = data_.sun});
                 return;
+            case DataLayer::Albedo:
+                return add_vector(
+                    "albedo", to, [&](std::size_t i) { return data_.albedo[i]; }, "RGB");
             case DataLayer::Ids:
                 to.push_back(ids());
                 return;
@@ -50,10 +53,10 @@ class Layers {
 
   private:
     template <typename Vector>
-    void add_vector(const std::string& name, std::vector<image::Channel>& to,
-                    const Vector& vector) const {
+    void add_vector(const std::string& name, std::vector<image::Channel>& to, const Vector& vector,
+                    const char* axes = "XYZ") const {
         for (int axis = 0; axis < 3; ++axis) {
-            image::Channel channel{.name = fmt::format("{}.{}", name, "XYZ"[axis])};
+            image::Channel channel{.name = fmt::format("{}.{}", name, axes[axis])};
             channel.values.resize(data_.depths_m.size());
             for (std::size_t i = 0; i < channel.values.size(); ++i)
                 channel.values[i] = vector(i)[axis];

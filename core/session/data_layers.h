@@ -21,6 +21,7 @@ enum class DataLayer {
     Normal,    ///< normal.X, .Y, .Z: unit normal in the local frame, as shaded; 0 on walls
     Position,  ///< position.X, .Y, .Z: in the local frame as drawn, exaggeration included [m]
     Shadow,    ///< shadow.Y: visible fraction of the sun, 0 in shadow, 1 in light; 0 on walls
+    Albedo,    ///< albedo.R, .G, .B: diffuse colour by effects, linear, without light; 0 on walls
     Ids,       ///< ids.kind, whole: 0 nothing, 1 ground, 2 water, 3 wall of the DEM
 };
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "session/annotations.h"
 #include "session/image_parts.h"
@@ -74,6 +75,7 @@ RendererNeeds needs_of(const scene::Scene& scene, const PictureFormat& format) {
     return {.deep = samples > 1 || format.bits > 8 || mixed,
             .antialias = samples < kEnoughSamples,
             .data = !format.layers.empty(),
+            .albedo = contains(format.layers, DataLayer::Albedo),
             .orthographic = scene.ortho};
 }
 

@@ -16,6 +16,7 @@ struct RendererNeeds {
     bool deep = false;          ///< colours of 16 bits, of which pictures are made
     bool antialias = true;      ///< silhouettes are smoothed in each frame
     bool data = false;          ///< layers
+    bool albedo = false;        ///< the layer of that name
     bool orthographic = false;  ///< maps
     bool operator==(const RendererNeeds&) const = default;
 };

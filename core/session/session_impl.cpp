@@ -148,6 +148,7 @@ render::RendererOptions Session::Impl::renderer_options() {
             .deep = needs.deep,
             .orthographic = needs.orthographic,
             .data = needs.data,
+            .albedo = needs.albedo,
             .overlay_raster = has_overlay_raster(),
             .outside = !state.scene.view.eye,
             .audited = options.audited,

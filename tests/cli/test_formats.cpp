@@ -84,7 +84,7 @@ TEST_F(Formats, LayersAreConsistent) {
     std::map<std::string, image::Channel> layers;
     for (image::Channel& layer : image::read_layers(path))
         layers[layer.name] = std::move(layer);
-    ASSERT_EQ(layers.size(), 9U);
+    ASSERT_EQ(layers.size(), 12U);
     EXPECT_THAT(image::read_metadata(path).at("relevo:origin"), HasSubstr("\"lat_deg\":36.30"));
     std::set<int> kinds;
     int lit = 0;
@@ -98,6 +98,9 @@ TEST_F(Formats, LayersAreConsistent) {
         };
         const double length = std::hypot(n("X"), n("Y"), n("Z"));
         EXPECT_NEAR(length, kind == 1 || kind == 2 ? 1 : 0, 0.01);
+        const float green = layers["albedo.G"].values[i];
+        const bool is_colour = green > 0 && green < 1;
+        EXPECT_EQ(is_colour || kind == 2, kind == 1 || kind == 2) << green;
         lit += layers["shadow.Y"].values[i] > 0.5;
         // The DEM is 25 km wide and its highest post 1000 m high.
         if (kind == kNothing) continue;
@@ -105,6 +108,22 @@ TEST_F(Formats, LayersAreConsistent) {
     }
     EXPECT_TRUE(kinds.contains(0) && kinds.contains(1) && kinds.contains(3));
     EXPECT_GT(lit, 1000);
+}
+
+TEST_F(Formats, AlbedoDoesNotDependOnTheSun) {
+    const auto layers_at = [&](const std::string& time) {
+        std::map<std::string, std::vector<float>> layers;
+        for (image::Channel& layer : image::read_layers(
+                 take(time.substr(11, 2) + ".exr", {"--layers", "albedo,shadow", "--time", time,
+                                                    "--view", "el=60", "--enable", "shadows"})))
+            layers[layer.name] = std::move(layer.values);
+        return layers;
+    };
+    auto noon = layers_at("2026-09-21T17:30Z"), evening = layers_at("2026-09-21T22:30Z");
+    EXPECT_FALSE(noon["shadow.Y"] == evening["shadow.Y"]);
+    for (const char* name : {"albedo.R", "albedo.G", "albedo.B"})
+        EXPECT_TRUE(noon[name] == evening[name]) << name;
+    EXPECT_FALSE(noon["albedo.R"] == noon["albedo.G"]);
 }
 
 TEST_F(Formats, GoToStandardOutputAlone) {
