@@ -5,15 +5,15 @@ const SKY = `
 uniform vec3 sun; uniform float sunUp;
 vec3 skyOf(vec3 d) {
   float day = smoothstep(-14.0, 8.0, sunUp), low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0);
-  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.07, .17, .48), day), rim = mix(vec3(.012, .018, .04), vec3(.50, .64, .86), day);
+  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.045, .13, .42), day), rim = mix(vec3(.012, .018, .04), vec3(.30, .46, .80), day);
   float towards = pow(max(0.0, dot(normalize(d.xz + 1e-5), normalize(sun.xz + 1e-5)) * .5 + .5), 2.0);
   rim = mix(rim, vec3(.95, .50, .26) * (.25 + day), low * (.25 + .6 * towards));
-  vec3 c = mix(rim, zenith, 1.0 - exp(-4.5 * up));
+  vec3 c = mix(rim, zenith, 1.0 - exp(-3.0 * up));
   float glow = max(dot(d, sun), 0.0);
   return c + vec3(1., .72, .42) * day * (.10 * pow(glow, 24.0) + .5 * pow(glow, 900.0));
 }
 vec3 shown(vec3 c) {
-  c = max(c, 0.0) * 1.05;
+  c = max(c, 0.0) * .92;
   c = c * (2.51 * c + .03) / (c * (2.43 * c + .59) + .14);
   return mix(12.92 * c, 1.055 * pow(max(c, 1e-5), vec3(1. / 2.4)) - .055, step(.0031308, c));
 }`;
@@ -39,9 +39,9 @@ void main() {
   vec2 n2 = texture(normals, uv).rg * 2.0 - 1.0;
   vec3 n = vec3(n2.x, sqrt(max(0.0, 1.0 - dot(n2, n2))), n2.y), albedo = pow(texture(colour, uv).rgb, vec3(2.2));
   float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
-  vec3 beam = 3.1 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
+  vec3 beam = 2.3 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
   float day = smoothstep(-12.0, 14.0, sunUp);
-  vec3 fill = mix(vec3(.010, .014, .030), vec3(.26, .36, .56), day) * (.45 + .55 * n.y) * texture(open, uv).r;
+  vec3 fill = mix(vec3(.010, .014, .030), vec3(.13, .20, .36), day) * (.45 + .55 * n.y) * texture(open, uv).r;
   float lit = clamp((texture(light, uv).r - .02) * 1.04, 0.0, 1.0);
   vec3 bounced = beam * max(sun.y, 0.0) * .06;
   vec3 c = albedo * (beam * lit * max(dot(n, sun), 0.0) + fill + bounced);

@@ -9,7 +9,7 @@ class View {
   }
   home() {
     const v = this.ground.meta.view;
-    Object.assign(this, {x: 0, z: 0, azimuth: v.azimuth, tilt: v.elevation, distance: this.span * 0.78});
+    Object.assign(this, {x: 0, z: 0, azimuth: v.azimuth, tilt: v.elevation, distance: this.span * 0.6});
     this.changed();
   }
   set(values) {
@@ -27,7 +27,7 @@ class View {
     const [c, r] = this.post(this.x, this.z), target = [this.x, ((heightAt(ground, c, r) || ground.base) - ground.base) * meta.exaggeration, this.z];
     const back = [Math.sin(a) * Math.cos(t), Math.sin(t), -Math.cos(a) * Math.cos(t)], eye = target.map((v, i) => v + back[i] * this.distance);
     const right = [-Math.cos(a), 0, -Math.sin(a)], up = [-Math.sin(a) * Math.sin(t), Math.cos(t), Math.cos(a) * Math.sin(t)];
-    const ty = Math.tan((aspect < 1 ? 62 : 46) / 2 * RAD), tx = ty * aspect, near = this.distance / 100, far = this.span * 4;
+    const ty = Math.tan((aspect < 1 ? 66 : 50) / 2 * RAD), tx = ty * aspect, near = this.distance / 100, far = this.span * 4;
     const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2], k = (far + near) / (near - far), clip = new Float32Array(16);
     [right, up, back].forEach((axis, row) => axis.forEach((v, col) => {
       if (row < 2) clip[col * 4 + row] = v / (row ? ty : tx); else { clip[col * 4 + 2] = v * k; clip[col * 4 + 3] = -v; }

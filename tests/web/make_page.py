@@ -48,7 +48,7 @@ def container(path, time, exaggeration=1.4, azimuth=180):
     offset = round(np.mean(grid["lon"]) / 15) * 3600
     meta = {"title": pathlib.Path(path).stem, "credits": ["Heights: test"], "size": list(heights.shape[::-1]),
             "step_m": step_m, "height": {"min": low, "step": step}, "exaggeration": exaggeration,
-            "view": {"azimuth": azimuth, "elevation": 24}, "time": time,
+            "view": {"azimuth": azimuth, "elevation": 20}, "time": time,
             "zone": {"name": "", "transitions": [[-2**40, int(offset)]]}, "grid": grid, "refraction": refraction(),
             "blocks": [{"name": "heights", "offset": 0, "length": len(packed), "size": len(raw),
                         "crc32": zlib.crc32(packed), "coding": "deflate"}]}
