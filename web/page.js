@@ -58,7 +58,7 @@ async function start() {
   };
   const choose = hit => {
     if (!hit) { point = null; $('point').hidden = true; return; }
-    point = {meta, ...at(hit.column, hit.row), horizon: horizonAt(ground, hit.column, hit.row)};
+    point = pointAt(ground, hit.column, hit.row);
     $('where').textContent = placeText(point, hit.height); $('point').hidden = false;
     tell(); drawCarpet($('carpet'), point, bar.unix);
   };

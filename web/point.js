@@ -9,23 +9,25 @@ function heightAt({meta, height}, x, y) {
   return (height[i] * (1 - u) + height[i + 1] * u) * (1 - v) + (height[i + columns] * (1 - u) + height[i + columns + 1] * u) * v;
 }
 
-// Elevation of the terrain horizon [degrees] towards every half degree from true north; -90: nothing in sight.
-function horizonAt(ground, x, y) {
-  const {meta} = ground, [sx, sy] = meta.step_m, eye = heightAt(ground, x, y), angles = new Float32Array(720);
-  const turn = gridValue(meta, 'convergence', x, y), curvature = 0.87 / (2 * 6371000), stride = Math.min(sx, sy) / 2;
-  for (let n = 0; n < 720; n++) {
-    const a = (n / 2 - turn) * RAD, dx = Math.sin(a) / sx, dy = -Math.cos(a) / sy;
-    let best = -Infinity;
-    for (let s = stride * 2; ; s += Math.max(stride, s / 4000)) {
-      const px = x + dx * s, py = y + dy * s;
-      if (px < 0 || py < 0 || px > meta.size[0] - 1 || py > meta.size[1] - 1) break;
-      const t = (heightAt(ground, px, py) - eye) / s - curvature * s;
-      if (t > best) best = t;
-    }
-    angles[n] = best === -Infinity ? -90 : Math.atan(best) / RAD;
-    if (ground.far) angles[n] = Math.max(angles[n], farAt(ground, x, y, n / 2));
+// Elevation of the terrain horizon [degrees] towards an azimuth from true north; -90: nothing in sight.
+function horizonTowards(ground, x, y, azimuth) {
+  const {meta} = ground, [sx, sy] = meta.step_m, eye = heightAt(ground, x, y), curvature = 0.87 / (2 * 6371000);
+  const a = (azimuth - gridValue(meta, 'convergence', x, y)) * RAD, dx = Math.sin(a) / sx, dy = -Math.cos(a) / sy, stride = Math.min(sx, sy) / 2;
+  let best = -Infinity;
+  for (let s = stride * 2; ; s += Math.max(stride, s / 4000)) {
+    const px = x + dx * s, py = y + dy * s;
+    if (px < 0 || py < 0 || px > meta.size[0] - 1 || py > meta.size[1] - 1) break;
+    const t = (heightAt(ground, px, py) - eye) / s - curvature * s;
+    if (t > best) best = t;
   }
-  return angles;
+  const angle = best === -Infinity ? -90 : Math.atan(best) / RAD;
+  return ground.far ? Math.max(angle, farAt(ground, x, y, azimuth)) : angle;
+}
+
+// A point with its horizon towards every half degree.
+function pointAt(ground, x, y) {
+  const {meta} = ground, towards = azimuth => horizonTowards(ground, x, y, azimuth);
+  return {meta, lat: gridValue(meta, 'lat', x, y), lon: gridValue(meta, 'lon', x, y), towards, horizon: Float32Array.from({length: 720}, (_, n) => towards(n / 2))};
 }
 
 // Horizon of the ground outside of the DEM at the nearest node [degrees].
@@ -40,15 +42,21 @@ function clearance(point, unix) {
   return s.apparent - Math.max(-0.6, point.horizon[n % 720] * (1 - w) + point.horizon[(n + 1) % 720] * w);
 }
 
+// The same with the horizon of just this azimuth.
+function clearanceExact(point, unix) {
+  const s = sunAt(point.meta, unix, point.lat, point.lon);
+  return s.apparent - Math.max(-0.6, point.towards(s.azimuth));
+}
+
 // Spells of direct sun [from, to] within a local day, to a second.
 function spells(point, midnight) {
   const found = [], step = 120;
   let begin = clearance(point, midnight) > 0 ? midnight : null;
   for (let t = midnight; t < midnight + 86400; t += step) {
     if ((clearance(point, t) > 0) === (clearance(point, t + step) > 0)) continue;
-    let lo = t, hi = t + step;
+    let lo = t - step, hi = t + 2 * step;
     const was = clearance(point, t) > 0;
-    while (hi - lo > 1) { const mid = (lo + hi) / 2; if ((clearance(point, mid) > 0) === was) lo = mid; else hi = mid; }
+    while (hi - lo > 1) { const mid = (lo + hi) / 2; if ((clearanceExact(point, mid) > 0) === was) lo = mid; else hi = mid; }
     if (was) { found.push([begin, hi]); begin = null; } else begin = hi;
   }
   if (begin !== null) found.push([begin, midnight + 86400]);
@@ -70,7 +78,7 @@ function drawCarpet(canvas, point, unix) {
 
 // Horizon and the sun's path, from north over east, south and west to north.
 function drawHorizon(canvas, point, midnight, unix) {
-  const g = canvas.getContext('2d'), w = canvas.width = 720, h = canvas.height = 220, y = e => h - 20 - (e + 2) / 92 * (h - 26) * 1.2;
+  const g = canvas.getContext('2d'), w = canvas.width = 720, h = canvas.height = 220, y = e => h - 20 - (e + 2) / 92 * (h - 26);
   g.fillStyle = '#1b2230'; g.fillRect(0, 0, w, h);
   g.beginPath(); g.moveTo(0, h);
   point.horizon.forEach((e, n) => g.lineTo(n, y(Math.max(-2, e))));
