@@ -12,9 +12,13 @@ function heightAt({meta, height}, x, y) {
 // Elevation of the terrain horizon [degrees] towards an azimuth from true north; -90: nothing in sight.
 function horizonTowards(ground, x, y, azimuth) {
   const {meta} = ground, [sx, sy] = meta.step_m, eye = heightAt(ground, x, y), curvature = 0.87 / (2 * 6371000);
-  const a = (azimuth - gridValue(meta, 'convergence', x, y)) * RAD, dx = Math.sin(a) / sx, dy = -Math.cos(a) / sy, stride = Math.min(sx, sy) / 2;
+  const a = (azimuth - gridValue(meta, 'convergence', x, y)) * RAD, dx = Math.sin(a) / sx, dy = -Math.cos(a) / sy;
+  const ahead = (v, d) => (d > 0 ? Math.floor(v + 1e-6) + 1 - v : v - Math.ceil(v - 1e-6) + 1) / Math.abs(d);
+  let column = ahead(x, dx), row = ahead(y, dy);   // metres to the next crossing with each
   let best = -Infinity;
-  for (let s = stride * 2; ; s += Math.max(stride, s / 4000)) {
+  for (;;) {
+    const s = Math.min(column, row);
+    if (column <= row) column += 1 / Math.abs(dx); else row += 1 / Math.abs(dy);
     const px = x + dx * s, py = y + dy * s;
     if (px < 0 || py < 0 || px > meta.size[0] - 1 || py > meta.size[1] - 1) break;
     const t = (heightAt(ground, px, py) - eye) / s - curvature * s;
