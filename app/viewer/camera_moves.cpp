@@ -48,10 +48,8 @@ void CameraMoves::move(Command command) {
 
 void CameraMoves::move_to_point(Command command) {
     if (!parts_.state.chosen) return parts_.messages.note(tr("click a point on the ground first"));
-    geo::Geodetic drawn = *parts_.state.chosen;
-    drawn.height_m = parts_.state.land.ground_under(parts_.state.land.frame->to_local(drawn));
-    if (std::isnan(drawn.height_m)) return;
-    const glm::dvec3 point_m = parts_.state.land.frame->to_local(drawn);
+    const glm::dvec3 point_m = drawn_m(*parts_.state.chosen);
+    if (std::isnan(point_m.z)) return;
     if (command == Command::StandHere)
         parts_.hand.stand_at(point_m);
     else
@@ -60,7 +58,9 @@ void CameraMoves::move_to_point(Command command) {
 
 void CameraMoves::look_to_moon() {
     Pose& pose = parts_.state.document.pose;
-    const geo::Geodetic eye = view_of(pose, parts_.state.land).eye->place;
+    geo::Geodetic eye = view_of(pose, parts_.state.land).eye->place;
+    // The heights that sun::moon_position() takes. 100 km turn the moon by 0.015 degrees at most.
+    eye.height_m = std::clamp(eye.height_m, 0.0, 100e3);
     const sun::MoonPosition moon = sun::moon_position(parts_.state.document.utc, eye);
     const double elevation_rad = parts_.state.air.apparent_rad(moon.elevation_rad);
     if (elevation_rad < 0)
@@ -103,15 +103,18 @@ Whole CameraMoves::whole_views() const {
     Whole whole{pose_in(parts_.opening.home_view()), pose_in(above)};
     // The vertical at the camera differs from that at the DEM's centre.
     whole.above = from_above(whole.above, parts_.state.land, whole.above.eye_m, 0);
-    const scene::Camera camera = camera_of(parts_.state.document.pose, parts_.state.land);
-    const double aspect = parts_.window.size().x / parts_.window.size().y;
     const std::vector<glm::dvec3>& ground = parts_.opening.opened()->outline.points;
-    const auto visible = std::ranges::count_if(ground, [&](const glm::dvec3& point_m) {
-        const auto at = in_picture(camera, point_m, aspect);
-        return at && std::abs(at->x) < 1 && std::abs(at->y) < 1;
-    });
+    const auto visible = std::ranges::count_if(
+        ground, [&](const glm::dvec3& point_m) { return is_in_view(point_m); });
     whole.in_view = static_cast<double>(visible) / std::max<std::size_t>(ground.size(), 1);
     return whole;
+}
+
+bool CameraMoves::is_in_view(const glm::dvec3& point_m) const {
+    const glm::vec2 window = parts_.window.size();
+    const auto at = in_picture(camera_of(parts_.state.document.pose, parts_.state.land), point_m,
+                               static_cast<double>(window.x) / window.y);
+    return at && std::abs(at->x) < 1 && std::abs(at->y) < 1;
 }
 
 void CameraMoves::go_to_view(std::size_t i) {
@@ -135,16 +138,32 @@ void CameraMoves::go_to_place(const FoundPlace& found) {
         return parts_.messages.note(
             tr_format("the DEM has no ground at {}: {}", found.name, found.details));
     parts_.history.end_step(parts_.state.document);
+    look_down_at(place);
+    choose_point(drawn_m(place));
+}
+
+glm::dvec3 CameraMoves::drawn_m(geo::Geodetic place) const {
+    place.height_m = parts_.state.land.ground_under(parts_.state.land.frame->to_local(place));
+    return parts_.state.land.frame->to_local(place);
+}
+
+void CameraMoves::show(const FilePlace& place) {
+    if (place.on_dem.empty()) return;
+    constexpr std::size_t kMostTried = 1000;  // of a track's vertices
+    for (std::size_t i = 0; i < place.on_dem.size(); i += 1 + place.on_dem.size() / kMostTried)
+        if (is_in_view(drawn_m(place.on_dem[i]))) return;
+    look_down_at(place.middle());
+}
+
+void CameraMoves::look_down_at(const geo::Geodetic& place) {
+    const glm::dvec3 point_m = drawn_m(place);
+    if (std::isnan(point_m.z)) return;  // a void
     parts_.hand.rest();
-    geo::Geodetic drawn = place;
-    drawn.height_m = parts_.state.land.ground_under(parts_.state.land.frame->to_local(place));
-    const glm::dvec3 point_m = parts_.state.land.frame->to_local(drawn);
     // At this many post spacings single posts are visible.
     constexpr double kPosts = 150;
     Pose& pose = parts_.state.document.pose;
     pose = look_at(pose, parts_.state.land, point_m,
                    std::min(distance(pose.eye_m, point_m), kPosts * parts_.state.spacing_m));
-    choose_point(point_m);
     parts_.pacing.moved();
     parts_.state.step = true;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "viewer/file_place.h"
 #include "viewer/find_sheet.h"
 #include "viewer/parts.h"
 #include "viewer/sun_over.h"
@@ -30,6 +31,10 @@ class CameraMoves {
     void go_to_view(std::size_t i);
     /// Looks at a place of the ground, and chooses it.
     void go_to_place(const FoundPlace& found);
+    /// Looks at a place of the ground from no farther than single posts can be seen.
+    void look_down_at(const geo::Geodetic& place);
+    /// Looks at the middle of what a file holds on the DEM, unless some of it is in view.
+    void show(const FilePlace& place);
     /// When the sun next stands over the chosen point: goes there once it is known.
     void ask_sun_over_point();
     void poll_sun_over();
@@ -38,6 +43,9 @@ class CameraMoves {
     /// Stands on the chosen point, or looks at it.
     void move_to_point(Command command);
     void look_to_moon();
+    /// A place on the drawn ground; NaN in voids.
+    glm::dvec3 drawn_m(geo::Geodetic place) const;
+    bool is_in_view(const glm::dvec3& point_m) const;
     /// The whole DEM, from its side and from above.
     Whole whole_views() const;
 

@@ -55,7 +55,11 @@ void FileOpener::ask_how() {
     if (!parts_.opening.opened()) return;
     const scene::Scene& scene = parts_.state.document.scene;
     refused_.reset();
-    sheet_.open({scene.dems, scene.dem, scene.holes}, "");
+    sheet_.open({scene.dems, scene.dem, scene.holes}, "", opened_last());
+}
+
+RecentDem FileOpener::opened_last() const {
+    return parts_.state.recent.empty() ? RecentDem{} : parts_.state.recent.front();
 }
 
 void FileOpener::draw(glm::vec2 window_px) {
@@ -183,18 +187,27 @@ void FileOpener::show_features(FileKind kind, const std::string& path) {
     const std::string address = file_text_for(kind, parts_.state.effects->registry);
     if (address.empty()) bad_input(tr_format("no installed effect shows {}", name_of(path)));
     const std::string id = address.substr(0, address.find('.'));
+    const dem::Grid& grid = parts_.opening.opened()->dem->source->grid();
+    const FilePlace place = place_of_file(kind, path, grid);
     parts_.state.set_effects(
         switched(with_value(parts_.state.document.scene.effects, address, path), id, true));
     parts_.state.message.clear();
     parts_.state.take_effects(/*is_step=*/true);
     if (!parts_.state.message.empty()) return;  // why the effect is not on
-    parts_.messages.note(tr_format("{}: shown by the effect {}", name_of(path), id));
+    moves_.show(place);
+    parts_.messages.note(tr_format("{}: {}; shown by the effect {}", name_of(path),
+                                   words_of(place, kind, grid), id));
 }
 
 void FileOpener::lay_over(const std::string& path) {
+    const dem::Grid& grid = parts_.opening.opened()->dem->source->grid();
+    const FilePlace place = place_of_file(FileKind::Overlay, path, grid);
     parts_.state.document.scene.overlay = scene::Overlay{.file = path};
     parts_.state.document.overlay = choice_of(*parts_.state.document.scene.overlay);
     parts_.state.step = true;
+    moves_.show(place);
+    parts_.messages.note(
+        tr_format("{}: {}", name_of(path), words_of(place, FileKind::Overlay, grid)));
     parts_.pacing.need_frames(3);
 }
 
@@ -256,7 +269,7 @@ void FileOpener::ask_after_failure() {
         return;
     parts_.state.message.clear();
     refused_ = failure->scene;
-    sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason);
+    sheet_.open({refused_->dems, refused_->dem, refused_->holes}, failure->reason, opened_last());
 }
 
 }  // namespace relevo::viewer

@@ -45,6 +45,7 @@ class FileOpener {
     void close();
 
   private:
+    RecentDem opened_last() const;
     void open_files(const std::vector<std::string>& files);
     void open_dem(const RecentDem& dem);
     /// Opens what the sheet gives, as part of the scene that could not be opened.

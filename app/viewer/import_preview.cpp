@@ -11,7 +11,6 @@
 #include "base/units.h"
 #include "dem/heightfield.h"
 #include "dem/load.h"
-#include "viewer/settings.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -64,11 +63,10 @@ std::string words_of(const dem::Source& source, const dem::Heightfield& field) {
     const dem::Grid& grid = source.grid();
     const glm::dvec2 extent_m = grid.extent_m();
     const geo::Geodetic middle = grid.place((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
-    std::string text =
-        tr_format("{} x {} posts, {:.3g} x {:.3g} km\n{}\naround {}\nheights {:.0f} to {:.0f} m",
-                  grid.columns(), grid.rows(), extent_m.x / 1000, extent_m.y / 1000,
-                  grid.crs().name(), coordinates_text(middle, Coordinates::Degrees),
-                  field.about.statistics.min_m, field.about.statistics.max_m);
+    std::string text = tr_format(
+        "{} x {} posts, {:.3g} x {:.3g} km\n{}\n{}\nheights {:.0f} to {:.0f} m", grid.columns(),
+        grid.rows(), extent_m.x / 1000, extent_m.y / 1000, grid.crs().name(), where_text(middle),
+        field.about.statistics.min_m, field.about.statistics.max_m);
     for (const std::string& assumption : source.description().assumptions)
         text += "\n" + assumption;
     return text;
@@ -115,7 +113,17 @@ PreviewWork::PreviewWork(std::function<void()> on_change)
       }) {}
 
 void PreviewWork::work_out(const PreviewWanted* wanted) {
-    if (wanted) publish(preview_of(*wanted), /*done=*/true);
+    if (!wanted) return;
+    const std::shared_ptr<const Preview> preview = preview_of(*wanted);
+    publish(preview, /*done=*/true);
+    if (preview->error.empty() || !wanted->options.crs.empty()) return;
+    auto suggesting = std::make_shared<Preview>(*preview);
+    try {
+        suggesting->suggestions = suggest_crs({wanted->files, wanted->options}, wanted->other);
+    } catch (const std::exception&) {
+        return;  // without PROJ's database; the field of the CRS says so
+    }
+    if (!suggesting->suggestions.empty()) publish(suggesting, /*done=*/true);
 }
 
 }  // namespace relevo::viewer

@@ -7,6 +7,7 @@
 
 #include "dem/source.h"
 #include "image/image.h"
+#include "viewer/crs_suggestions.h"
 #include "viewer/latest_work.h"
 
 namespace relevo::viewer {
@@ -14,7 +15,8 @@ namespace relevo::viewer {
 struct PreviewWanted {
     std::vector<std::string> files;
     dem::LoadOptions options;
-    int side_px = 0;  ///< of the longer side of the picture
+    int side_px = 0;    ///< of the longer side of the picture
+    RecentDem other{};  ///< as suggest_crs()
 };
 
 /// A DEM as the options have it read.
@@ -23,6 +25,7 @@ struct Preview {
     image::Image8 picture;  ///< shaded relief, RGBA, north up; empty: `error`
     std::string text;       ///< size, place, heights, assumptions, in lines
     std::string error;
+    std::vector<CrsSuggestion> suggestions{};  ///< where a CRS is all that it lacks
 };
 
 /// Reads a DEM and shades it. @param wanted  files that exist

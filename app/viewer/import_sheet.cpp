@@ -73,23 +73,34 @@ dem::LoadOptions ImportSheet::Fields::options(const dem::LoadOptions& rest) cons
     return options;
 }
 
-void ImportSheet::open(const RecentDem& dem, std::string reason) {
+void ImportSheet::open(const RecentDem& dem, std::string reason, const RecentDem& other) {
     dem_ = dem;
     reason_ = std::move(reason);
     fields_ = Fields::of(dem.options);
     error_.clear();
     previewed_.reset();
     shown_ = nullptr;
+    suggestions_.clear();
+    selected_ = 0;
+    other_ = other;
     if (!work_) work_ = std::make_unique<PreviewWork>(&Window::wake);
     work_->forget();
-    is_open_ = true;
+    is_open_ = takes_focus_ = true;
+}
+
+ImportSheet::Fields ImportSheet::highlighted() const {
+    Fields fields = fields_;
+    if (is_choosing()) fields.crs = listed()[static_cast<std::size_t>(selected_)].crs.code;
+    return fields;
 }
 
 void ImportSheet::want_preview() {
-    if (previewed_ == fields_) return;
-    previewed_ = fields_;
+    const Fields fields = highlighted();
+    if (previewed_ == fields) return;
+    previewed_ = fields;
     try {
-        work_->want({dem_.files, fields_.options(dem_.options), kPreview_px});
+        wanted_ = {dem_.files, fields.options(dem_.options), kPreview_px, other_};
+        work_->want(wanted_);
         error_.clear();
     } catch (const Error& error) {
         error_ = error.what();
@@ -97,36 +108,59 @@ void ImportSheet::want_preview() {
 }
 
 void ImportSheet::crs_field() {
+    if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
+    const auto on_arrow = [](ImGuiInputTextCallbackData* data) {
+        *static_cast<int*>(data->UserData) += data->EventKey == ImGuiKey_DownArrow ? 1 : -1;
+        return 0;
+    };
     const bool is_entered = ImGui::InputTextWithHint(
         tr_label("CRS"), tr("as the file says; or search"), &fields_.crs,
-        ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
-    if (is_entered && searched_ == fields_.crs && !found_.empty())
-        fields_.crs = found_.front().code;
+        ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
+            ImGuiInputTextFlags_CallbackHistory,
+        on_arrow, &selected_);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip(
             "%s",
             tr("A code (EPSG:31287), words (austria lambert), or latitude, longitude of a place"));
-    found_crs();
+    search();
+    selected_ = std::clamp(selected_, 0, std::max(0, static_cast<int>(listed().size()) - 1));
+    if (is_entered && is_choosing()) {
+        fields_.crs = highlighted().crs;
+        takes_focus_ = true;
+    } else if (is_entered && can_open()) {
+        choose();
+    }
+    crs_list();
 }
 
-void ImportSheet::found_crs() {
-    if (searched_ != fields_.crs) {
-        searched_ = fields_.crs;
-        found_.clear();
-        try {
-            found_ = geo::search_crs(searched_, kMostFound);
-        } catch (const Error& error) {
-            error_ = error.what();
+void ImportSheet::search() {
+    if (searched_ == fields_.crs) return;
+    searched_ = fields_.crs;
+    selected_ = 0;
+    found_.clear();
+    try {
+        for (geo::KnownCrs& crs : geo::search_crs(searched_, kMostFound)) {
+            std::string area = crs.area;
+            found_.push_back({std::move(crs), std::move(area)});
         }
+    } catch (const Error& error) {
+        error_ = error.what();
     }
-    if (found_.empty() || is_found_chosen()) {
-        ImGui::TextDisabled("%s", found_.empty() ? "" : found_.front().name.c_str());
-        return;
-    }
+}
+
+void ImportSheet::crs_list() {
+    if (!is_choosing())
+        return ImGui::TextDisabled("%s", listed().empty() ? "" : listed()[0].crs.name.c_str());
+    if (fields_.crs.empty()) ImGui::TextDisabled("%s", tr("Suggestions: Return takes one"));
     if (ImGui::BeginChild("found", {0, 6 * ImGui::GetTextLineHeightWithSpacing()}, true))
-        for (const geo::KnownCrs& crs : found_) {
-            if (ImGui::Selectable((crs.code + "  " + crs.name).c_str())) fields_.crs = crs.code;
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", crs.area.c_str());
+        for (int i = 0; i < static_cast<int>(listed().size()); ++i) {
+            const CrsSuggestion& each = listed()[static_cast<std::size_t>(i)];
+            if (ImGui::Selectable((each.crs.code + "  " + each.crs.name).c_str(), i == selected_)) {
+                fields_.crs = each.crs.code;
+                break;  // the list is another one now
+            }
+            if (i == selected_) ImGui::SetScrollHereY();
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", each.where.c_str());
         }
     ImGui::EndChild();
 }
@@ -150,15 +184,22 @@ void ImportSheet::other_fields() {
                  static_cast<int>(kEncodings.size()));
 }
 
+void ImportSheet::take_preview() {
+    auto newer = work_->answer();
+    if (newer == shown_) return;
+    shown_ = std::move(newer);
+    const bool has_picture = shown_ && !shown_->picture.values.empty();
+    texture_ = has_picture ? texture_of(shown_->picture) : gl::Texture();
+    if (shown_ && !shown_->suggestions.empty()) suggestions_ = shown_->suggestions;
+}
+
+bool ImportSheet::can_open() const {
+    return error_.empty() && previewed_ == highlighted() && shown_ && shown_->error.empty() &&
+           shown_->of.options == wanted_.options;
+}
+
 void ImportSheet::preview(float width_px) {
-    if (auto newer = work_->answer(); newer != shown_) {
-        shown_ = std::move(newer);
-        const bool has_picture = shown_ && !shown_->picture.values.empty();
-        texture_ = has_picture ? texture_of(shown_->picture) : gl::Texture();
-    }
     if (!error_.empty()) return ImGui::TextWrapped("%s", error_.c_str());
-    if (!found_.empty() && !is_found_chosen())
-        return ImGui::TextDisabled("%s", tr("Return takes the first CRS"));
     if (!shown_) return ImGui::TextDisabled("%s", tr("reading ..."));
     if (shown_->error == reason_) return;
     if (!shown_->error.empty())
@@ -169,11 +210,30 @@ void ImportSheet::preview(float width_px) {
     ImGui::Image(
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name())),
         {scale * static_cast<float>(extent.width), scale * static_cast<float>(extent.height)});
-    ImGui::TextWrapped("%s", window_words(shown_->text).c_str());
+    if (can_open())
+        ImGui::TextWrapped("%s", window_words(shown_->text).c_str());
+    else
+        ImGui::TextDisabled("%s", tr("reading ..."));
+}
+
+void ImportSheet::choose() {
+    chosen_ = dem_;
+    chosen_->options = wanted_.options;
+    is_open_ = false;
+}
+
+void ImportSheet::buttons() {
+    const float width = 5 * ImGui::GetFrameHeight();
+    ImGui::BeginDisabled(!can_open());
+    if (ImGui::Button(tr_label("Open"), {width, 0})) choose();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button(tr_label("Cancel"), {width, 0}) || closes_sheet()) is_open_ = false;
 }
 
 void ImportSheet::draw(glm::vec2 size_px) {
     if (!is_open_) return;
+    take_preview();
     want_preview();
     const float line = ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({size_px.x / 2, size_px.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
@@ -197,16 +257,7 @@ void ImportSheet::draw(glm::vec2 size_px) {
         ImGui::SameLine();
         if (ImGui::BeginChild("preview", {0, height_px})) preview(ImGui::GetContentRegionAvail().x);
         ImGui::EndChild();
-        const bool can_open = error_.empty() && shown_ && shown_->error.empty();
-        if (!can_open) ImGui::BeginDisabled();
-        if (ImGui::Button(tr_label("Open"), {5 * line, 0})) {
-            chosen_ = dem_;
-            chosen_->options = fields_.options(dem_.options);
-            is_open_ = false;
-        }
-        if (!can_open) ImGui::EndDisabled();
-        ImGui::SameLine();
-        if (ImGui::Button(tr_label("Cancel"), {5 * line, 0}) || closes_sheet()) is_open_ = false;
+        buttons();
     }
     ImGui::End();
 }

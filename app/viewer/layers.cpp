@@ -123,6 +123,20 @@ std::vector<Layer> layers_of(const EffectsModel& effects, const Document& docume
     return on;
 }
 
+std::vector<std::pair<FileKind, std::string>> files_of_layers(const EffectsModel& effects,
+                                                              const Document& document) {
+    std::vector<std::pair<FileKind, std::string>> files;
+    for (const Layer& layer : layers_of(effects, document)) {
+        if (layer.is_overlay() || layer.source.empty()) continue;
+        const effect::Manifest& manifest = effects.registry.effect(layer.id, "layers").manifest;
+        files.emplace_back(!manifest.rasters.empty() ? FileKind::Overlay
+                           : !manifest.lines.empty() ? FileKind::Lines
+                                                     : FileKind::Places,
+                           effects.values.text(layer.file));
+    }
+    return files;
+}
+
 std::vector<std::string> further_layers(const EffectsModel& effects,
                                         const std::vector<Layer>& layers) {
     std::vector<std::string> ids;

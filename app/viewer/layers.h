@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "viewer/document.h"
+#include "viewer/file_place.h"
 
 /// What lies on the ground, for the panel Layers.
 namespace relevo::viewer {
@@ -35,6 +36,10 @@ struct Layer {
 /// The layers, from top to bottom. Layers that are off come last: effects that were switched off by
 /// name or have a file, and a hidden overlay.
 std::vector<Layer> layers_of(const EffectsModel& effects, const Document& document);
+
+/// The files of effects in the list, with what they hold.
+std::vector<std::pair<FileKind, std::string>> files_of_layers(const EffectsModel& effects,
+                                                              const Document& document);
 
 /// Ids of installed effects that draw on the ground and are not among `layers`.
 std::vector<std::string> further_layers(const EffectsModel& effects,

@@ -9,6 +9,7 @@
 #include "viewer/layer_legend.h"
 #include "viewer/layers.h"
 #include "viewer/state.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -90,8 +91,11 @@ void legends(const State& state, const Layer& layer) {
 }
 
 void details(State& state, const Layer& layer) {
-    if (!layer.is_overlay() && !layer.source.empty())
+    if (!layer.is_overlay() && !layer.source.empty()) {
         ImGui::TextDisabled("%s", layer.source.c_str());
+        if (state.files_outside.contains(state.effects->values.text(layer.file)))
+            ImGui::TextColored(style::error(), "%s", tr("outside the DEM"));
+    }
     const bool has_light = layer.is_overlay() || !layer.light.empty();
     if (layer.is_overlay())
         slider(state, state.document.overlay.opacity, has_light);

@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 
+#include "viewer/layers.h"
 #include "viewer/measurement_panel.h"
 #include "viewer/overlay.h"
 #include "viewer/translation.h"
@@ -119,6 +120,7 @@ void MainWindow::leave() {
     discard_.take(std::move(comparison_));
     discard_.take(std::move(opening_));
     discard_.take(std::move(point_));
+    discard_.take(std::move(outside_));
     discard_.take(std::move(overlay_));
     discard_.take(std::move(moves_));  // it may look for a time
     // No file is being written by now, and the system frees everything else.
@@ -247,6 +249,7 @@ void MainWindow::hand_over_scene() {
         overlay_->show_frame();
     else if (overlay_->update(opened))
         pacing_.need_frames(2);
+    find_files_outside(opened);
     want_view();
     if (state_.compare_is_wanted && !comparison_->thread()) {
         window_->set_line(free_middle().x / size().x);
@@ -254,6 +257,13 @@ void MainWindow::hand_over_scene() {
     }
     if (!state_.compare_is_wanted && comparison_->thread()) stop_comparison();
     saver_->poll(saver_->awaits_image() && is_image_complete() ? picture_ : nullptr);
+}
+
+void MainWindow::find_files_outside(const Opened& opened) {
+    LayerFiles files{opened.dem, files_of_layers(*state_.effects, state_.document)};
+    if (files != layer_files_) outside_->want(layer_files_ = std::move(files));
+    const std::shared_ptr<const FilesOutside> found = outside_->answer();
+    state_.files_outside = found ? found->files : std::set<std::string>{};
 }
 
 void MainWindow::check_files() {

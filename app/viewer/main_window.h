@@ -9,6 +9,7 @@
 #include "viewer/comparison.h"
 #include "viewer/discard.h"
 #include "viewer/file_opener.h"
+#include "viewer/file_place.h"
 #include "viewer/film_controller.h"
 #include "viewer/find_sheet.h"
 #include "viewer/frame_pacing.h"
@@ -65,6 +66,7 @@ class MainWindow {
     /// Reports changes since the last frame to the other parts.
     void hand_over();
     void hand_over_scene();
+    void find_files_outside(const Opened& opened);
     void check_files();
     void remember_settings();
 
@@ -150,6 +152,8 @@ class MainWindow {
     ChartsPanel charts_;
     LegendPicture legend_;
     MarkOverlay marks_, marks_before_;
+    LayerFiles layer_files_;  // as outside_ looks for them
+    std::unique_ptr<OutsideWork> outside_ = std::make_unique<OutsideWork>(&Window::wake);
     std::unique_ptr<Opening> opening_;
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<Comparison> comparison_;

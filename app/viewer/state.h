@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,6 +74,7 @@ struct State {
     std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
     std::optional<double> saving_progress;        ///< of an overlay's export, 0 to 1
     std::string saved_overlay;                    ///< the file of an exported overlay; empty: none
+    std::set<std::string> files_outside;          ///< of layers, of which nothing is on the DEM
     std::vector<chart::Legend> layer_legends;     ///< of effects, of the displayed image
 
     std::string message;  ///< the last error or note

@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/units.h"
+#include "geo/crs.h"
 #include "geo/proj.h"
 
 namespace relevo::geo {
@@ -126,6 +128,18 @@ std::vector<KnownCrs> search_crs(std::string_view text, std::size_t most) {
         const bool is_code = code == wanted || code.ends_with(":" + wanted);
         return std::tuple(!is_code, !lower(crs.name).starts_with(wanted),
                           !crs.code.starts_with("EPSG:"), !is_common(crs), crs.name.size());
+    });
+}
+
+bool holds(const KnownCrs& known, std::span<const glm::dvec2> points) {
+    const Crs crs = Crs::parse(known.code, known.code);
+    return std::ranges::all_of(points, [&](const glm::dvec2& point) {
+        // Longitudes may go round once more, latitudes may not.
+        if (!known.is_projected && (std::abs(point.x) > 360 || std::abs(point.y) > 90))
+            return false;
+        const Geodetic place = crs.to_geodetic(point.x, point.y);
+        return !std::isnan(place.lat_rad) &&
+               covers(known, degrees(place.lat_rad), degrees(place.lon_rad));
     });
 }
 

@@ -177,6 +177,19 @@ std::vector<const Entry*> Gazetteer::find(std::string_view text, const std::opti
     return found;
 }
 
+const Entry* Gazetteer::nearest_place(const Near& near) const {
+    const glm::vec3 from = on_sphere(near.centre);
+    float reach = chord_of(near.radius_m);
+    const Entry* nearest = nullptr;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const float away = glm::distance(positions_[i], from);
+        if (entries_[i].kind != Kind::Place || away > reach) continue;
+        reach = away;
+        nearest = &entries_[i];
+    }
+    return nearest;
+}
+
 std::vector<const Entry*> Gazetteer::summits_within(const Near& near) const {
     const glm::vec3 from = on_sphere(near.centre);
     // The sphere's distances differ from the ellipsoid's by less than this.

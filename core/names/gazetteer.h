@@ -55,6 +55,8 @@ class Gazetteer {
     std::vector<const Entry*> find(std::string_view text, const std::optional<Near>& near,
                                    std::size_t most) const;
 
+    /// The place nearest to another one. @returns null: none within the distance
+    const Entry* nearest_place(const Near& near) const;
     /// Summits within a distance of a place, in the order of the file.
     std::vector<const Entry*> summits_within(const Near& near) const;
 

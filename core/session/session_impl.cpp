@@ -68,11 +68,13 @@ Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
     const bool chooses = scene.chooses_exaggeration;
     state.choose_exaggeration(*loaded);
     const auto began = Clock::now();
+    first_dem = loaded;  // which outlives sky_view if an effect does not compile
     compile(*drawn, loaded.get());
     stages.emplace_back("compile", milliseconds_since(began));
     stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
     if (timed && !time) time = parse_over(scene.time, *loaded->source, loaded->field);
     upload(loaded);
+    first_dem.reset();
     look(scene.view);
     warn_of_eye();
     set_time(time ? time->utc : state.default_time());

@@ -59,7 +59,8 @@ struct Session::Impl {
     // In order of dependency.
     std::optional<gl::Context> context;
     render::SharedResources shared;
-    render::SkyViewFuture sky_view;  // for the first DEM
+    std::shared_ptr<const LoadedDem> first_dem;  // until its sky_view is handed over
+    render::SkyViewFuture sky_view;              // of first_dem, computed in the background
     RecentEffects recent;
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;

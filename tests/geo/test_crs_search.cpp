@@ -1,5 +1,6 @@
 // A CRS by its code, its words and a place.
 #include <algorithm>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -50,6 +51,17 @@ TEST(CrsSearch, ByPlaceTheSmallestAreaFirst) {
     const std::vector<KnownCrs> fiji = search_crs("-17.5,179.9", 60);
     EXPECT_TRUE(std::ranges::any_of(
         fiji, [](const KnownCrs& crs) { return crs.name.find("Fiji") != std::string::npos; }));
+}
+
+TEST(CrsSearch, HoldsPointsInItsArea) {
+    const KnownCrs west = search_crs("EPSG:31254", 1).front();  // Austria, west of 11.8 degrees
+    // Innsbruck, and a place of the same numbers in another zone.
+    EXPECT_TRUE(holds(west, std::vector<glm::dvec2>{{79'000, 236'000}, {82'000, 240'000}}));
+    EXPECT_FALSE(holds(west, std::vector<glm::dvec2>{{79'000, 236'000}, {682'000, 240'000}}));
+    const KnownCrs degrees = search_crs("EPSG:4326", 1).front();
+    EXPECT_TRUE(holds(degrees, std::vector<glm::dvec2>{{11, 47}, {190, -47}}));
+    EXPECT_FALSE(holds(degrees, std::vector<glm::dvec2>{{11, 91}}));
+    EXPECT_FALSE(holds(degrees, std::vector<glm::dvec2>{{70'000, 47}}));
 }
 
 TEST(CrsSearch, GivesWhatParseTakes) {

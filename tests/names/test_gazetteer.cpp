@@ -85,6 +85,11 @@ TEST(Gazetteer, SummitsWithinADistance) {
     EXPECT_THAT(names_of(Gazetteer::shipped().summits_within(at(0, -160, 1e5))), IsEmpty());
 }
 
+TEST(Gazetteer, TheNearestPlaceWithinADistance) {
+    EXPECT_EQ(Gazetteer::shipped().nearest_place(at(47.2627, 11.3945, 50e3))->name, "Innsbruck");
+    EXPECT_EQ(Gazetteer::shipped().nearest_place(at(0, -160, 1e5)), nullptr);
+}
+
 TEST(Gazetteer, HasPlacesWhereTheyAre) {
     const test::Csv truth = test::read_csv(test::source_dir() / "tests/names/truth.csv");
     const auto field = [&](const auto& row, const char* name) { return row[truth.column(name)]; };

@@ -182,7 +182,7 @@ def test_clip_in_another_crs(dem):
     for wrong, message in (
         ({"clip": (0, 0, 1, 1)}, "^clip: .* not one post of the DEM"),
         ({"clip": (1, 0, 0, 1)}, "^clip: .* expected WEST,SOUTH,EAST,NORTH, numbers of the DEM's CRS or of clip_crs="),
-        ({"clip": 7}, "^clip: expected .west, south, east, north. but got 7"),
+        ({"clip": 7}, "^clip: expected .west, south, east, north. or a shape with __geo_interface__ but got 7"),
         ({"clip": (1, 2, 3)}, "^clip: expected"),
         ({"clip_crs": 32616}, "^clip_crs: needs clip"),
         ({"clip": (0, 0, 1, 1), "clip_crs": "EPSG:999999"}, "^clip_crs: "),
@@ -203,3 +203,70 @@ def test_horizons(dem, written):
     for wrong in (0, 721, 2.5, True, "8", 10**30):
         with pytest.raises(relevo.BadInput, match="^directions: expected a whole number from 1 to 720"):
             dem.sun.horizons(wrong)
+
+
+class Shape:
+    """As shapely and geopandas have it."""
+
+    def __init__(self, corners, crs=None, kind="Polygon"):
+        polygon = {"type": "Polygon", "coordinates": [corners]}
+        self.__geo_interface__ = polygon if kind == "Polygon" else {
+            "type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": polygon}]
+        }
+        if crs:
+            self.crs = crs
+
+
+# No centre of a post lies on its edges.
+TRIANGLE = [(-84.3001, 36.2001), (-84.2001, 36.2001), (-84.3001, 36.2501), (-84.3001, 36.2001)]
+
+
+def test_clip_of_a_shape(dem):
+    """Posts whose centres are in the triangle have the values of the whole DEM; others are NaN."""
+    whole, found = dem.sun.sky_view(8).values, dem.sun.sky_view(8, clip=Shape(TRIANGLE))
+    rows, columns = numpy.indices(dem.shape)
+    x, y = dem.transform.apply(columns + 0.5, rows + 0.5)
+    inside = (x > -84.3001) & (y > 36.2001) & ((x + 84.3001) / 0.1 + (y - 36.2001) / 0.05 < 1)
+    assert 0 < inside.sum() < inside.size / 10
+    numpy.testing.assert_array_equal(found.values, numpy.where(inside, whole, numpy.float32("nan")))
+    assert relevo.again(found, dem=dem).values.tobytes() == found.values.tobytes()
+    bands = dem.sun.horizons(2, clip=Shape(TRIANGLE))
+    assert (numpy.isfinite(bands.values) == inside).all()
+
+
+def test_clip_of_features_in_another_crs(dem):
+    import rasterio.warp
+
+    (x, y) = rasterio.warp.transform("EPSG:4326", "EPSG:32616", *zip(*TRIANGLE))
+    features = Shape(list(zip(x, y)), "EPSG:32616", "FeatureCollection")
+    found, expected = dem.sun.sky_view(4, clip=features), dem.sun.sky_view(4, clip=Shape(TRIANGLE))
+    assert (numpy.isfinite(found.values) != numpy.isfinite(expected.values)).sum() < 10  # on its edges
+
+
+@pytest.mark.parametrize(
+    "shape, message",
+    [
+        ({"type": "Point", "coordinates": (1, 2)}, "^clip: expected polygons but got Point"),
+        ({"type": "FeatureCollection", "features": []}, "^clip: FeatureCollection has no polygon"),
+        ({"type": "Polygon"}, "^clip: "),
+        ({"type": "Polygon", "coordinates": [[(1, 1), (2, 1), (1, 2), (1, 1)]]}, "^clip: no post of the DEM is in it"),
+    ],
+)
+def test_clip_of_no_shape(dem, shape, message):
+    with pytest.raises(relevo.BadInput, match=message):
+        dem.sun.sky_view(4, clip=shape)
+
+
+def test_notebooks_show_a_raster(dem, tmp_path):
+    import base64
+    import re
+
+    raster = dem.sun.sky_view(4, clip=(-84.3, 36.2, -84.2, 36.25))
+    shown = raster._repr_html_()
+    assert shown.startswith("<div>&lt;relevo.Raster ")
+    (tmp_path / "shown.png").write_bytes(base64.b64decode(re.search('base64,([^"]+)', shown)[1]))
+    with rasterio.open(tmp_path / "shown.png") as picture:
+        grey, alpha = picture.read()
+    step = -(-max(dem.shape) // 256)
+    known = numpy.isfinite(raster.values[::step, ::step])
+    assert ((alpha == 255) == known).all() and grey[known].min() == 0 and grey[known].max() >= 254

@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "effect/registry.h"
+#include "viewer/crs_suggestions.h"
 #include "viewer/file_kind.h"
+#include "viewer/file_place.h"
 #include "viewer/import_preview.h"
 #include "viewer/window_words.h"
 #include "window/viewer_fixture.h"
@@ -113,6 +115,68 @@ TEST(ImportPreview, ShowsTheDemAsTheOptionsHaveItRead) {
     EXPECT_EQ(holed->picture.at(20, 15, 3), 255);
 }
 
+TEST(CrsSuggestions, AreThoseThatTheCoordinatesCanBeIn) {
+    const std::string jacksboro = (test::source_dir() / "data/dem/jacksboro.tif").string();
+    const auto codes = [&](const std::string& name, const char* corner, const std::string& other) {
+        std::string text = grid_text();
+        text.replace(text.find("xllcorner"), text.find("cellsize") - text.find("xllcorner"),
+                     corner);
+        std::vector<std::string> found;
+        for (const auto& each : viewer::suggest_crs({{write(name, text)}}, {{other}}))
+            found.push_back(each.crs.code);
+        return found;
+    };
+    // UTM 16 N around Jacksboro.
+    constexpr const char* kUtm = "xllcorner 740000\nyllcorner 4020000\n";
+    EXPECT_THAT(codes("grid.asc", kUtm, jacksboro),
+                testing::AllOf(testing::Contains("EPSG:32616"), testing::SizeIs(testing::Gt(3)),
+                               testing::Not(testing::Contains("EPSG:4326"))));
+    EXPECT_THAT(codes("grid.asc", kUtm, "/missing.tif"), testing::IsEmpty());
+    // A code in the name, if the coordinates can be in it.
+    EXPECT_THAT(codes("dgm_32632.asc", kUtm, "/missing.tif"), testing::ElementsAre("EPSG:32632"));
+    EXPECT_THAT(codes("dgm_2056.asc", kUtm, "/missing.tif"), testing::IsEmpty());
+    EXPECT_THAT(viewer::suggest_crs({{jacksboro}}, {}).size(), 1u);  // degrees
+    EXPECT_THAT(viewer::suggest_crs({{write("no.tif", "nothing")}}, {}), testing::IsEmpty());
+    EXPECT_THAT(viewer::where_text(geo::geodetic_deg(47.2627, 11.3945)),
+                HasSubstr("near Innsbruck (AT), 47.26"));
+}
+
+TEST(FilePlace, IsOnTheDemOrOutside) {
+    const dem::Grid dem =
+        dem::Source::open((test::source_dir() / "data/dem/jacksboro.tif").string()).grid();
+    const auto words = [&](FileKind kind, const std::string& file) {
+        return viewer::words_of(viewer::place_of_file(kind, file, dem), kind, dem);
+    };
+    const std::string huts = write("huts.csv", "name,lat,lon\nTop,36.36,-84.23\nFar,47,11\n");
+    EXPECT_THAT(words(FileKind::Places, huts),
+                HasSubstr("1 of 2 places are on the DEM, around 6.49 km NNE"));
+    EXPECT_EQ(words(FileKind::Places, write("far.csv", "name,lat,lon\nFar,47,11\n")),
+              "outside the DEM");
+    const auto way = [](const char* from, const char* to) {
+        return fmt::format(
+            "<gpx version='1.1' xmlns='http://www.topografix.com/GPX/1/1'><trk>"
+            "<trkseg><trkpt {}/><trkpt {}/></trkseg></trk></gpx>",
+            from, to);
+    };
+    EXPECT_THAT(words(FileKind::Lines,
+                      write("way.gpx", way("lat='36.3' lon='-84.3'", "lat='36.36' lon='-84.23'"))),
+                HasSubstr("on the DEM around"));
+    EXPECT_EQ(
+        words(FileKind::Lines, write("far.gpx", way("lat='47' lon='11'", "lat='47.1' lon='11.1'"))),
+        "outside the DEM");
+    EXPECT_THAT(words(FileKind::Overlay, (test::source_dir() / "data/dem/jacksboro.tif").string()),
+                HasSubstr("on the DEM around"));
+    // A map of half the world, of whose sampled places none is on the DEM.
+    std::string half = grid_text();
+    half.replace(half.find("xllcorner"), half.find("NODATA") - half.find("xllcorner"),
+                 "xllcorner -180\nyllcorner -90\ncellsize 6\n");
+    const std::string map = write("half.asc", half);
+    std::ofstream(std::filesystem::path(map).replace_extension("prj"))
+        << "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,"
+           "298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
+    EXPECT_THAT(words(FileKind::Overlay, map), HasSubstr("on the DEM around"));
+}
+
 /// The window with files that a desktop's dialog gives.
 class OpenedFiles : public Viewer {
   protected:
@@ -191,6 +255,34 @@ TEST_F(OpenedFiles, ADemOfTheCommandLineWithoutACrsIsAskedForOne) {
     EXPECT_TRUE(shows("grid.asc"));
     ASSERT_TRUE(settles());
     EXPECT_EQ(scene()["dem"]["crs"], "EPSG:31287");
+}
+
+TEST_F(OpenedFiles, ReturnTakesASuggestedCrsAndOpens) {
+    std::string text = grid_text();
+    text.replace(text.find("xllcorner"), text.find("cellsize") - text.find("xllcorner"),
+                 "xllcorner 740000\nyllcorner 4020000\n");
+    const auto grid = folder_ / "grid.asc";
+    std::ofstream(grid) << text;
+    open({dem_, "--only"});
+    constexpr glm::ivec4 kSheet{270, 160, 740, 480}, kPreview{690, 230, 300, 150};
+    ASSERT_TRUE(changes_in(kSheet, [&] { choose(grid.string()); }));
+    // The preview of the first suggestion, which is highlighted.
+    ASSERT_TRUE(wait([&] {
+        return count_near(display_.screen(), kPreview, {110, 110, 110}, 60) > 3000;
+    }));
+    // Edges that cannot be are only said.
+    act({"mousemove", "420", "413", "click", "1"});
+    act({"type", "--delay", "60", "1,2"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    act({"key", "ctrl+a", "key", "BackSpace"});
+    act({"mousemove", "420", "243", "click", "1"});
+    for (int i = 0; i < 2; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        act({"key", "Return"});
+    }
+    EXPECT_TRUE(shows("grid.asc"));
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene()["dem"]["crs"], "EPSG:32616");
 }
 
 TEST(WindowWords, NameFieldsInsteadOfOptions) {

@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <thread>
 
 #include <glm/geometric.hpp>
@@ -383,59 +382,6 @@ TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
         fmt::print("[ measured ] idle: {:.2f} % of a processor (limit 2)\n", 100 * share);
         return share < 0.02;
     }));
-    act({"key", "ctrl+q"});
-    EXPECT_EQ(program_->status(), 0) << program_->output();
-}
-
-/// Whatever a hand does, for as long as RELEVO_SOAK_S says (25 s): the window stays, says nothing
-/// of GL, and its memory does not grow.
-TEST_F(Viewer, StandsWhateverIsDoneToIt) {
-    paint("radiance.r += 0.1;");
-    open({dem_, "--plugin-path", plugins_.string()});
-    const std::string id = window_id();
-    const auto memory_mib = [&] {
-        std::ifstream status(fmt::format("/proc/{}/statm", program_->process()));
-        double pages = 0, resident = 0;
-        status >> pages >> resident;
-        return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
-    };
-    const char* const given = std::getenv("RELEVO_SOAK_S");
-    const double length_s = given ? std::atof(given) : 25;
-    std::mt19937 random(7);
-    const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    const std::vector<std::string> keys = {
-        "t",           "n",      "g",  "w",    "a",   "d", "e",  "bracketright",
-        "bracketleft", "space",  "c",  "Tab",  "h",   "m", "F5", "ctrl+z",
-        "ctrl+y",      "ctrl+c", "Up", "Left", "Home"};
-    double settled_mib = 0;
-    int acts = 0;
-    const auto began = std::chrono::steady_clock::now();
-    const auto passed_s = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    };
-    for (; passed_s() < length_s && program_->is_running(); ++acts) {
-        const int what = upto(10);
-        if (what < 3) {
-            drag(1 + upto(3), 450 + upto(700), 100 + upto(600), upto(400) - 200, upto(300) - 150);
-        } else if (what < 5) {
-            act({"click", "--repeat", "5", "--delay", "20", upto(2) ? "4" : "5"});
-        } else if (what < 9) {
-            act({"key", keys[static_cast<std::size_t>(upto(static_cast<int>(keys.size())))]});
-        } else if (upto(2)) {
-            paint(upto(2) ? "radiance.b += 0.2;" : "radiance.b += nothing;");
-        } else {
-            const bool tiny = upto(2) != 0;
-            act({"windowsize", id, tiny ? "1" : "1000", tiny ? "1" : "700"});
-            std::this_thread::sleep_for(std::chrono::milliseconds(200));
-            act({"windowsize", id, "1280", "800"});
-        }
-        if (settled_mib == 0 && passed_s() > length_s / 2) settled_mib = memory_mib();
-    }
-    ASSERT_TRUE(program_->is_running()) << program_->output();
-    fmt::print("[ measured ] {} acts; memory {:.0f} MiB half way, {:.0f} MiB at the end\n", acts,
-               settled_mib, memory_mib());
-    EXPECT_LT(memory_mib(), 1.5 * settled_mib + 200);  // a comparison has a second scene
-    EXPECT_THAT(program_->output(), testing::Not(HasSubstr("gl:")));
     act({"key", "ctrl+q"});
     EXPECT_EQ(program_->status(), 0) << program_->output();
 }

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import datetime
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
 
+from ._clip import Clip, part_of
 from ._errors import BadInput, messages
-from ._inputs import crs_text
 from ._options import options_text
 from ._raster import Raster, band_list, empty
 from ._times import Date, Time, Zone, date_text, time_text, zone_text
@@ -23,18 +23,8 @@ Progress = Callable[[float], object]
 """Is called with the share that is done, 0 to 1, on the thread that has called. False from it cancels."""
 
 
-def _clip_text(clip: Union[str, Sequence[float]]) -> str:
-    if isinstance(clip, str):
-        return clip  # of a raster that is made again
-    try:
-        west, south, east, north = (float(edge) for edge in clip)
-    except (TypeError, ValueError):
-        raise BadInput(f"clip: expected (west, south, east, north) but got {clip!r}") from None
-    return f"{west!r},{south!r},{east!r},{north!r}"
-
-
 _TEXTS: dict[str, Callable[[Any], str]] = {
-    "date": date_text, "from": date_text, "to": date_text, "zone": zone_text, "clip": _clip_text, "clip_crs": crs_text,
+    "date": date_text, "from": date_text, "to": date_text, "zone": zone_text,
 }
 
 
@@ -59,8 +49,10 @@ class SunOverDem:
     terrestrial_refraction: curvature of a line of sight in units of the Earth's (0.13)
     refraction: of the sun: "standard" (integrated ICAO atmosphere), "saemundsson", "none"; not of the sky view
     highest: what no terrain outside of the DEM exceeds [m] (the DEM's highest post)
-    clip: (west, south, east, north) in `clip_crs` (the DEM's CRS): only posts in it are computed, in the shade of the
-        whole DEM; others are NaN
+    clip: (west, south, east, north) in `clip_crs` (the DEM's CRS), or polygons: anything with `__geo_interface__`, as
+        shapely and geopandas have it, in `clip_crs` (their own `crs`, else the DEM's); of another CRS the vertices
+        are moved and edges are straight in the DEM's. Only posts in it are computed, in the shade of the whole DEM;
+        others are NaN. Polygons need rasterio.
 
     and warn (relevo.Warning) where terrain outside of the DEM could change values.
     """
@@ -83,7 +75,7 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
-        clip: Optional[Sequence[float]] = None,
+        clip: Optional[Clip] = None,
         clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
@@ -121,7 +113,7 @@ class SunOverDem:
         terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None,
         highest: Optional[float] = None,
-        clip: Optional[Sequence[float]] = None,
+        clip: Optional[Clip] = None,
         clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
@@ -145,7 +137,7 @@ class SunOverDem:
         level: bool = False,
         terrestrial_refraction: Optional[float] = None,
         highest: Optional[float] = None,
-        clip: Optional[Sequence[float]] = None,
+        clip: Optional[Clip] = None,
         clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
@@ -168,7 +160,7 @@ class SunOverDem:
         *,
         terrestrial_refraction: Optional[float] = None,
         highest: Optional[float] = None,
-        clip: Optional[Sequence[float]] = None,
+        clip: Optional[Clip] = None,
         clip_crs: Any = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
@@ -228,13 +220,17 @@ class SunOverDem:
                 options[key] = text(options[key])
         values = empty(None if alone else len(names), *self._dem.shape)
         fill = getattr(self._dem._handle, figure)
-        asked = options_text(figure.removeprefix("sun_"), options)
+        part = part_of(self._dem, options.pop("clip", None), options.pop("clip_crs", None))
+        who = figure.removeprefix("sun_")
+        asked, said = options_text(who, {**options, **part.asked}), options_text(who, {**options, **part.said})
         of_dem = self._dem.provenance()  # before the figure, during which others may close the DEM
         with messages():
             about = json.loads(fill(asked, values, progress))
+        if part.outside is not None:
+            values[..., part.outside] = numpy.nan
         described = about.pop("bands")
         told = {key.lower().removeprefix("tifftag_"): value for key, value in about.pop("metadata").items()}
-        about = {**told, **about, **of_dem, "figure": figure, "options": asked}
+        about = {**told, **about, **of_dem, "figure": figure, "options": said}
         titles = tuple(band["name"] for band in described)
         units = tuple(band["unit"] for band in described)
         return self._dem._raster(values, tuple(names), titles, units, about)
