@@ -8,8 +8,8 @@ import pathlib
 import re
 import sys
 
-RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "sky": 1, "web": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "overlay": 3, "names": 3, "effect": 3, "output": 4,
-        "scene": 4, "chart": 5, "figure": 5, "render": 6, "session": 7}
+RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "sky": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "overlay": 3, "names": 3, "effect": 3, "output": 4,
+        "scene": 4, "chart": 5, "figure": 5, "web": 5, "render": 6, "session": 7}
 
 # Library headers, and the only layers of core/ that may include them. What is not listed is free.
 OWNERS = {

@@ -7,9 +7,15 @@ class View {
     Object.assign(this, {ground, changed, span: Math.hypot(w * meta.step_m[0], h * meta.step_m[1])});
     this.home();
   }
+  // The view of the program's picture: its eye, and the ground in the middle.
   home() {
-    const v = this.ground.meta.view;
-    Object.assign(this, {x: 0, z: 0, azimuth: v.azimuth, tilt: v.elevation, distance: this.span * 0.6});
+    const {meta, base} = this.ground, v = meta.view, [w, h] = meta.size, [sx, sy] = meta.step_m;
+    const a = (v.heading - gridValue(meta, 'convergence', w / 2, h / 2)) * RAD, p = v.pitch * RAD;
+    const eye = [(v.post[0] - (w - 1) / 2) * sx, v.height - base * meta.exaggeration, (v.post[1] - (h - 1) / 2) * sy];
+    const ahead = [Math.sin(a) * Math.cos(p), Math.sin(p), -Math.cos(a) * Math.cos(p)];
+    const distance = this.hit(eye, ahead) || this.span * 0.6;
+    Object.assign(this, {x: eye[0] + ahead[0] * distance, z: eye[2] + ahead[2] * distance, distance});
+    Object.assign(this, {azimuth: (v.heading + 180) % 360, tilt: Math.max(4, -v.pitch)});
     this.changed();
   }
   set(values) {
@@ -27,7 +33,7 @@ class View {
     const [c, r] = this.post(this.x, this.z), target = [this.x, ((heightAt(ground, c, r) || ground.base) - ground.base) * meta.exaggeration, this.z];
     const back = [Math.sin(a) * Math.cos(t), Math.sin(t), -Math.cos(a) * Math.cos(t)], eye = target.map((v, i) => v + back[i] * this.distance);
     const right = [-Math.cos(a), 0, -Math.sin(a)], up = [-Math.sin(a) * Math.sin(t), Math.cos(t), Math.cos(a) * Math.sin(t)];
-    const ty = Math.tan((aspect < 1 ? 66 : 50) / 2 * RAD), tx = ty * aspect, near = this.distance / 100, far = this.span * 4;
+    const ty = Math.tan(meta.view.fov / 2 * RAD) * Math.min(1.5, Math.max(1, 1.2 / aspect)), tx = ty * aspect, near = this.distance / 100, far = this.span * 4;
     const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2], k = (far + near) / (near - far), clip = new Float32Array(16);
     [right, up, back].forEach((axis, row) => axis.forEach((v, col) => {
       if (row < 2) clip[col * 4 + row] = v / (row ? ty : tx); else { clip[col * 4 + 2] = v * k; clip[col * 4 + 3] = -v; }
@@ -36,14 +42,26 @@ class View {
     return {eye, clip, right, up, back, tx, ty, rays: new Float32Array([...right.map(v => v * tx), ...up.map(v => v * ty), ...back.map(v => -v)])};
   }
   post(x, z) { const {size: [w, h], step_m: [sx, sy]} = this.ground.meta; return [x / sx + (w - 1) / 2, z / sy + (h - 1) / 2]; }
-  // The post under a place of the picture (-1 to 1, up), or null.
-  pick(px, py, aspect) {
-    const cam = this.camera(aspect), {ground} = this, d = [0, 1, 2].map(i => cam.rays[i] * px + cam.rays[3 + i] * py + cam.rays[6 + i]);
-    for (let s = this.distance / 100, last = s; s < this.span * 3; last = s, s *= 1.004) {
-      const [c, r] = this.post(cam.eye[0] + d[0] * s, cam.eye[2] + d[2] * s), h = heightAt(ground, c, r);
-      if (cam.eye[1] + d[1] * s < (h - ground.base) * ground.meta.exaggeration) return {column: c, row: r, height: h};
+  // How far along a ray the ground is [lengths of the ray's direction], or null.
+  hit(eye, ahead) {
+    const {ground} = this, below = s => {
+      const [c, r] = this.post(eye[0] + ahead[0] * s, eye[2] + ahead[2] * s);
+      return eye[1] + ahead[1] * s < (heightAt(ground, c, r) - ground.base) * ground.meta.exaggeration;
+    };
+    for (let s = this.span / 2000, last = 0; s < this.span * 3; last = s, s *= 1.004) {
+      if (!below(s)) continue;
+      for (let n = 0; n < 12; n++) { const middle = (last + s) / 2; if (below(middle)) s = middle; else last = middle; }
+      return s;
     }
     return null;
+  }
+  // The post under a place of the picture (-1 to 1, up), or null.
+  pick(px, py, aspect) {
+    const {eye, rays} = this.camera(aspect), ahead = [0, 1, 2].map(i => rays[i] * px + rays[3 + i] * py + rays[6 + i]);
+    const s = this.hit(eye, ahead);
+    if (s === null) return null;
+    const [column, row] = this.post(eye[0] + ahead[0] * s, eye[2] + ahead[2] * s);
+    return {column, row, height: heightAt(this.ground, column, row)};
   }
   pan(dx, dy, height) {
     const a = (this.azimuth - 180) * RAD, k = this.distance / height, f = dy * k, s = -dx * k;

@@ -48,7 +48,8 @@ def container(path, time, exaggeration=1.4, azimuth=180):
     offset = round(np.mean(grid["lon"]) / 15) * 3600
     meta = {"title": pathlib.Path(path).stem, "credits": ["Heights: test"], "size": list(heights.shape[::-1]),
             "step_m": step_m, "height": {"min": low, "step": step}, "exaggeration": exaggeration,
-            "view": {"azimuth": azimuth, "elevation": 20}, "time": time,
+            "view": {"post": [heights.shape[1] / 2, heights.shape[0] * 1.5], "height": 1.4 * low + 20000, "heading": azimuth - 180,
+                     "pitch": -30, "fov": 50}, "time": time,
             "zone": {"name": "", "transitions": [[-2**40, int(offset)]]}, "grid": grid, "refraction": refraction(),
             "blocks": [{"name": "heights", "offset": 0, "length": len(packed), "size": len(raw),
                         "crc32": zlib.crc32(packed), "coding": "deflate"}]}
