@@ -1,19 +1,39 @@
 'use strict';
 // Draws the ground and the sky with WebGL2.
 
-const SKY = `
-uniform vec3 sun; uniform float sunUp;
+// What both programs know: the sky, the light of sun and sky, the air, and the plain around the DEM.
+const LIGHT = `
+uniform vec3 sun, eye; uniform float sunUp, air; uniform vec2 extent; uniform sampler2D colour;
+float day() { return smoothstep(-14.0, 8.0, sunUp); }
 vec3 skyOf(vec3 d) {
-  float day = smoothstep(-14.0, 8.0, sunUp), low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0);
-  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.045, .13, .42), day), rim = mix(vec3(.012, .018, .04), vec3(.30, .46, .80), day);
+  float low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0), thin = 9.0 * exp(min(eye.y / 8000.0, 1.2));
+  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.06, .20, .62), day());
+  vec3 rim = mix(vec3(.012, .018, .04), vec3(.46, .59, .88), day());
   float towards = pow(max(0.0, dot(normalize(d.xz + 1e-5), normalize(sun.xz + 1e-5)) * .5 + .5), 2.0);
-  rim = mix(rim, vec3(.95, .50, .26) * (.25 + day), low * (.25 + .6 * towards));
-  vec3 c = mix(rim, zenith, 1.0 - exp(-3.0 * up));
+  rim = mix(rim, vec3(.95, .50, .26) * (.25 + day()), low * (.25 + .6 * towards));
   float glow = max(dot(d, sun), 0.0);
-  return c + vec3(1., .72, .42) * day * (.10 * pow(glow, 24.0) + .5 * pow(glow, 900.0));
+  return mix(rim, zenith, 1.0 - exp(-thin * up)) + vec3(1., .72, .42) * day() * (.10 * pow(glow, 24.0) + .5 * pow(glow, 900.0));
+}
+vec3 beam() {
+  float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
+  return 3.0 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
+}
+vec3 fill() { return mix(vec3(.010, .014, .030), vec3(.10, .14, .24), smoothstep(-12.0, 14.0, sunUp)); }
+vec3 through(vec3 c, vec3 d, float far) {
+  vec3 haze = skyOf(normalize(vec3(d.x, .01, d.z))) * vec3(.60, .66, .76);
+  return mix(c, haze, 1.0 - exp(-pow(far * air, 1.6) * vec3(.85, .95, 1.1)));
+}
+vec3 backdrop(vec3 d) {
+  if (d.y >= 0.0) return skyOf(d);
+  float far = eye.y / -d.y;
+  vec2 at = (eye.xz + d.xz * far) / extent + .5, near = clamp(at, .05, .95);
+  float broad = log2(float(textureSize(colour, 0).x)) - 3.0 + length(at - near);
+  vec3 albedo = pow(textureLod(colour, near, broad).rgb, vec3(2.2));
+  vec3 ground = through(albedo * (beam() * max(sun.y, 0.0) + fill()), d, far);
+  return mix(ground, skyOf(vec3(d.x, 0.0, d.z)), smoothstep(-.05, 0.0, d.y));
 }
 vec3 shown(vec3 c) {
-  c = max(c, 0.0) * .92;
+  c = max(c, 0.0);
   c = c * (2.51 * c + .03) / (c * (2.43 * c + .59) + .14);
   return mix(12.92 * c, 1.055 * pow(max(c, 1e-5), vec3(1. / 2.4)) - .055, step(.0031308, c));
 }`;
@@ -26,41 +46,31 @@ void main() {
   float h = texelFetch(heights, p, 0).r;
   solid = h < -1e8 ? 0.0 : 1.0;
   uv = (vec2(p) + .5) / vec2(size);
-  at = vec3((float(p.x) - float(size.x - 1) * .5) * world.x, (max(h, base) - base) * world.y, (float(p.y) - float(size.y - 1) * .5) * world.z);
+  at = vec3(float(p.x) - float(size.x - 1) * .5, max(h, base) - base, float(p.y) - float(size.y - 1) * .5) * world;
   gl_Position = clip * vec4(at, 1.0);
 }`;
 const GROUND_FRAGMENT = `#version 300 es
 precision highp float;
-uniform sampler2D normals, light, colour, open; uniform vec3 eye; uniform float air;
+uniform sampler2D normals, light, open;
 in vec2 uv; in vec3 at; in float solid; out vec4 result;
-${SKY}
+${LIGHT}
 void main() {
   if (solid < 0.99) discard;
   vec2 n2 = texture(normals, uv).rg * 2.0 - 1.0;
   vec3 n = vec3(n2.x, sqrt(max(0.0, 1.0 - dot(n2, n2))), n2.y), albedo = pow(texture(colour, uv).rgb, vec3(2.2));
-  float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
-  vec3 beam = 2.3 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
-  float day = smoothstep(-12.0, 14.0, sunUp);
-  vec3 fill = mix(vec3(.010, .014, .030), vec3(.13, .20, .36), day) * (.45 + .55 * n.y) * texture(open, uv).r;
   float lit = clamp((texture(light, uv).r - .02) * 1.04, 0.0, 1.0);
-  vec3 bounced = beam * max(sun.y, 0.0) * .06;
-  vec3 c = albedo * (beam * lit * max(dot(n, sun), 0.0) + fill + bounced);
-  vec3 way = at - eye; float d = length(way); vec3 dir = way / d;
-  vec3 haze = skyOf(normalize(vec3(dir.x, max(dir.y, .0) + .01, dir.z)));
+  vec3 sky = fill() * (.45 + .55 * n.y) * texture(open, uv).r, bounced = beam() * max(sun.y, 0.0) * .06;
+  vec3 way = at - eye, d = normalize(way), c = albedo * (beam() * lit * max(dot(n, sun), 0.0) + sky + bounced);
   vec2 e = min(uv, 1.0 - uv);
-  float edge = smoothstep(0.0, .035, min(e.x, e.y)), f = 1.0 - exp(-d * air);
-  result = vec4(shown(mix(haze * .92, c, edge * (1.0 - f * vec3(.75, .88, 1.0)))), 1.0);
+  result = vec4(shown(mix(backdrop(d), through(c, d, length(way)), smoothstep(0.0, .035, min(e.x, e.y)))), 1.0);
 }`;
 const SKY_VERTEX = `#version 300 es
 out vec2 p; void main() { p = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0; gl_Position = vec4(p, 1.0, 1.0); }`;
 const SKY_FRAGMENT = `#version 300 es
 precision highp float;
 in vec2 p; out vec4 result; uniform mat3 rays;
-${SKY}
-void main() {
-  vec3 d = normalize(rays * vec3(p, 1.0));
-  result = vec4(shown(skyOf(normalize(vec3(d.x, max(d.y, 0.0) + .01, d.z))) * (d.y < 0.0 ? .92 : mix(.92, 1.0, smoothstep(0.0, .03, d.y)))), 1.0);
-}`;
+${LIGHT}
+void main() { result = vec4(shown(backdrop(normalize(rays * vec3(p, 1.0)))), 1.0); }`;
 
 function program(gl, vertex, fragment) {
   const p = gl.createProgram();
@@ -119,22 +129,24 @@ class Drawer {
     const gl = this.gl, [w, h] = this.ground.meta.size;
     gl.activeTexture(gl.TEXTURE2); gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, w, h, gl.RED, gl.UNSIGNED_BYTE, light);
   }
-  at(p, name) { return this.gl.getUniformLocation(p, name); }
+  // Draws every `every`-th post.
   draw(camera, sun, every) {
-    const gl = this.gl, {meta, base} = this.ground, [w, h] = meta.size, a = (sun.azimuth - gridValue(meta, 'convergence', w / 2, h / 2)) * RAD;
-    const e = sun.apparent * RAD, direction = [Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e)];
+    const gl = this.gl, {meta, base} = this.ground, [w, h] = meta.size, [sx, sy] = meta.step_m;
+    const a = (sun.azimuth - gridValue(meta, 'convergence', w / 2, h / 2)) * RAD, e = sun.apparent * RAD;
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight); gl.clear(gl.DEPTH_BUFFER_BIT);
     for (const p of [this.sky, this.terrain]) {
-      gl.useProgram(p); gl.uniform3fv(this.at(p, 'sun'), direction); gl.uniform1f(this.at(p, 'sunUp'), sun.apparent);
+      const at = name => gl.getUniformLocation(p, name);
+      gl.useProgram(p);
+      gl.uniform3f(at('sun'), Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e));
+      gl.uniform1f(at('sunUp'), sun.apparent); gl.uniform3fv(at('eye'), camera.eye);
+      gl.uniform2f(at('extent'), w * sx, h * sy); gl.uniform1f(at('air'), 0.75 / Math.hypot(w * sx, h * sy));
+      ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(at(n), i));
       if (p === this.sky) {
-        gl.disable(gl.DEPTH_TEST); gl.uniformMatrix3fv(this.at(p, 'rays'), false, camera.rays); gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.disable(gl.DEPTH_TEST); gl.uniformMatrix3fv(at('rays'), false, camera.rays); gl.drawArrays(gl.TRIANGLES, 0, 3);
         continue;
       }
-      ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(this.at(p, n), i));
-      gl.uniformMatrix4fv(this.at(p, 'clip'), false, camera.clip); gl.uniform3fv(this.at(p, 'eye'), camera.eye);
-      gl.uniform3f(this.at(p, 'world'), meta.step_m[0], meta.exaggeration, meta.step_m[1]); gl.uniform2i(this.at(p, 'size'), w, h);
-      gl.uniform1i(this.at(p, 'every'), every); gl.uniform1f(this.at(p, 'base'), base);
-      gl.uniform1f(this.at(p, 'air'), 0.42 / Math.hypot(w * meta.step_m[0], h * meta.step_m[1]));
+      gl.uniformMatrix4fv(at('clip'), false, camera.clip); gl.uniform3f(at('world'), sx, meta.exaggeration, sy);
+      gl.uniform2i(at('size'), w, h); gl.uniform1i(at('every'), every); gl.uniform1f(at('base'), base);
       gl.enable(gl.DEPTH_TEST);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (Math.ceil((w - 1) / every) + 1), Math.ceil((h - 1) / every));
     }

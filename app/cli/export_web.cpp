@@ -31,7 +31,8 @@ namespace relevo::cli {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-constexpr int kMostSide = 2048;             // posts of a page, and pixels of its colour
+constexpr int kMostSide = 2048;             // posts of a page
+constexpr int kEnlarged = 2;                // pixels of its colour for a post
 constexpr double kShareOfHeights = 0.7;     // of a page, at most
 constexpr glm::ivec2 kStill_px{1200, 630};  // as previews of links are
 
@@ -73,9 +74,8 @@ image::Image8 colour_of(const session::Session& seen, const scene::Scene& shown,
                         const WebArguments& arguments, FilesInUse& files) {
     scene::Scene scene = shown;
     const glm::ivec2 posts = posts_of(seen.dem()->source->grid(), kMostSide);
-    const int enlarged = std::max(posts.x, posts.y) <= kMostSide / 2 ? 2 : 1;
-    scene.width_px = enlarged * posts.x;
-    scene.height_px = enlarged * posts.y;
+    scene.width_px = kEnlarged * posts.x;
+    scene.height_px = kEnlarged * posts.y;
     scene.ortho = true;
     scene.view = {};
     scene.stamps = {.legend = false};

@@ -88,7 +88,7 @@ PageGround page_ground(const dem::Heightfield& ground, const GroundAround* aroun
         {"transform", ground.grid.affine().geotransform()},
         {"grid", ordered_json::parse(grid_json(ground.grid))},
         {"sky_view", {{"columns", half.height_m.width()}, {"rows", half.height_m.height()}}}};
-    PageGround page{ground.grid, heights.step_m / 2, {}, {}};
+    PageGround page{ground.grid, heights.step_m == 1 ? 0 : heights.step_m / 2, {}, {}};
     page.blocks = {deflated("heights", planes_of(heights.value)),
                    deflated("sky_view", sky_view(half))};
     if (around) {
