@@ -22,10 +22,14 @@ class Bar {
   toggle() {
     this.playing = this.playing ? 0 : performance.now();
     this.play.textContent = this.playing ? 'Pause' : 'Play';
+    const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
     const step = now => {
       if (!this.playing) return;
-      this.set(this.unix + Math.min(200, now - this.playing) * 1.2);   // 20 minutes in a second
-      this.playing = now;
+      const spent = now - this.playing;
+      if (!calm || spent > 1000) {   // 20 minutes in a second; in steps where motion is to be little
+        this.set(this.unix + Math.min(calm ? 1000 : 200, spent) * 1.2);
+        this.playing = now;
+      }
       requestAnimationFrame(step);
     };
     if (this.playing) requestAnimationFrame(t => { this.playing = t; step(t); });

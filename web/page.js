@@ -2,7 +2,9 @@
 // Puts the page together: reads the data, sweeps in the worker, draws when something has changed.
 
 const $ = id => document.getElementById(id);
-const show = (text) => { $('message').textContent = text; $('message').hidden = !text; };
+const show = text => { $('message').textContent = text; $('message').hidden = !text; };
+// The picture of the first view instead of ground that turns.
+function still(text) { for (const id of ['ground', 'bar', 'point', 'tools']) $(id).hidden = true; $('still').hidden = false; show(text); }
 
 function worker(ground) {
   const w = new Worker(URL.createObjectURL(new Blob([$('sweep').textContent], {type: 'text/javascript'})));
@@ -30,7 +32,7 @@ async function start() {
   ground.base = ground.height.reduce((a, h) => h < a ? h : a, Infinity);
   const [w, h] = meta.size, at = (c, r) => ({lat: gridValue(meta, 'lat', c, r), lon: gridValue(meta, 'lon', c, r)}), centre = at((w - 1) / 2, (h - 1) / 2);
   $('name').textContent = meta.title; $('credits').textContent = meta.credits.join(' · ');
-  document.title = meta.title;
+  $('still').src = URL.createObjectURL(new Blob([container.block('still')], {type: 'image/jpeg'}));
   const canvas = $('ground'), drawer = new Drawer(canvas, ground), sweeper = worker(ground);
   if (container.find('colour')) drawer.setColour(await createImageBitmap(new Blob([container.block('colour')], {type: 'image/jpeg'})));
   if (container.find('sky_view')) drawer.setSkyView(await inflated(container, 'sky_view', meta.sky_view.columns * meta.sky_view.rows), meta.sky_view);
@@ -69,7 +71,7 @@ async function start() {
   const keys = {ArrowLeft: () => view.set({azimuth: view.azimuth + 5}), ArrowRight: () => view.set({azimuth: view.azimuth - 5}), ArrowUp: () => view.set({tilt: view.tilt + 3}), ArrowDown: () => view.set({tilt: view.tilt - 3}),
     '+': () => view.set({distance: view.distance * 0.9}), '-': () => view.set({distance: view.distance * 1.1}), h: () => view.home(), n: () => view.set({azimuth: 180}), ' ': () => bar.toggle(), ',': () => bar.set(bar.unix - 600), '.': () => bar.set(bar.unix + 600)};
   addEventListener('keydown', e => { if (keys[e.key] && !/INPUT|BUTTON/.test(e.target.tagName)) { keys[e.key](); e.preventDefault(); } });
-  canvas.addEventListener('webglcontextlost', e => { e.preventDefault(); lost = true; show('The graphics were reset by the system. Reload the page to go on.'); });
+  canvas.addEventListener('webglcontextlost', e => { e.preventDefault(); lost = true; still('The graphics were reset by the system. Reload the page to go on.'); });
   const frame = every => {
     const ratio = Math.min(2, devicePixelRatio || 1), cw = Math.round(canvas.clientWidth * ratio), ch = Math.round(canvas.clientHeight * ratio);
     if (canvas.width !== cw || canvas.height !== ch) { canvas.width = cw; canvas.height = ch; }
@@ -107,5 +109,6 @@ function print(canvas, meta, bar, frame) {
 const page = {};
 start().catch(e => {
   document.body.dataset.failed = '1';
-  show(e.message === 'no WebGL2' ? 'This browser has no WebGL2, so the ground cannot be turned here.' : e.message);
+  if (e.message === 'no WebGL2') still('This browser has no WebGL2: a picture of the first view instead of ground that turns.');
+  else show(e.message);
 });

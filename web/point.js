@@ -34,11 +34,15 @@ function pointAt(ground, x, y) {
   return {meta, lat: gridValue(meta, 'lat', x, y), lon: gridValue(meta, 'lon', x, y), towards, horizon: Float32Array.from({length: 720}, (_, n) => towards(n / 2))};
 }
 
-// Horizon of the ground outside of the DEM at the nearest node [degrees].
+// Horizon of the ground outside of the DEM [degrees], linear between nodes and azimuths.
 function farAt({meta, far}, x, y, azimuth) {
-  const c = Math.round(x / (meta.size[0] - 1) * (far.columns - 1)), r = Math.round(y / (meta.size[1] - 1) * (far.rows - 1));
-  const a = azimuth / 360 * far.azimuths, n = Math.floor(a), i = (r * far.columns + c) * far.azimuths;
-  return (far.angle[i + n % far.azimuths] * (1 - a + n) + far.angle[i + (n + 1) % far.azimuths] * (a - n)) / 100;
+  const u = x / (meta.size[0] - 1) * (far.columns - 1), v = y / (meta.size[1] - 1) * (far.rows - 1), a = azimuth / 360 * far.azimuths;
+  const c = Math.max(0, Math.min(far.columns - 2, Math.floor(u))), r = Math.max(0, Math.min(far.rows - 2, Math.floor(v))), n = Math.floor(a);
+  const at = (column, row) => {
+    const i = (row * far.columns + column) * far.azimuths;
+    return far.angle[i + n % far.azimuths] * (1 - a + n) + far.angle[i + (n + 1) % far.azimuths] * (a - n);
+  };
+  return ((at(c, r) * (1 - u + c) + at(c + 1, r) * (u - c)) * (1 - v + r) + (at(c, r + 1) * (1 - u + c) + at(c + 1, r + 1) * (u - c)) * (v - r)) / 100;
 }
 
 function clearance(point, unix) {

@@ -94,10 +94,11 @@ function shareOf(x) {
 // Ground outside of the DEM: its horizon at the nodes of a coarse grid, towards the sun.
 function shadeByFar(job, light) {
   const {columns, rows, far, suns, semidiameter} = job, over = new Float32Array(far.columns * far.rows);
+  const first = suns[0].azimuth, turned = suns.map(s => (s.azimuth - first + 540) % 360 - 180);
   for (let r = 0, i = 0; r < far.rows; r++)
     for (let c = 0; c < far.columns; c++, i++) {
       const u = c / (far.columns - 1), v = r / (far.rows - 1);
-      const x = suns[0].azimuth / 360 * far.azimuths, a = Math.floor(x), n = i * far.azimuths;
+      const x = (first + cornerAt(turned, true, v, u) + 360) % 360 / 360 * far.azimuths, a = Math.floor(x), n = i * far.azimuths;
       const angle = (far.angle[n + a % far.azimuths] * (1 - x + a) + far.angle[n + (a + 1) % far.azimuths] * (x - a)) / 100;
       over[i] = cornerAt(suns.map(s => s.apparent), true, v, u) - angle;
     }

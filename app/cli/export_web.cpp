@@ -31,8 +31,8 @@ namespace relevo::cli {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-constexpr int kMostSide = 2048;             // posts of a page
-constexpr int kEnlarged = 2;                // pixels of its colour for a post
+constexpr double kMostSide = 2048;          // posts of a page, and pixels of its colour
+constexpr double kEnlarged = 2;             // pixels of its colour for a post, at most
 constexpr double kShareOfHeights = 0.7;     // of a page, at most
 constexpr glm::ivec2 kStill_px{1200, 630};  // as previews of links are
 
@@ -73,9 +73,10 @@ glm::ivec2 posts_of(const dem::Grid& grid, double most_a_side) {
 image::Image8 colour_of(const session::Session& seen, const scene::Scene& shown,
                         const WebArguments& arguments, FilesInUse& files) {
     scene::Scene scene = shown;
-    const glm::ivec2 posts = posts_of(seen.dem()->source->grid(), kMostSide);
-    scene.width_px = kEnlarged * posts.x;
-    scene.height_px = kEnlarged * posts.y;
+    const glm::dvec2 posts(posts_of(seen.dem()->source->grid(), kMostSide));
+    const glm::ivec2 size(posts * std::min(kEnlarged, kMostSide / std::max(posts.x, posts.y)));
+    scene.width_px = size.x;
+    scene.height_px = size.y;
     scene.ortho = true;
     scene.view = {};
     scene.stamps = {.legend = false};
@@ -157,14 +158,19 @@ web::Content content_of(const WebArguments& arguments, const scene::Scene& given
 web::PageGround ground_within(const dem::Source& source, const scene::Scene& scene,
                               double most_bytes) {
     const auto around = web::GroundAround::of(scene.dems, scene.dem, source.grid());
+    std::optional<web::FarHorizons> far;
     double side = kMostSide;
     for (;;) {
         const output::ExportedGround ground = output::read_ground(
             source, scene.dem, {scene.holes, 1, posts_of(source.grid(), side), {}});
-        web::PageGround page = web::page_ground(ground.field, around.get());
-        const double share = most_bytes / static_cast<double>(page.bytes());
-        if (share >= 1) return page;
-        side = std::max(page.grid.columns(), page.grid.rows()) * std::sqrt(share) * 0.98;
+        const dem::Grid& grid = ground.field.grid;
+        if (around && !far) {
+            far = around->horizons(ground.field);
+            most_bytes -= web::kFarBytes;
+        }
+        const double share = most_bytes / web::bytes_of(ground.field);
+        if (share >= 1) return web::page_ground(ground.field, far ? &*far : nullptr);
+        side = std::max(grid.columns(), grid.rows()) * std::sqrt(share) * 0.98;
     }
 }
 

@@ -64,7 +64,7 @@ Block deflated(std::string name, std::span<const std::byte> bytes) {
     uLongf length = compressBound(bytes.size());
     std::vector<std::byte> stored(length);
     const int status = compress2(reinterpret_cast<Bytef*>(stored.data()), &length, bytes_of(bytes),
-                                 bytes.size(), Z_BEST_COMPRESSION);
+                                 bytes.size(), Z_DEFAULT_COMPRESSION);
     if (status != Z_OK) failed("web: block " + name + ": not enough memory to deflate it");
     stored.resize(length);
     return {std::move(name), "deflate", bytes.size(), std::move(stored)};

@@ -19,7 +19,7 @@ struct Block {
     std::vector<std::byte> stored{};
 };
 
-/// Deflates bytes at the highest level, in the format of zlib.
+/// Deflates bytes, in the format of zlib.
 Block deflated(std::string name, std::span<const std::byte> bytes);
 /// Bytes that are compressed already, or need not be.
 Block as_is(std::string name, std::string coding, std::vector<std::byte> bytes);

@@ -21,6 +21,9 @@ struct FarHorizons {
     std::vector<std::int16_t> hundredths;
 };
 
+inline constexpr double kFarBytes =
+    0.8 * 2 * FarHorizons::kNodes * FarHorizons::kNodes * FarHorizons::kAzimuths;  ///< deflated
+
 /// The ground around a part of a DEM. Immutable.
 class GroundAround {
   public:

@@ -67,14 +67,14 @@ void check_grid(const dem::Grid& grid) {
             "first");
 }
 
-std::size_t PageGround::bytes() const {
-    std::size_t sum = 0;
-    for (const Block& block : blocks)
-        sum += block.stored.size();
-    return sum;
+double bytes_of(const dem::Heightfield& ground) {
+    constexpr double kSkyView = 0.25;  // of what heights take
+    const Heights heights = in_steps(ground.height_m, step_m(ground));
+    return (1 + kSkyView) *
+           static_cast<double>(deflated("heights", planes_of(heights.value)).stored.size());
 }
 
-PageGround page_ground(const dem::Heightfield& ground, const GroundAround* around) {
+PageGround page_ground(const dem::Heightfield& ground, const FarHorizons* far) {
     const Heights heights = in_steps(ground.height_m, step_m(ground));
     const int columns = heights.value.width(), rows = heights.value.height();
     const glm::dvec2 spacing_m = ground.grid.post_spacing_m();
@@ -91,11 +91,11 @@ PageGround page_ground(const dem::Heightfield& ground, const GroundAround* aroun
     PageGround page{ground.grid, heights.step_m == 1 ? 0 : heights.step_m / 2, {}, {}};
     page.blocks = {deflated("heights", planes_of(heights.value)),
                    deflated("sky_view", sky_view(half))};
-    if (around) {
+    if (far) {
         about["far"] = {{"columns", FarHorizons::kNodes},
                         {"rows", FarHorizons::kNodes},
                         {"azimuths", FarHorizons::kAzimuths}};
-        page.blocks.push_back(deflated("far", little_endian(around->horizons(ground).hundredths)));
+        page.blocks.push_back(deflated("far", little_endian(far->hundredths)));
     }
     page.about = about.dump();
     return page;

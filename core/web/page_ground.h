@@ -23,13 +23,14 @@ struct PageGround {
     double height_error_m = 0;  ///< of the stored heights, at most
     std::string about;          ///< a JSON object
     std::vector<Block> blocks;  ///< heights, sky_view, and far where ground is around
-
-    std::size_t bytes() const;  ///< of the blocks
 };
 
+/// Bytes that a ground takes in a page, about, without ground around.
+double bytes_of(const dem::Heightfield& ground);
+
 /// @param ground  north-up, NaN in voids
-/// @param around  ground that shades this one too; null: none
+/// @param far     of ground around, by the same posts or others; null: none
 /// @throws Error (BadInput) where the CRS has no place for a post
-PageGround page_ground(const dem::Heightfield& ground, const GroundAround* around);
+PageGround page_ground(const dem::Heightfield& ground, const FarHorizons* far);
 
 }  // namespace relevo::web
