@@ -25,24 +25,15 @@ function horizonTowards(ground, x, y, azimuth) {
     if (t > best) best = t;
   }
   const angle = best === -Infinity ? -90 : Math.atan(best) / RAD;
-  return ground.far ? Math.max(angle, farAt(ground, x, y, azimuth)) : angle;
+  if (!ground.far) return angle;
+  const far = farTowards({...ground, columns: meta.size[0], rows: meta.size[1]}, () => azimuth);
+  return Math.max(angle, far(x / (meta.size[0] - 1), y / (meta.size[1] - 1), eye));
 }
 
 // A point with its horizon towards every half degree.
 function pointAt(ground, x, y) {
   const {meta} = ground, towards = azimuth => horizonTowards(ground, x, y, azimuth);
   return {meta, lat: gridValue(meta, 'lat', x, y), lon: gridValue(meta, 'lon', x, y), towards, horizon: Float32Array.from({length: 720}, (_, n) => towards(n / 2))};
-}
-
-// Horizon of the ground outside of the DEM [degrees], linear between nodes and azimuths.
-function farAt({meta, far}, x, y, azimuth) {
-  const u = x / (meta.size[0] - 1) * (far.columns - 1), v = y / (meta.size[1] - 1) * (far.rows - 1), a = azimuth / 360 * far.azimuths;
-  const c = Math.max(0, Math.min(far.columns - 2, Math.floor(u))), r = Math.max(0, Math.min(far.rows - 2, Math.floor(v))), n = Math.floor(a);
-  const at = (column, row) => {
-    const i = (row * far.columns + column) * far.azimuths;
-    return far.angle[i + n % far.azimuths] * (1 - a + n) + far.angle[i + (n + 1) % far.azimuths] * (a - n);
-  };
-  return ((at(c, r) * (1 - u + c) + at(c + 1, r) * (u - c)) * (1 - v + r) + (at(c, r + 1) * (1 - u + c) + at(c + 1, r + 1) * (u - c)) * (v - r)) / 100;
 }
 
 function clearance(point, unix) {

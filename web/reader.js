@@ -92,6 +92,9 @@ async function readHeights(container) {
 async function readFar(container) {
   const far = container.meta.far;
   if (!far || !container.find('far')) return null;
-  const raw = await inflated(container, 'far', 2 * far.columns * far.rows * far.azimuths);
-  return {...far, angle: new Int16Array(raw.slice().buffer)};
+  const count = far.columns * far.rows * far.azimuths, raw = await inflated(container, 'far', 2 * count);
+  const angle = Float32Array.from(new Int16Array(raw.slice().buffer), v => v / 100);
+  const least = 1 / Math.max(...container.meta.size.map((n, i) => n * container.meta.step_m[i] / (far.columns - 1)));
+  const steps = await inflated(container, 'far_steps', count);
+  return {...far, angle, nearness: Float32Array.from(steps, v => v === 255 ? 0 : Math.min(least, 1 / (far.nearest_m * far.step ** v)))};
 }

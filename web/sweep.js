@@ -91,26 +91,36 @@ function shareOf(x) {
   return x >= 0 ? 128 + Math.floor(127 * (2 * share - 1)) : Math.min(127, Math.floor(254 * share));
 }
 
-// Ground outside of the DEM: its horizon at the nodes of a coarse grid, towards the sun.
-function shadeByFar(job, light) {
-  const {columns, rows, far, suns, semidiameter} = job, over = new Float32Array(far.columns * far.rows);
-  const first = suns[0].azimuth, turned = suns.map(s => (s.azimuth - first + 540) % 360 - 180);
-  for (let r = 0, i = 0; r < far.rows; r++)
-    for (let c = 0; c < far.columns; c++, i++) {
-      const u = c / (far.columns - 1), v = r / (far.rows - 1);
-      const x = (first + cornerAt(turned, true, v, u) + 360) % 360 / 360 * far.azimuths, a = Math.floor(x), n = i * far.azimuths;
-      const angle = (far.angle[n + a % far.azimuths] * (1 - x + a) + far.angle[n + (a + 1) % far.azimuths] * (x - a)) / 100;
-      over[i] = cornerAt(suns.map(s => s.apparent), true, v, u) - angle;
-    }
-  for (let r = 0, i = 0; r < rows; r++) {
-    const y = r / Math.max(1, rows - 1) * (far.rows - 1), j = Math.min(far.rows - 2, Math.floor(y)), v = y - j;
-    for (let c = 0; c < columns; c++, i++) {
-      const x = c / Math.max(1, columns - 1) * (far.columns - 1), k = Math.min(far.columns - 2, Math.floor(x)), u = x - k;
-      const n = j * far.columns + k;
-      const o = (over[n] * (1 - u) + over[n + 1] * u) * (1 - v) + (over[n + far.columns] * (1 - u) + over[n + far.columns + 1] * u) * v;
-      if (o < semidiameter) light[i] = Math.min(light[i], shareOf(o / semidiameter));
-    }
+// The horizon of the ground outside of the DEM at the nodes of a coarse grid, as seen towards an azimuth from the ground
+// there, and how much it sinks for a metre more of the eye's height [degrees].
+function farTowards({far, columns, rows, height}, azimuthAt) {
+  const count = far.columns * far.rows, eye = new Float32Array(count), angle = new Float32Array(count), sinks = new Float32Array(count);
+  for (let i = 0; i < count; i++) {
+    const u = i % far.columns / (far.columns - 1), v = Math.floor(i / far.columns) / (far.rows - 1);
+    const h = height[Math.round(v * (rows - 1)) * columns + Math.round(u * (columns - 1))];
+    const x = azimuthAt(u, v) / 360 * far.azimuths, a = Math.floor(x), n = i * far.azimuths + a % far.azimuths, m = i * far.azimuths + (a + 1) % far.azimuths;
+    eye[i] = h === h ? h : 0;
+    angle[i] = far.angle[n] * (1 - x + a) + far.angle[m] * (x - a);
+    sinks[i] = h === h ? (far.nearness[n] * (1 - x + a) + far.nearness[m] * (x - a)) * 180 / Math.PI * Math.cos(angle[i] * Math.PI / 180) ** 2 : 0;
   }
+  // At a place, 0 to 1 along rows and columns, and a height.
+  return (u, v, h) => {
+    const x = u * (far.columns - 1), y = v * (far.rows - 1), c = Math.min(far.columns - 2, Math.floor(x)), r = Math.min(far.rows - 2, Math.floor(y));
+    const at = i => angle[i] - sinks[i] * (h - eye[i]), i = r * far.columns + c, p = x - c, q = y - r;
+    return (at(i) * (1 - p) + at(i + 1) * p) * (1 - q) + (at(i + far.columns) * (1 - p) + at(i + far.columns + 1) * p) * q;
+  };
+}
+
+function shadeByFar(job, light) {
+  const {columns, rows, height, suns, semidiameter} = job, apparent = suns.map(s => s.apparent);
+  const first = suns[0].azimuth, turned = suns.map(s => (s.azimuth - first + 540) % 360 - 180);
+  const horizon = farTowards(job, (u, v) => (first + cornerAt(turned, true, v, u) + 360) % 360);
+  for (let r = 0, i = 0; r < rows; r++)
+    for (let c = 0; c < columns; c++, i++) {
+      const u = c / Math.max(1, columns - 1), v = r / Math.max(1, rows - 1);
+      const over = cornerAt(apparent, true, v, u) - horizon(u, v, height[i]);
+      if (over < semidiameter) light[i] = Math.min(light[i], shareOf(over / semidiameter));
+    }
 }
 
 // In the worker: heights once, then suns. The answer carries the number of its request.

@@ -27,6 +27,14 @@ dem::Window window_around(const dem::Grid& all, const dem::Grid& part) {
     return {first.x, first.y, end.x - first.x + 1, end.y - first.y + 1};
 }
 
+std::uint8_t step_of(double distance_m) {
+    constexpr double kLast = 255;
+    if (std::isnan(distance_m)) return static_cast<std::uint8_t>(kLast);
+    const double step =
+        std::log(distance_m / FarHorizons::kNearest_m) / std::log(FarHorizons::kStep);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(step, 0.0, kLast)));
+}
+
 }  // namespace
 
 GroundAround::GroundAround(dem::Heightfield field) : field_(std::move(field)), posts_(field_) {}
@@ -65,9 +73,11 @@ FarHorizons GroundAround::horizons(const dem::Heightfield& ground) const {
                                             {.eye_height_m = std::isnan(eye_m) ? lowest_m : eye_m,
                                              .eye_above_ground = false,
                                              .around = &posts_});
-        for (const light::HorizonPoint& point : horizon.profile(FarHorizons::kAzimuths))
+        for (const light::HorizonPoint& point : horizon.profile(FarHorizons::kAzimuths)) {
             far.hundredths.push_back(
                 static_cast<std::int16_t>(std::lround(100 * degrees(point.elevation_rad))));
+            far.steps.push_back(step_of(point.distance_m));
+        }
     }
     return far;
 }

@@ -13,12 +13,16 @@
 /// The ground around a page's DEM, as horizons.
 namespace relevo::web {
 
-/// Horizons that the ground outside of a DEM makes for posts of it.
+/// Horizons that the ground outside of a DEM makes for posts of it, and how far off they are: so
+/// they hold for eyes higher and lower than those posts, too.
 struct FarHorizons {
     static constexpr int kNodes = 33;      ///< sides of the net of posts, from corner to corner
     static constexpr int kAzimuths = 120;  ///< clockwise from true north
     /// Of a degree, apparent: by row, column and azimuth.
     std::vector<std::int16_t> hundredths;
+    /// Distances in steps of 3 %, from kNearest_m on.
+    std::vector<std::uint8_t> steps;
+    static constexpr double kNearest_m = 100, kStep = 1.03;
 };
 
 inline constexpr double kFarBytes =

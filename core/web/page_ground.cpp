@@ -94,8 +94,11 @@ PageGround page_ground(const dem::Heightfield& ground, const FarHorizons* far) {
     if (far) {
         about["far"] = {{"columns", FarHorizons::kNodes},
                         {"rows", FarHorizons::kNodes},
-                        {"azimuths", FarHorizons::kAzimuths}};
+                        {"azimuths", FarHorizons::kAzimuths},
+                        {"nearest_m", FarHorizons::kNearest_m},
+                        {"step", FarHorizons::kStep}};
         page.blocks.push_back(deflated("far", little_endian(far->hundredths)));
+        page.blocks.push_back(deflated("far_steps", std::as_bytes(std::span(far->steps))));
     }
     page.about = about.dump();
     return page;
