@@ -62,7 +62,10 @@ void main() {
   vec3 sky = fill() * (.45 + .55 * n.y) * texture(open, uv).r, bounced = beam() * max(sun.y, 0.0) * .06;
   vec3 way = at - eye, d = normalize(way), c = albedo * (beam() * lit * max(dot(n, sun), 0.0) + sky + bounced);
   vec2 e = min(uv, 1.0 - uv);
-  result = vec4(shown(mix(backdrop(d), through(c, d, length(way)), smoothstep(0.0, .035, min(e.x, e.y)))), 1.0);
+  c = through(c, d, length(way));
+  float inside = smoothstep(0.0, .035, min(e.x, e.y));
+  if (inside < 1.0) c = mix(backdrop(d), c, inside);
+  result = vec4(shown(c), 1.0);
 }`;
 const SKY_VERTEX = `#version 300 es
 out vec2 p; void main() { p = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0; gl_Position = vec4(p, 1.0, 1.0); }`;
@@ -98,10 +101,11 @@ function normalsOf({meta, height}) {
 
 class Drawer {
   constructor(canvas, ground) {
-    const gl = this.gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
+    const gl = this.gl = canvas.getContext('webgl2', {antialias: false});
     if (!gl) throw Error('no WebGL2');
     this.ground = ground; this.bytes = 0; this.names = new Map();
     this.terrain = program(gl, GROUND_VERTEX, GROUND_FRAGMENT); this.sky = program(gl, SKY_VERTEX, SKY_FRAGMENT);
+    gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LEQUAL);   // the sky is drawn last, farthest
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1); gl.bindVertexArray(gl.createVertexArray());
     const [w, h] = ground.meta.size, count = w * h, filled = ground.height.map(v => v === v ? v : -1e9);
     this.texture(0, gl.R32F, w, h, gl.RED, gl.FLOAT, filled, gl.NEAREST, 4);
@@ -134,7 +138,7 @@ class Drawer {
     const gl = this.gl, {meta, base} = this.ground, [w, h] = meta.size, [sx, sy] = meta.step_m;
     const a = (sun.azimuth - gridValue(meta, 'convergence', w / 2, h / 2)) * RAD, e = sun.apparent * RAD;
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight); gl.clear(gl.DEPTH_BUFFER_BIT);
-    for (const p of [this.sky, this.terrain]) {
+    for (const p of [this.terrain, this.sky]) {
       const at = name => gl.getUniformLocation(p, name);
       gl.useProgram(p);
       gl.uniform3f(at('sun'), Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e));
@@ -142,12 +146,11 @@ class Drawer {
       gl.uniform2f(at('extent'), w * sx, h * sy); gl.uniform1f(at('air'), 0.75 / Math.hypot(w * sx, h * sy));
       ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(at(n), i));
       if (p === this.sky) {
-        gl.disable(gl.DEPTH_TEST); gl.uniformMatrix3fv(at('rays'), false, camera.rays); gl.drawArrays(gl.TRIANGLES, 0, 3);
+        gl.uniformMatrix3fv(at('rays'), false, camera.rays); gl.drawArrays(gl.TRIANGLES, 0, 3);
         continue;
       }
       gl.uniformMatrix4fv(at('clip'), false, camera.clip); gl.uniform3f(at('world'), sx, meta.exaggeration, sy);
       gl.uniform2i(at('size'), w, h); gl.uniform1i(at('every'), every); gl.uniform1f(at('base'), base);
-      gl.enable(gl.DEPTH_TEST);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (Math.ceil((w - 1) / every) + 1), Math.ceil((h - 1) / every));
     }
   }

@@ -72,16 +72,23 @@ async function start() {
     '+': () => view.set({distance: view.distance * 0.9}), '-': () => view.set({distance: view.distance * 1.1}), h: () => view.home(), n: () => view.set({azimuth: 180}), ' ': () => bar.toggle(), ',': () => bar.set(bar.unix - 600), '.': () => bar.set(bar.unix + 600)};
   addEventListener('keydown', e => { if (keys[e.key] && !/INPUT|BUTTON/.test(e.target.tagName)) { keys[e.key](); e.preventDefault(); } });
   canvas.addEventListener('webglcontextlost', e => { e.preventDefault(); lost = true; still('The graphics were reset by the system. Reload the page to go on.'); });
-  const frame = every => {
-    const ratio = Math.min(2, devicePixelRatio || 1), cw = Math.round(canvas.clientWidth * ratio), ch = Math.round(canvas.clientHeight * ratio);
+  const frame = (every, ratio) => {
+    const cw = Math.round(canvas.clientWidth * ratio), ch = Math.round(canvas.clientHeight * ratio);
     if (canvas.width !== cw || canvas.height !== ch) { canvas.width = cw; canvas.height = ch; }
     drawer.draw(view.camera(cw / ch), sun, every);
     $('needle').style.transform = `rotate(${180 - view.azimuth}deg)`;
   };
-  let coarse = false;
-  const loop = () => {
-    const moving = performance.now() - movedAt < 150, fine = Math.max(1, Math.round(Math.max(w, h) / 1200));
-    if (!lost && sun && (dirty || (coarse && !moving))) { dirty = false; coarse = moving; frame(moving ? Math.max(1, Math.round(Math.max(w, h) / 320)) : fine); }
+  // While something moves: as many pixels as the device draws 20 times a second. At rest: two for one of the layout.
+  let coarse = false, ratio = 1, last = 0;
+  const fine = Math.max(1, Math.round(Math.max(w, h) / 1200));
+  const loop = now => {
+    const moving = performance.now() - movedAt < 150, spent = now - last;
+    if (moving && coarse) ratio = Math.max(0.5, Math.min(2, ratio * (spent > 60 ? 0.8 : spent < 30 ? 1.1 : 1)));
+    last = now;
+    if (!lost && sun && (dirty || (coarse && !moving))) {
+      dirty = false; coarse = moving;
+      if (moving) frame(Math.max(1, Math.round(Math.max(w, h) / 320)), ratio); else frame(fine, 2);
+    }
     requestAnimationFrame(loop);
   };
   Object.assign(page, {ground, drawer, view, bar, frame, choose, at, start_ms: 0, light: null});
@@ -89,14 +96,14 @@ async function start() {
   const {t, x, z, az, tilt, d} = readHash();
   if (d) view.set({x: x || 0, z: z || 0, azimuth: az || 0, tilt: tilt || 20, distance: d});
   bar.set(t || Date.parse(meta.time) / 1000);
-  loop();
+  requestAnimationFrame(loop);
   page.start_ms = performance.now() - began;
   document.body.dataset.ready = '1';
 }
 
 // The picture with its place and date below.
 function print(canvas, meta, bar, frame) {
-  frame(1);
+  frame(1, 2);
   const out = document.createElement('canvas'), strip = Math.round(canvas.height / 18), g = out.getContext('2d');
   out.width = canvas.width; out.height = canvas.height + strip;
   g.fillStyle = '#12151c'; g.fillRect(0, 0, out.width, out.height);
