@@ -1,10 +1,12 @@
-"""Reads the data of a web page of Relevo (docs/web.md): python3 read_web.py DATA.rlvw
+"""Reads the data of a web page of Relevo (docs/web.md): python3 read_web.py PAGE.html
 
 read(bytes) returns the JSON as a dict and the blocks by name, as bytes. heights(about, blocks) returns metres, NaN in
 voids, row 0 first. Both raise ValueError, which names the block at fault.
 """
 
+import base64
 import json
+import re
 import struct
 import sys
 import zlib
@@ -15,6 +17,9 @@ VERSION = 1
 
 
 def read(data):
+    found = re.search(rb'id="data">([^<]*)<', data) if data[:1] == b"<" else None
+    if found:
+        data = base64.b64decode(found[1])
     if data[:4] != b"RLVW":
         raise ValueError("not the data of a web page of Relevo")
     if len(data) < 12:
@@ -63,4 +68,4 @@ if __name__ == "__main__":
         METRES = heights(ABOUT, BLOCKS)
     except ValueError as error:
         sys.exit(f"{sys.argv[1]}: {error}")
-    print(ABOUT["name"], METRES.tolist())
+    print(ABOUT["title"], METRES.tolist())

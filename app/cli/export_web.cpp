@@ -47,7 +47,7 @@ scene::Scene scene_of(const WebArguments& arguments) {
     scene::Scene scene = arguments.scene.scene();
     arguments.exaggeration.apply_to(scene, !arguments.scene.file.empty());
     const auto refuse = [](bool given, const char* option) {
-        if (given) bad_usage(fmt::format("{}: a page has a plain camera; leave it out", option));
+        if (given) bad_usage(fmt::format("{}: a web page has a plain camera; remove it", option));
     };
     refuse(scene.ortho, "--ortho");
     refuse(scene.view.panorama != scene::Panorama::None, "--panorama");
@@ -212,13 +212,13 @@ void add_export_web(Verb export_verb) {
     const auto arguments = std::make_shared<WebArguments>();
     arguments->endings = {"html"};
     const Verb verb = export_verb.add_verb(
-        "web", "A page that shows the DEM with its light, offline, in a browser");
+        "web", "Web page that shows the DEM with its light, offline, in a browser");
     arguments->exaggeration.add_to(verb);
     arguments->scene.add_to(verb);
-    verb.add_option("-o,--output", arguments->path, "Page to write, html").required();
+    verb.add_option("-o,--output", arguments->path, "Web page to write, html").required();
     verb.add_flag("--overwrite", arguments->overwrite, "Replace an existing file");
     verb.add_option("--megabytes", arguments->megabytes,
-                    "Most of a page, 10^6 bytes; larger DEMs become means (2.5)")
+                    "Most of a web page, 10^6 bytes; larger DEMs become means (2.5)")
         .check(in_range(0.3, 100));
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");

@@ -36,7 +36,7 @@ class Container : public testing::Test {
     std::string text(const std::string& name = "Alp") const {
         const Heights heights = in_steps(height_m_, 0.1);
         const nlohmann::ordered_json about = {
-            {"name", name},
+            {"title", name},
             {"size", {3, 2}},
             {"height", {{"min", heights.min_m}, {"step", heights.step_m}}}};
         const std::vector<std::byte> colour(5, std::byte{7});
