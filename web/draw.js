@@ -3,12 +3,12 @@
 
 // What both programs know: the sky, the light of sun and sky, the air, and the plain around the DEM.
 const LIGHT = `
-uniform vec3 sun, eye; uniform float sunUp, air; uniform vec2 extent; uniform sampler2D colour;
+uniform vec3 sun, eye; uniform float sunUp, air, exposure; uniform vec2 extent; uniform sampler2D colour;
 float day() { return smoothstep(-14.0, 8.0, sunUp); }
 vec3 skyOf(vec3 d) {
   float low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0), thin = 9.0 * exp(min(eye.y / 8000.0, 1.2));
-  vec3 zenith = mix(vec3(.006, .009, .022), vec3(.06, .20, .62), day());
-  vec3 rim = mix(vec3(.012, .018, .04), vec3(.46, .59, .88), day());
+  vec3 zenith = mix(vec3(.012, .018, .042), vec3(.06, .20, .62), day());
+  vec3 rim = mix(vec3(.024, .034, .07), vec3(.46, .59, .88), day());
   float towards = pow(max(0.0, dot(normalize(d.xz + 1e-5), normalize(sun.xz + 1e-5)) * .5 + .5), 2.0);
   rim = mix(rim, vec3(.95, .50, .26) * (.25 + day()), low * (.25 + .6 * towards));
   float glow = max(dot(d, sun), 0.0);
@@ -18,7 +18,7 @@ vec3 beam() {
   float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
   return 3.0 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
 }
-vec3 fill() { return mix(vec3(.010, .014, .030), vec3(.10, .14, .24), smoothstep(-12.0, 14.0, sunUp)); }
+vec3 fill() { return mix(vec3(.024, .032, .062), vec3(.10, .14, .24), smoothstep(-12.0, 14.0, sunUp)); }
 vec3 through(vec3 c, vec3 d, float far) {
   vec3 haze = skyOf(normalize(vec3(d.x, .01, d.z))) * vec3(.60, .66, .76);
   return mix(c, haze, 1.0 - exp(-pow(far * air, 1.6) * vec3(.85, .95, 1.1)));
@@ -33,7 +33,7 @@ vec3 backdrop(vec3 d) {
   return mix(ground, skyOf(vec3(d.x, 0.0, d.z)), smoothstep(-.05, 0.0, d.y));
 }
 vec3 shown(vec3 c) {
-  c = max(c, 0.0);
+  c = max(c, 0.0) * exposure;
   c = c * (2.51 * c + .03) / (c * (2.43 * c + .59) + .14);
   return mix(12.92 * c, 1.055 * pow(max(c, 1e-5), vec3(1. / 2.4)) - .055, step(.0031308, c));
 }`;
@@ -143,6 +143,7 @@ class Drawer {
       gl.useProgram(p);
       gl.uniform3f(at('sun'), Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e));
       gl.uniform1f(at('sunUp'), sun.apparent); gl.uniform3fv(at('eye'), camera.eye);
+      gl.uniform1f(at('exposure'), meta.exposure);
       gl.uniform2f(at('extent'), w * sx, h * sy); gl.uniform1f(at('air'), 0.75 / Math.hypot(w * sx, h * sy));
       ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(at(n), i));
       if (p === this.sky) {

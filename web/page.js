@@ -27,7 +27,8 @@ function readHash() {
 }
 
 async function start() {
-  const began = performance.now(), container = readContainer(bytesOfBase64($('data').textContent)), {meta} = container;
+  const began = performance.now(), {src} = $('data').dataset;
+  const container = readContainer(src ? new Uint8Array(await (await fetch(src)).arrayBuffer()) : bytesOfBase64($('data').textContent)), {meta} = container;
   const ground = {meta, height: await readHeights(container), far: await readFar(container)};
   ground.base = ground.height.reduce((a, h) => h < a ? h : a, Infinity);
   const [w, h] = meta.size, at = (c, r) => ({lat: gridValue(meta, 'lat', c, r), lon: gridValue(meta, 'lon', c, r)}), centre = at((w - 1) / 2, (h - 1) / 2);

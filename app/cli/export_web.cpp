@@ -31,9 +31,10 @@ namespace relevo::cli {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-constexpr double kMostSide = 2048;          // posts of a page, and pixels of its colour
-constexpr double kEnlarged = 2;             // pixels of its colour for a post, at most
-constexpr double kShareOfHeights = 0.7;     // of a page, at most
+constexpr double kMostSide = 2048;       // posts of a page, and pixels of its colour
+constexpr double kEnlarged = 2;          // pixels of its colour for a post, at most
+constexpr double kShareOfHeights = 0.7;  // of a page, at least where they need it
+constexpr double kDescription_bytes = 20e3;
 constexpr glm::ivec2 kStill_px{1200, 630};  // as previews of links are
 
 struct WebArguments : ResultArguments {
@@ -41,6 +42,7 @@ struct WebArguments : ResultArguments {
     ExaggerationArgument exaggeration;
     std::string device = "auto";
     double megabytes = 2.5;
+    bool folder = false;
 };
 
 scene::Scene scene_of(const WebArguments& arguments) {
@@ -97,7 +99,7 @@ image::Image8 colour_of(const session::Session& seen, const scene::Scene& shown,
     return colour;
 }
 
-web::Look look_of(const session::Session& session, const dem::Grid& grid) {
+web::Look look_of(const session::Session& session) {
     const scene::Camera& camera = session.camera();
     const geo::LocalFrame& frame = session.ground().frame;
     const geo::Geodetic eye = frame.to_geodetic(camera.eye_m);
@@ -105,8 +107,7 @@ web::Look look_of(const session::Session& session, const dem::Grid& grid) {
     const double east = glm::dot(camera.forward, axes.east);
     const double north = glm::dot(camera.forward, axes.north);
     const double up = std::clamp(glm::dot(camera.forward, axes.up), -1.0, 1.0);
-    return {.post = grid.post(eye),
-            .height_m = eye.height_m,
+    return {.eye = eye,
             .heading_deg = std::fmod(degrees(std::atan2(east, north)) + 360, 360),
             .pitch_deg = degrees(std::asin(up)),
             .fov_deg = degrees(camera.fov_y_rad)};
@@ -121,9 +122,9 @@ std::vector<std::string> credits_of(const session::Session& session, const scene
     return credits;
 }
 
-/// What the page shows, with the heights of `grid`.
+/// What the page shows on its heights.
 web::Content content_of(const WebArguments& arguments, const scene::Scene& given,
-                        const dem::Grid& grid, FilesInUse& files) {
+                        FilesInUse& files) {
     scene::Scene bare = given;
     bare.stamps = {.legend = given.stamps.legend};
     session::Session session(bare, {.device = arguments.device, .format = session::PictureFormat{}},
@@ -143,10 +144,11 @@ web::Content content_of(const WebArguments& arguments, const scene::Scene& given
     content.generator = kGenerator;
     content.credits = credits_of(session, given);
     content.exaggeration = shown.exaggeration;
-    content.look = look_of(session, grid);
+    content.exposure_ev = shown.exposure_ev;
+    content.look = look_of(session);
     content.utc = session.time();
     content.zone = times.of(shown).zone;
-    geo::Geodetic middle = grid.center();
+    geo::Geodetic middle = session.dem()->source->grid().center();
     const dem::Statistics& heights = session.dem()->to_draw().about.statistics;
     middle.height_m = (heights.min_m + heights.max_m) / 2;
     content.refraction = session.refraction(middle);
@@ -157,20 +159,27 @@ web::Content content_of(const WebArguments& arguments, const scene::Scene& given
 /// As many posts as fit into so many bytes: all, or means.
 web::PageGround ground_within(const dem::Source& source, const scene::Scene& scene,
                               double most_bytes) {
+    constexpr double kClose = 0.95;
     const auto around = web::GroundAround::of(scene.dems, scene.dem, source.grid());
+    const auto read = [&](double side) {
+        return output::read_ground(source, scene.dem,
+                                   {scene.holes, 1, posts_of(source.grid(), side), {}})
+            .field;
+    };
+    dem::Heightfield ground = read(kMostSide);
     std::optional<web::FarHorizons> far;
-    double side = kMostSide;
-    for (;;) {
-        const output::ExportedGround ground = output::read_ground(
-            source, scene.dem, {scene.holes, 1, posts_of(source.grid(), side), {}});
-        const dem::Grid& grid = ground.field.grid;
-        if (around && !far) {
-            far = around->horizons(ground.field);
-            most_bytes -= web::kFarBytes;
+    if (around) far = around->horizons(ground);
+    const double most_side = std::max(ground.grid.columns(), ground.grid.rows());
+    double side = most_side, share = most_bytes / web::bytes_of(ground);
+    for (int tries = 0;; ++tries) {
+        if (share < 1 || tries > 0) {
+            side = std::min(most_side, side * std::sqrt(share) * 0.99);
+            ground = read(side);
         }
-        const double share = most_bytes / web::bytes_of(ground.field);
-        if (share >= 1) return web::page_ground(ground.field, far ? &*far : nullptr);
-        side = std::max(grid.columns(), grid.rows()) * std::sqrt(share) * 0.98;
+        web::PageGround page = web::page_ground(ground, far ? &*far : nullptr);
+        share = most_bytes / page.bytes();
+        const bool is_close = side == most_side || share < 1 / kClose || tries >= 3;
+        if (share >= 1 && is_close) return page;
     }
 }
 
@@ -183,27 +192,65 @@ void print(const web::PageGround& ground, const dem::Grid& grid, std::size_t byt
                ground.height_error_m, static_cast<double>(bytes) / kMegabyte);
 }
 
-void write(const WebArguments& arguments) {
+/// Files of a web page: one, or three of a folder.
+struct Outputs {
+    OutputFile& page;
+    OutputFile* data = nullptr;
+    OutputFile* preview = nullptr;
+};
+
+constexpr const char *kDataName = "data.rlvw", *kPreviewName = "preview.jpg";
+
+Outputs open_outputs(const WebArguments& arguments, FilesInUse& files) {
+    const auto open = [&](const std::filesystem::path& path) -> OutputFile& {
+        return files.open_output(path, arguments.overwrite, "-o");
+    };
+    if (!arguments.folder) return {open(arguments.path)};
+    const std::filesystem::path folder = arguments.path;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        bad_input(
+            fmt::format("-o: {}: cannot be made, {}", printable(arguments.path), error.message()));
+    return {open(folder / "index.html"), &open(folder / kDataName), &open(folder / kPreviewName)};
+}
+
+/// @returns bytes of all files
+std::size_t write(const Outputs& outputs, const web::Content& content,
+                  const std::vector<std::byte>& data) {
+    const std::string page = outputs.data ? web::page(content.title, {kDataName, kPreviewName})
+                                          : web::page(content.title, data);
+    outputs.page.write(page);
+    if (!outputs.data) return page.size();
+    const std::vector<std::byte> preview = web::still_jpeg(content);
+    outputs.data->write(data);
+    outputs.preview->write(preview);
+    return page.size() + data.size() + preview.size();
+}
+
+void export_web(const WebArguments& arguments) {
     log::HeldNotices notices;
-    arguments.check_ending();
+    if (!arguments.folder) arguments.check_ending();
     const scene::Scene scene = scene_of(arguments);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
     dem::add_named(scene.dems, files);
-    OutputFile& file = files.open_output(arguments.path, arguments.overwrite, "-o");
-    dem::add_all(scene.dems, files);
     const dem::Source source = dem::Source::open(scene.dems, scene.dem);
     web::check_grid(source.grid());
+    const Outputs outputs = open_outputs(arguments, files);
+    dem::add_all(scene.dems, files);
     const double most_bytes =
         (arguments.megabytes * kMegabyte - static_cast<double>(web::page_overhead())) * 3 / 4;
-    const web::PageGround ground = ground_within(source, scene, kShareOfHeights * most_bytes);
-    const web::Content content = content_of(arguments, scene, ground.grid, files);
-    const std::string page = web::page(
-        content.title, web::page_data(ground, content, static_cast<std::size_t>(most_bytes)));
-    file.write(page);
+    const web::Content content = content_of(arguments, scene, files);
+    const web::PageGround ground =
+        ground_within(source, scene,
+                      most_bytes - std::min(web::bytes_of(content) + kDescription_bytes,
+                                            (1 - kShareOfHeights) * most_bytes));
+    const std::size_t bytes = write(
+        outputs, content, web::page_data(ground, content, static_cast<std::size_t>(most_bytes)));
     files.finish_outputs();
     notices.release();
-    print(ground, source.grid(), page.size());
+    print(ground, source.grid(), bytes);
 }
 
 }  // namespace
@@ -220,9 +267,11 @@ void add_export_web(Verb export_verb) {
     verb.add_option("--megabytes", arguments->megabytes,
                     "Most of a web page, 10^6 bytes; larger DEMs become means (2.5)")
         .check(in_range(0.3, 100));
+    verb.add_flag("--folder", arguments->folder,
+                  "-o names a folder for a server: index.html, its data, and a preview for links");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
-    verb.callback([arguments] { write(*arguments); });
+    verb.callback([arguments] { export_web(*arguments); });
 }
 
 }  // namespace relevo::cli

@@ -25,9 +25,6 @@ struct FarHorizons {
     static constexpr double kNearest_m = 100, kStep = 1.03;
 };
 
-inline constexpr double kFarBytes =
-    0.8 * 2 * FarHorizons::kNodes * FarHorizons::kNodes * FarHorizons::kAzimuths;  ///< deflated
-
 /// The ground around a part of a DEM. Immutable.
 class GroundAround {
   public:

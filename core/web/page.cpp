@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -51,11 +52,11 @@ std::string hash(std::string_view text) {
     return fmt::format("'sha256-{}'", base64(bytes));
 }
 
-std::string policy(const std::string& style, const std::string& script) {
+std::string policy(const std::string& style, const std::string& script, const char* connect) {
     return fmt::format(
         "default-src 'none'; script-src {}; style-src {}; worker-src blob:; img-src blob:; "
-        "connect-src 'none'; base-uri 'none'; form-action 'none'",
-        hash(script), hash(style));
+        "connect-src {}; base-uri 'none'; form-action 'none'",
+        hash(script), hash(style), connect);
 }
 
 /// Replaces each {{name}} of a text once: what is put in is not searched.
@@ -71,23 +72,43 @@ std::string filled(std::string_view text, const std::map<std::string_view, std::
     }
 }
 
-}  // namespace
+/// What differs between a web page of one file and one with files beside it.
+struct Differing {
+    std::string data, source, card;
+    const char* connect;
+};
 
-std::string page(const std::string& title, std::span<const std::byte> data) {
+std::string page(const std::string& title, Differing differing) {
     const std::string style = part("page.css"), sweep = part("sweep.js");
     std::string script;
     for (const char* const name : kScripts)
         script += part(name);
     return filled(part("page.html"), {{"title", escaped(title)},
-                                      {"policy", policy(style, script)},
+                                      {"policy", policy(style, script, differing.connect)},
+                                      {"card", std::move(differing.card)},
                                       {"style", style},
                                       {"sweep", sweep},
-                                      {"data", base64(data)},
+                                      {"source", std::move(differing.source)},
+                                      {"data", std::move(differing.data)},
                                       {"script", script}});
 }
 
+}  // namespace
+
+std::string page(const std::string& title, std::span<const std::byte> data) {
+    return page(title, {base64(data), "", "", "'none'"});
+}
+
+std::string page(const std::string& title, const Beside& files) {
+    return page(title, {"", fmt::format(" data-src=\"{}\"", files.data),
+                        fmt::format("\n<meta property=\"og:title\" content=\"{}\">"
+                                    "\n<meta property=\"og:image\" content=\"{}\">",
+                                    escaped(title), files.picture),
+                        "'self'"});
+}
+
 std::size_t page_overhead() {
-    return page("", {}).size();
+    return page("", std::span<const std::byte>()).size();
 }
 
 }  // namespace relevo::web

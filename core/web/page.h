@@ -15,6 +15,13 @@ namespace relevo::web {
 /// @throws Error (Failed) where a file of the page is missing
 std::string page(const std::string& title, std::span<const std::byte> data);
 
+/// The same with data and the picture of link cards in files beside it, for a server. It sends a
+/// request for the data.
+struct Beside {
+    std::string data, picture;  ///< names, which need no escape
+};
+std::string page(const std::string& title, const Beside& files);
+
 /// Bytes of a page without data.
 std::size_t page_overhead();
 /// Bytes that data take in a page.

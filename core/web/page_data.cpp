@@ -1,6 +1,7 @@
 #include "web/page_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -59,9 +60,10 @@ std::vector<std::byte> jpeg_within(image::Image8 image, std::size_t most_bytes) 
     }
 }
 
-ordered_json json_of(const Look& look) {
-    return {{"post", {look.post.x, look.post.y}},
-            {"height", look.height_m},
+ordered_json json_of(const Look& look, const dem::Grid& grid) {
+    const glm::dvec2 post = grid.post(look.eye);
+    return {{"post", {post.x, post.y}},
+            {"height", look.eye.height_m},
             {"heading", look.heading_deg},
             {"pitch", look.pitch_deg},
             {"fov", look.fov_deg}};
@@ -69,19 +71,29 @@ ordered_json json_of(const Look& look) {
 
 }  // namespace
 
+std::vector<std::byte> still_jpeg(const Content& content) {
+    return jpeg(content.still, kStillQuality);
+}
+
+double bytes_of(const Content& content) {
+    return static_cast<double>(jpeg(content.colour, kBestQuality).size() +
+                               still_jpeg(content).size());
+}
+
 std::vector<std::byte> page_data(const PageGround& ground, const Content& content,
                                  std::size_t most_bytes) {
     ordered_json about{{"title", content.title},
                        {"credits", content.credits},
                        {"made_by", content.generator},
                        {"exaggeration", content.exaggeration},
-                       {"view", json_of(content.look)},
+                       {"exposure", std::exp2(content.exposure_ev)},
+                       {"view", json_of(content.look, ground.grid)},
                        {"time", sun::to_iso(content.utc)},
                        {"zone", ordered_json::parse(zone_json(content.zone))},
                        {"refraction", ordered_json::parse(refraction_json(content.refraction))}};
     about.update(ordered_json::parse(ground.about));
     std::vector<Block> blocks = ground.blocks;
-    blocks.push_back(as_is("still", "jpeg", jpeg(content.still, kStillQuality)));
+    blocks.push_back(as_is("still", "jpeg", still_jpeg(content)));
     const std::size_t taken = container(about.dump(), blocks).size() + 200;  // a row of the table
     if (taken >= most_bytes)
         bad_input("export web: --megabytes: leaves no room for the ground's colour; expected more");

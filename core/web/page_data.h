@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <glm/vec2.hpp>
-
 #include "image/image.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
@@ -16,8 +14,7 @@ namespace relevo::web {
 
 /// How a page looks at the ground first.
 struct Look {
-    glm::dvec2 post{0};      ///< column and row under the eye, with fractions
-    double height_m = 0;     ///< of the eye; the ground's are exaggerated
+    geo::Geodetic eye;       ///< its height is among those of the ground as drawn: exaggerated
     double heading_deg = 0;  ///< clockwise from true north
     double pitch_deg = 0;    ///< above the horizontal
     double fov_deg = 40;     ///< from the bottom to the top of the picture
@@ -28,6 +25,7 @@ struct Content {
     std::string title, generator;
     std::vector<std::string> credits;
     double exaggeration = 1;
+    double exposure_ev = 0;  ///< of the picture, against that of ordinary ground
     Look look;
     sun::Instant utc;
     sun::Zone zone;
@@ -35,6 +33,12 @@ struct Content {
     image::Image8 colour;  ///< of all cells, north up: the ground without light
     image::Image8 still;   ///< the first view, for browsers without WebGL2
 };
+
+/// Bytes of a content at its best, about: colour and the still picture.
+double bytes_of(const Content& content);
+
+/// The first view as a JPEG.
+std::vector<std::byte> still_jpeg(const Content& content);
 
 /// @param most_bytes  of the result; the colour takes what the rest leaves of it
 /// @throws Error (BadInput) where there is no room for the colour

@@ -74,6 +74,13 @@ double bytes_of(const dem::Heightfield& ground) {
            static_cast<double>(deflated("heights", planes_of(heights.value)).stored.size());
 }
 
+double PageGround::bytes() const {
+    double sum = 0;
+    for (const Block& block : blocks)
+        sum += static_cast<double>(block.stored.size());
+    return sum;
+}
+
 PageGround page_ground(const dem::Heightfield& ground, const FarHorizons* far) {
     const Heights heights = in_steps(ground.height_m, step_m(ground));
     const int columns = heights.value.width(), rows = heights.value.height();

@@ -23,9 +23,12 @@ struct PageGround {
     double height_error_m = 0;  ///< of the stored heights, at most
     std::string about;          ///< a JSON object
     std::vector<Block> blocks;  ///< heights, sky_view, and far where ground is around
+
+    double bytes() const;  ///< of the blocks
 };
 
-/// Bytes that a ground takes in a page, about, without ground around.
+/// Bytes that a ground takes in a page, about: quicker than page_ground(), and without ground
+/// around.
 double bytes_of(const dem::Heightfield& ground);
 
 /// @param ground  north-up, NaN in voids

@@ -9,6 +9,8 @@ axe-core; without it the page's accessibility is not checked.
 import base64
 import csv
 import datetime
+import functools
+import http.server
 import json
 import os
 import pathlib
@@ -18,6 +20,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import zlib
 
@@ -287,6 +290,20 @@ class WebPage(unittest.TestCase):
         with opened(page_of(OURS), "--disable-3d-apis") as page:
             self.assertIn("no WebGL2", page.value("document.getElementById('message').textContent"))
             page.wait("document.getElementById('still').naturalWidth === 1200")
+
+    def test_a_folder_is_for_a_server(self):
+        folder = pathlib.Path(FOLDER.name) / "site"
+        relevo("export", "web", OURS, "--folder", "-o", folder)
+        self.assertEqual(sorted(p.name for p in folder.iterdir()), ["data.rlvw", "index.html", "preview.jpg"])
+        handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=folder)
+        handler.log_message = lambda *_: None
+        with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            url = f"http://127.0.0.1:{server.server_port}/"
+            with chromium.Page(url) as page:
+                page.wait("!!page.light")
+                self.assertEqual([r for r in page.requests() if "favicon" not in r], [url, url + "data.rlvw"])
+            server.shutdown()
 
     def test_a_hash_and_keys(self):
         path = page_of(OURS)

@@ -78,7 +78,7 @@ TEST(WebSite, RefractionIsLinearBetweenItsEntries) {
 }
 
 TEST(WebPageText, HasNothingOfItsTitleButText) {
-    const std::string text = page("</title>{{data}}&", {});
+    const std::string text = page("</title>{{data}}&", std::span<const std::byte>());
     EXPECT_THAT(text, HasSubstr("<title>&#60;/title>{{data}}&#38;</title>"));
     EXPECT_THAT(text, HasSubstr("connect-src 'none'"));
     EXPECT_THAT(text, Not(HasSubstr("unsafe")));
