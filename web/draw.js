@@ -18,7 +18,7 @@ vec3 beam() {
   float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
   return 3.0 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
 }
-vec3 fill() { return mix(vec3(.024, .032, .062), vec3(.10, .14, .24), smoothstep(-12.0, 14.0, sunUp)); }
+vec3 fill() { return mix(vec3(.024, .032, .062), vec3(.125, .17, .28), smoothstep(-12.0, 14.0, sunUp)); }
 vec3 through(vec3 c, vec3 d, float far) {
   vec3 haze = skyOf(normalize(vec3(d.x, .01, d.z))) * vec3(.60, .66, .76);
   return mix(c, haze, 1.0 - exp(-pow(far * air, 1.6) * vec3(.85, .95, 1.1)));
@@ -63,7 +63,7 @@ void main() {
   vec3 way = at - eye, d = normalize(way), c = albedo * (beam() * lit * max(dot(n, sun), 0.0) + sky + bounced);
   vec2 e = min(uv, 1.0 - uv);
   c = through(c, d, length(way));
-  float inside = smoothstep(0.0, .035, min(e.x, e.y));
+  float inside = smoothstep(0.0, .02, min(e.x, e.y));
   if (inside < 1.0) c = mix(backdrop(d), c, inside);
   result = vec4(shown(c), 1.0);
 }`;
