@@ -9,7 +9,7 @@ import re
 import sys
 
 RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "sky": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "overlay": 3, "names": 3, "effect": 3, "output": 4, "report": 4,
-        "scene": 4, "chart": 5, "figure": 5, "render": 6, "session": 7}
+        "scene": 4, "chart": 5, "figure": 5, "web": 5, "render": 6, "session": 7}
 
 # Library headers, and the only layers of core/ that may include them. What is not listed is free.
 OWNERS = {
@@ -25,7 +25,7 @@ OWNERS = {
     "libheif": (re.compile(r"libheif/"), {"image"}),
     "FFmpeg": (re.compile(r"lib(av|sw)"), {"film"}),
     "Cairo": (re.compile(r"cairo"), {"chart"}),
-    "zlib": (re.compile(r"zlib\.h"), {"climate", "names"}),
+    "zlib": (re.compile(r"zlib\.h"), {"climate", "names", "web"}),
     "utf8proc": (re.compile(r"utf8proc\.h"), {"names"}),
     "Expat": (re.compile(r"expat\.h"), {"dem"}),
     "libdeflate": (re.compile(r"libdeflate\.h"), {"image"}),

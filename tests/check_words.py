@@ -35,7 +35,7 @@ RULES = {
     "spells": r"\bspells?\b",
     "beyond the DEM, doubt": r"\bbeyond the DEM\b|\bdoubts?\b",
     "drape": r"\bdrap(e|es|ed|ing)\b",
-    "page": r"(?<!tile )\bpages?\b(?! (up|down)\b)",
+    "page": r"(?<!tile )(?<!web )\bpages?\b(?! (up|down)\b)",
     "patch net": r"\bpatch nets?\b",
     "picture (of the renderer)": None,
     "moment (a time)": r"\bmoments?\b",

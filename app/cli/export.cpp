@@ -49,11 +49,12 @@ output::ExportedGround ExportArguments::read(const std::optional<glm::ivec2>& si
 
 void add_export(Verb app) {
     const Verb verb =
-        app.add_verb("export", "Heightmaps, normal maps and meshes for other programs");
+        app.add_verb("export", "Heightmaps, normal maps, meshes and web pages for other programs");
     verb.require_verb(1);
     add_export_heightmap(verb);
     add_export_normals(verb);
     add_export_mesh(verb);
+    add_export_web(verb);
 }
 
 }  // namespace relevo::cli

@@ -44,5 +44,6 @@ inline constexpr const char* kGenerator = "Relevo " RELEVO_VERSION;
 void add_export_heightmap(Verb export_verb);
 void add_export_normals(Verb export_verb);
 void add_export_mesh(Verb export_verb);
+void add_export_web(Verb export_verb);
 
 }  // namespace relevo::cli

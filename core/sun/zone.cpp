@@ -229,6 +229,17 @@ TimeSpan Zone::day(Date date) const {
                           to_string(date), name_));
 }
 
+std::vector<OffsetChange> Zone::offsets(const TimeSpan& span) const {
+    std::vector<OffsetChange> changes;
+    const std::size_t last = period_at(span.end.unix_us());
+    for (std::size_t i = period_at(span.begin.unix_us()); i <= last; ++i) {
+        const Period& period = periods_[i];
+        changes.push_back({std::max(period.begin_us, span.begin.unix_us()) / kSecond_us,
+                           period.utc_offset_s, period.abbreviation});
+    }
+    return changes;
+}
+
 std::string zone_database_version() {
     std::ifstream file(fmt::format("{}/tzdata.zi", kDatabase));
     std::string line;

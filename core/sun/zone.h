@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sun/posix_rule.h"
 #include "sun/time.h"
 
 namespace relevo::sun {
@@ -79,6 +80,9 @@ class Zone {
     TimeSpan day(Date date) const;
     /// Likewise; nothing for a day that was skipped.
     std::optional<TimeSpan> find_day(Date date) const;
+
+    /// Offsets within a span of time; the first one begins with it.
+    std::vector<OffsetChange> offsets(const TimeSpan& span) const;
 
   private:
     explicit Zone(int utc_offset_s);

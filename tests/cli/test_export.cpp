@@ -160,6 +160,31 @@ TEST(ExportVerb, ResultsAppearTogetherOrNotAtAll) {
     EXPECT_EQ(bytes_of(dem), before);
 }
 
+TEST(ExportVerb, PagesHaveTheirDemAndSayWhatIsWrong) {
+    const std::string dem = bundled_dem(), html = out("a.html");
+    const Result run = relevo({"export", "web", dem, "-o", html, "--megabytes", "0.5"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("posts       403 x 344\n"), std::string::npos) << run.out;
+    EXPECT_LE(bytes_of(html).size(), 500000U);
+    EXPECT_EQ(bytes_of(html).rfind("<!doctype html>", 0), 0U);
+    const auto fails = [&](std::vector<std::string> more, int status, const std::string& message) {
+        more.insert(more.begin(), {"export", "web", dem, "-o", out("b.html")});
+        expect_failure(more, status, message);
+        EXPECT_FALSE(std::filesystem::exists(out("b.html")));
+    };
+    fails({"--ortho"}, 2, "--ortho: a web page has a plain camera; remove it");
+    fails({"--panorama", "cylindrical"}, 2, "--panorama: a web page has a plain camera; remove it");
+    fails({"--megabytes", "0.2"}, 2,
+          "--megabytes: expected 0.3 to 100 but got 0.2; see relevo export web --help");
+    fails({"--view", "az=0,el=-80"}, 1,
+          "export web: the first view shows only sky; turn the camera");
+    expect_failure({"export", "web", dem, "-o", html}, 3,
+                   "-o: " + html + ": exists; pass --overwrite to replace it");
+    expect_failure(
+        {"export", "web", dem, "-o", dem, "--overwrite"}, 2,
+        "-o: " + dem + ": no format that this command writes, expected a name that ends in html");
+}
+
 TEST(ExportVerb, SaysWhatIsWrong) {
     const std::string dem = bundled_dem(), glb = out("a.glb"), stl = out("a.stl");
     const std::string see = "; see relevo export mesh --help";

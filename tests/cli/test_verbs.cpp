@@ -20,6 +20,7 @@ TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
                                                {"export", "heightmap"},
                                                {"export", "normals"},
                                                {"export", "mesh"},
+                                               {"export", "web"},
                                                {"plugins", "info"},
                                                {"sun", "position"},
                                                {"sun", "day"},
