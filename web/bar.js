@@ -15,7 +15,8 @@ class Bar {
       const day = Date.parse(this.date.value + 'T00:00Z') / 1000, t = day + 60 * this.hour.valueAsNumber;
       this.set(t - zoneOffset(meta.zone, t - zoneOffset(meta.zone, t)));
     });
-    for (const [id, minutes] of [['earlier', -10], ['later', 10]]) get(id).addEventListener('click', () => this.set(this.unix + 60 * minutes));
+    for (const [id, minutes] of [['earlier', -10], ['later', 10]])
+      get(id).addEventListener('click', () => this.set(this.unix + 60 * minutes));
     this.play.addEventListener('click', () => this.toggle());
   }
   get midnight() { return midnightOf(this.meta.zone, this.unix); }

@@ -118,7 +118,8 @@ class Drawer {
     const gl = this.gl;
     gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     gl.texImage2D(gl.TEXTURE_2D, 0, format, w, h, 0, channels, type, data);
-    for (const [k, v] of [[gl.TEXTURE_MIN_FILTER, filter], [gl.TEXTURE_MAG_FILTER, filter], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
+    for (const [k, v] of [[gl.TEXTURE_MIN_FILTER, filter], [gl.TEXTURE_MAG_FILTER, filter],
+      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
       gl.texParameteri(gl.TEXTURE_2D, k, v);
     this.bytes += w * h * bytes;
   }
@@ -128,7 +129,10 @@ class Drawer {
     gl.generateMipmap(gl.TEXTURE_2D); gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
     this.bytes += bitmap.width * bitmap.height * 4 * 4 / 3;
   }
-  setSkyView(bytes, {columns, rows}) { this.texture(4, this.gl.R8, columns, rows, this.gl.RED, this.gl.UNSIGNED_BYTE, bytes, this.gl.LINEAR, 1); }
+  setSkyView(bytes, {columns, rows}) {
+    const gl = this.gl;
+    this.texture(4, gl.R8, columns, rows, gl.RED, gl.UNSIGNED_BYTE, bytes, gl.LINEAR, 1);
+  }
   setLight(light) {
     const gl = this.gl, [w, h] = this.ground.meta.size;
     gl.activeTexture(gl.TEXTURE2); gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, w, h, gl.RED, gl.UNSIGNED_BYTE, light);

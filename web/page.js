@@ -8,7 +8,8 @@ function still(text) { for (const id of ['ground', 'bar', 'point', 'tools']) $(i
 
 function worker(ground) {
   const w = new Worker(URL.createObjectURL(new Blob([$('sweep').textContent], {type: 'text/javascript'})));
-  w.postMessage({columns: ground.meta.size[0], rows: ground.meta.size[1], step: ground.meta.step_m, height: ground.height, far: ground.far, semidiameter: 0.2666});
+  const {meta, height, far} = ground;
+  w.postMessage({columns: meta.size[0], rows: meta.size[1], step: meta.step_m, height, far, semidiameter: 0.2666});
   return w;
 }
 
@@ -23,20 +24,24 @@ function cornerSuns(meta, unix) {
 }
 
 function readHash() {
-  return Object.fromEntries(location.hash.slice(1).split('&').map(p => p.split('=')).filter(p => p.length === 2 && Number.isFinite(+p[1])).map(p => [p[0], +p[1]]));
+  const pairs = location.hash.slice(1).split('&').map(p => p.split('='));
+  return Object.fromEntries(pairs.filter(p => p.length === 2 && Number.isFinite(+p[1])).map(p => [p[0], +p[1]]));
 }
 
 async function start() {
   const began = performance.now(), {src} = $('data').dataset;
-  const container = readContainer(src ? new Uint8Array(await (await fetch(src)).arrayBuffer()) : bytesOfBase64($('data').textContent)), {meta} = container;
+  const bytes = src ? new Uint8Array(await (await fetch(src)).arrayBuffer()) : bytesOfBase64($('data').textContent);
+  const container = readContainer(bytes), {meta} = container;
   const ground = {meta, height: await readHeights(container), far: await readFar(container)};
   ground.base = ground.height.reduce((a, h) => h < a ? h : a, Infinity);
-  const [w, h] = meta.size, at = (c, r) => ({lat: gridValue(meta, 'lat', c, r), lon: gridValue(meta, 'lon', c, r)}), centre = at((w - 1) / 2, (h - 1) / 2);
+  const [w, h] = meta.size, at = (c, r) => ({lat: gridValue(meta, 'lat', c, r), lon: gridValue(meta, 'lon', c, r)});
+  const centre = at((w - 1) / 2, (h - 1) / 2);
   $('name').textContent = meta.title; $('credits').textContent = meta.credits.join(' · ');
   $('still').src = URL.createObjectURL(new Blob([container.block('still')], {type: 'image/jpeg'}));
   const canvas = $('ground'), drawer = new Drawer(canvas, ground), sweeper = worker(ground);
   if (container.find('colour')) drawer.setColour(await createImageBitmap(new Blob([container.block('colour')], {type: 'image/jpeg'})));
-  if (container.find('sky_view')) drawer.setSkyView(await inflated(container, 'sky_view', meta.sky_view.columns * meta.sky_view.rows), meta.sky_view);
+  const {columns, rows} = meta.sky_view;
+  drawer.setSkyView(await inflated(container, 'sky_view', columns * rows), meta.sky_view);
   let sun = null, wanted = null, busy = false, dirty = true, movedAt = 0, point = null, lost = false;
   const sweep = () => {
     if (busy || wanted === null) return;
@@ -48,8 +53,10 @@ async function start() {
   let remember = 0;
   const changed = () => {
     movedAt = performance.now(); dirty = true; clearTimeout(remember);
-    remember = setTimeout(() => history.replaceState(null, '', '#' + Object.entries({t: Math.round(bar.unix), x: view.x, z: view.z, az: view.azimuth, tilt: view.tilt, d: view.distance})
-      .map(([k, v]) => k + '=' + +v.toFixed(2)).join('&')), 250);
+    remember = setTimeout(() => {
+      const values = {t: Math.round(bar.unix), x: view.x, z: view.z, az: view.azimuth, tilt: view.tilt, d: view.distance};
+      history.replaceState(null, '', '#' + Object.entries(values).map(([k, v]) => k + '=' + +v.toFixed(2)).join('&'));
+    }, 250);
   };
   const bar = new Bar(meta, centre, s => { sun = s; wanted = bar.unix; sweep(); changed(); if (point) tell(); });
   const view = new View(ground, () => {});
@@ -65,14 +72,26 @@ async function start() {
     $('where').textContent = placeText(point, hit.height); $('point').hidden = false;
     tell(); drawCarpet($('carpet'), point, bar.unix);
   };
-  const placeText = (p, height) => `${Math.abs(p.lat).toFixed(5)}° ${p.lat < 0 ? 'S' : 'N'}  ${Math.abs(p.lon).toFixed(5)}° ${p.lon < 0 ? 'W' : 'E'}  ${Math.round(height)} m`;
-  listen(canvas, view, p => choose(view.pick(...p)), p => { const hit = view.pick(...p); $('cursor').textContent = hit ? placeText(at(hit.column, hit.row), hit.height) : ''; });
+  const degrees = (value, [plus, minus]) => `${Math.abs(value).toFixed(5)}° ${value < 0 ? minus : plus}`;
+  const placeText = (p, height) => `${degrees(p.lat, 'NS')}  ${degrees(p.lon, 'EW')}  ${Math.round(height)} m`;
+  listen(canvas, view, p => choose(view.pick(...p)), p => {
+    const hit = view.pick(...p);
+    $('cursor').textContent = hit ? placeText(at(hit.column, hit.row), hit.height) : '';
+  });
   $('home').onclick = () => view.home(); $('north').onclick = () => view.set({azimuth: 180}); $('close').onclick = () => choose(null);
   $('print').onclick = () => print(canvas, meta, bar, frame);
-  const keys = {ArrowLeft: () => view.set({azimuth: view.azimuth + 5}), ArrowRight: () => view.set({azimuth: view.azimuth - 5}), ArrowUp: () => view.set({tilt: view.tilt + 3}), ArrowDown: () => view.set({tilt: view.tilt - 3}),
-    '+': () => view.set({distance: view.distance * 0.9}), '-': () => view.set({distance: view.distance * 1.1}), h: () => view.home(), n: () => view.set({azimuth: 180}), ' ': () => bar.toggle(), ',': () => bar.set(bar.unix - 600), '.': () => bar.set(bar.unix + 600)};
+  const keys = {
+    ArrowLeft: () => view.set({azimuth: view.azimuth + 5}), ArrowRight: () => view.set({azimuth: view.azimuth - 5}),
+    ArrowUp: () => view.set({tilt: view.tilt + 3}), ArrowDown: () => view.set({tilt: view.tilt - 3}),
+    '+': () => view.set({distance: view.distance * 0.9}), '-': () => view.set({distance: view.distance * 1.1}),
+    h: () => view.home(), n: () => view.set({azimuth: 180}),
+    ' ': () => bar.toggle(), ',': () => bar.set(bar.unix - 600), '.': () => bar.set(bar.unix + 600),
+  };
   addEventListener('keydown', e => { if (keys[e.key] && !/INPUT|BUTTON/.test(e.target.tagName)) { keys[e.key](); e.preventDefault(); } });
-  canvas.addEventListener('webglcontextlost', e => { e.preventDefault(); lost = true; still('The graphics were reset by the system. Reload the page to go on.'); });
+  canvas.addEventListener('webglcontextlost', e => {
+    e.preventDefault(); lost = true;
+    still('The graphics were reset by the system. Reload the page to go on.');
+  });
   const frame = (every, ratio) => {
     const cw = Math.round(canvas.clientWidth * ratio), ch = Math.round(canvas.clientHeight * ratio);
     if (canvas.width !== cw || canvas.height !== ch) { canvas.width = cw; canvas.height = ch; }
@@ -110,7 +129,9 @@ function print(canvas, meta, bar, frame) {
   g.fillStyle = '#12151c'; g.fillRect(0, 0, out.width, out.height);
   g.drawImage(canvas, 0, 0);
   g.fillStyle = '#e6e8ee'; g.font = `${Math.round(strip * 0.42)}px system-ui, sans-serif`; g.textBaseline = 'middle';
-  g.fillText(`${meta.title} · ${dayText(meta.zone, bar.unix)} ${clock(meta.zone, bar.unix)} ${zoneText(meta.zone, bar.unix)} · ${meta.credits.join(' · ')}`, strip / 2, canvas.height + strip / 2, out.width - strip);
+  const {zone} = meta, time = `${dayText(zone, bar.unix)} ${clock(zone, bar.unix)} ${zoneText(zone, bar.unix)}`;
+  const text = [meta.title, time, ...meta.credits].join(' · ');
+  g.fillText(text, strip / 2, canvas.height + strip / 2, out.width - strip);
   out.toBlob(blob => { const a = document.createElement('a'); a.href = URL.createObjectURL(blob); a.download = 'picture.png'; a.click(); });
 }
 

@@ -33,7 +33,8 @@ function horizonTowards(ground, x, y, azimuth) {
 // A point with its horizon towards every half degree.
 function pointAt(ground, x, y) {
   const {meta} = ground, towards = azimuth => horizonTowards(ground, x, y, azimuth);
-  return {meta, lat: gridValue(meta, 'lat', x, y), lon: gridValue(meta, 'lon', x, y), towards, horizon: Float32Array.from({length: 720}, (_, n) => towards(n / 2))};
+  const horizon = Float32Array.from({length: 720}, (_, n) => towards(n / 2));
+  return {meta, lat: gridValue(meta, 'lat', x, y), lon: gridValue(meta, 'lon', x, y), towards, horizon};
 }
 
 function clearance(point, unix) {
@@ -69,7 +70,8 @@ function drawCarpet(canvas, point, unix) {
   for (let d = 0; d < 365; d++)
     for (let q = 0; q < 96; q++) {
       const t = first + d * 86400 + q * 900 + 450, s = sunAt(point.meta, t, point.lat, point.lon);
-      const colour = clearance(point, t) > 0 ? [242, 184, 75] : s.apparent > 0 ? [70, 66, 74] : s.apparent > -6 ? [44, 42, 66] : [18, 20, 30];
+      const dark = s.apparent > 0 ? [70, 66, 74] : s.apparent > -6 ? [44, 42, 66] : [18, 20, 30];
+      const colour = clearance(point, t) > 0 ? [242, 184, 75] : dark;
       image.data.set([...colour, 255], ((95 - q) * 365 + d) * 4);
     }
   g.putImageData(image, 0, 0);

@@ -8,7 +8,8 @@ function sweepFields(job) {
   const {columns, rows, step, suns} = job, mean = {x: 0, y: 0};
   const ways = suns.map(s => {
     const a = (s.azimuth - s.convergence) * Math.PI / 180;  // from the rows' up direction
-    return {x: Math.sin(a) / (step[0] * s.stretch[0]), y: -Math.cos(a) / (step[1] * s.stretch[1]), tangent: Math.tan(s.apparent * Math.PI / 180)};
+    const x = Math.sin(a) / (step[0] * s.stretch[0]), y = -Math.cos(a) / (step[1] * s.stretch[1]);
+    return {x, y, tangent: Math.tan(s.apparent * Math.PI / 180)};
   });
   for (const w of ways) { mean.x += w.x; mean.y += w.y; }
   const byRows = Math.abs(mean.y) >= Math.abs(mean.x);
@@ -98,14 +99,17 @@ function farTowards({far, columns, rows, height}, azimuthAt) {
   for (let i = 0; i < count; i++) {
     const u = i % far.columns / (far.columns - 1), v = Math.floor(i / far.columns) / (far.rows - 1);
     const h = height[Math.round(v * (rows - 1)) * columns + Math.round(u * (columns - 1))];
-    const x = azimuthAt(u, v) / 360 * far.azimuths, a = Math.floor(x), n = i * far.azimuths + a % far.azimuths, m = i * far.azimuths + (a + 1) % far.azimuths;
-    eye[i] = h === h ? h : 0;
-    angle[i] = far.angle[n] * (1 - x + a) + far.angle[m] * (x - a);
-    sinks[i] = h === h ? (far.nearness[n] * (1 - x + a) + far.nearness[m] * (x - a)) * 180 / Math.PI * Math.cos(angle[i] * Math.PI / 180) ** 2 : 0;
+    const x = azimuthAt(u, v) / 360 * far.azimuths, a = Math.floor(x), first = i * far.azimuths;
+    const between = of => of[first + a % far.azimuths] * (1 - x + a) + of[first + (a + 1) % far.azimuths] * (x - a);
+    angle[i] = between(far.angle);
+    if (h !== h) continue;
+    eye[i] = h;
+    sinks[i] = between(far.nearness) * 180 / Math.PI * Math.cos(angle[i] * Math.PI / 180) ** 2;
   }
   // At a place, 0 to 1 along rows and columns, and a height.
   return (u, v, h) => {
-    const x = u * (far.columns - 1), y = v * (far.rows - 1), c = Math.min(far.columns - 2, Math.floor(x)), r = Math.min(far.rows - 2, Math.floor(y));
+    const x = u * (far.columns - 1), c = Math.min(far.columns - 2, Math.floor(x));
+    const y = v * (far.rows - 1), r = Math.min(far.rows - 2, Math.floor(y));
     const at = i => angle[i] - sinks[i] * (h - eye[i]), i = r * far.columns + c, p = x - c, q = y - r;
     return (at(i) * (1 - p) + at(i + 1) * p) * (1 - q) + (at(i + far.columns) * (1 - p) + at(i + far.columns + 1) * p) * q;
   };

@@ -29,17 +29,22 @@ class View {
   }
   // The camera stands at `azimuth` from its target, `tilt` degrees high.
   camera(aspect) {
-    const {ground} = this, {meta} = ground, a = (this.azimuth - gridValue(meta, 'convergence', meta.size[0] / 2, meta.size[1] / 2)) * RAD, t = this.tilt * RAD;
-    const [c, r] = this.post(this.x, this.z), target = [this.x, ((heightAt(ground, c, r) || ground.base) - ground.base) * meta.exaggeration, this.z];
-    const back = [Math.sin(a) * Math.cos(t), Math.sin(t), -Math.cos(a) * Math.cos(t)], eye = target.map((v, i) => v + back[i] * this.distance);
+    const {ground} = this, {meta, base} = ground, north = gridValue(meta, 'convergence', meta.size[0] / 2, meta.size[1] / 2);
+    const a = (this.azimuth - north) * RAD, t = this.tilt * RAD, [c, r] = this.post(this.x, this.z);
+    const target = [this.x, ((heightAt(ground, c, r) || base) - base) * meta.exaggeration, this.z];
+    const back = [Math.sin(a) * Math.cos(t), Math.sin(t), -Math.cos(a) * Math.cos(t)];
+    const eye = target.map((v, i) => v + back[i] * this.distance);
     const right = [-Math.cos(a), 0, -Math.sin(a)], up = [-Math.sin(a) * Math.sin(t), Math.cos(t), Math.cos(a) * Math.sin(t)];
-    const ty = Math.tan(meta.view.fov / 2 * RAD) * Math.min(1.5, Math.max(1, 1.2 / aspect)), tx = ty * aspect, near = this.distance / 100, far = this.span * 4;
+    const ty = Math.tan(meta.view.fov / 2 * RAD) * Math.min(1.5, Math.max(1, 1.2 / aspect)), tx = ty * aspect;
+    const near = this.distance / 100, far = this.span * 4;
     const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2], k = (far + near) / (near - far), clip = new Float32Array(16);
     [right, up, back].forEach((axis, row) => axis.forEach((v, col) => {
       if (row < 2) clip[col * 4 + row] = v / (row ? ty : tx); else { clip[col * 4 + 2] = v * k; clip[col * 4 + 3] = -v; }
     }));
-    clip[12] = -dot(right, eye) / tx; clip[13] = -dot(up, eye) / ty; clip[14] = -dot(back, eye) * k + 2 * far * near / (near - far); clip[15] = dot(back, eye);
-    return {eye, clip, right, up, back, tx, ty, rays: new Float32Array([...right.map(v => v * tx), ...up.map(v => v * ty), ...back.map(v => -v)])};
+    clip[12] = -dot(right, eye) / tx; clip[13] = -dot(up, eye) / ty;
+    clip[14] = -dot(back, eye) * k + 2 * far * near / (near - far); clip[15] = dot(back, eye);
+    const rays = new Float32Array([...right.map(v => v * tx), ...up.map(v => v * ty), ...back.map(v => -v)]);
+    return {eye, clip, rays};
   }
   post(x, z) { const {size: [w, h], step_m: [sx, sy]} = this.ground.meta; return [x / sx + (w - 1) / 2, z / sy + (h - 1) / 2]; }
   // How far along a ray the ground is [lengths of the ray's direction], or null.
@@ -72,7 +77,10 @@ class View {
 function listen(canvas, view, click, hover) {
   const fingers = new Map();
   let moved = 0;
-  const place = e => { const b = canvas.getBoundingClientRect(); return [(e.clientX - b.left) / b.width * 2 - 1, 1 - (e.clientY - b.top) / b.height * 2, b.width / b.height]; };
+  const place = e => {
+    const b = canvas.getBoundingClientRect();
+    return [(e.clientX - b.left) / b.width * 2 - 1, 1 - (e.clientY - b.top) / b.height * 2, b.width / b.height];
+  };
   canvas.addEventListener('pointerdown', e => { canvas.setPointerCapture(e.pointerId); fingers.set(e.pointerId, e); moved = 0; });
   canvas.addEventListener('pointermove', e => {
     const old = fingers.get(e.pointerId);
@@ -81,8 +89,10 @@ function listen(canvas, view, click, hover) {
     moved += Math.abs(dx) + Math.abs(dy);
     if (fingers.size === 2) {
       const other = [...fingers.values()].find(f => f.pointerId !== e.pointerId);
-      const gap = f => Math.hypot(f.clientX - other.clientX, f.clientY - other.clientY), turn = f => Math.atan2(f.clientY - other.clientY, f.clientX - other.clientX);
-      view.set({distance: view.distance * gap(old) / Math.max(1, gap(e)), azimuth: view.azimuth - (turn(e) - turn(old)) / RAD, tilt: view.tilt + dy * 0.15});
+      const gap = f => Math.hypot(f.clientX - other.clientX, f.clientY - other.clientY);
+      const turn = f => Math.atan2(f.clientY - other.clientY, f.clientX - other.clientX);
+      const azimuth = view.azimuth - (turn(e) - turn(old)) / RAD;
+      view.set({distance: view.distance * gap(old) / Math.max(1, gap(e)), azimuth, tilt: view.tilt + dy * 0.15});
     } else if (e.shiftKey || e.buttons & 6) view.pan(dx, dy, canvas.clientHeight);
     else view.set({azimuth: view.azimuth + dx * 0.25, tilt: view.tilt + dy * 0.2});
     fingers.set(e.pointerId, e);
@@ -90,5 +100,8 @@ function listen(canvas, view, click, hover) {
   const up = e => { if (fingers.delete(e.pointerId) && e.type === 'pointerup' && moved < 6 && !fingers.size) click(place(e)); };
   canvas.addEventListener('pointerup', up); canvas.addEventListener('pointercancel', up);
   canvas.addEventListener('contextmenu', e => e.preventDefault());
-  canvas.addEventListener('wheel', e => { e.preventDefault(); view.set({distance: view.distance * Math.exp(e.deltaY * 0.001)}); }, {passive: false});
+  canvas.addEventListener('wheel', e => {
+    e.preventDefault();
+    view.set({distance: view.distance * Math.exp(e.deltaY * 0.001)});
+  }, {passive: false});
 }
