@@ -3,7 +3,7 @@
 
 // What both programs know: the sky, the light of sun and sky, the air, and the plain around the DEM.
 const LIGHT = `
-uniform vec3 sun, eye; uniform float sunUp, air, exposure; uniform vec2 extent; uniform sampler2D colour;
+uniform vec3 sun, eye, beam, fill; uniform float sunUp, air, exposure; uniform vec2 extent; uniform sampler2D colour;
 float day() { return smoothstep(-14.0, 8.0, sunUp); }
 vec3 skyOf(vec3 d) {
   float low = exp(-pow((sunUp - 1.0) / 7.0, 2.0)), up = max(d.y, 0.0), thin = 9.0 * exp(min(eye.y / 8000.0, 1.2));
@@ -14,13 +14,9 @@ vec3 skyOf(vec3 d) {
   float glow = max(dot(d, sun), 0.0);
   return mix(rim, zenith, 1.0 - exp(-thin * up)) + vec3(1., .72, .42) * day() * (.10 * pow(glow, 24.0) + .5 * pow(glow, 900.0));
 }
-vec3 beam() {
-  float mass = 1.0 / (max(sin(radians(sunUp)), 0.0) + .15 * pow(max(sunUp, 0.0) + 3.885, -1.253));
-  return 3.0 * exp(-vec3(.07, .12, .24) * mass) * smoothstep(-.8, .3, sunUp);
-}
-vec3 fill() { return mix(vec3(.024, .032, .062), vec3(.125, .17, .28), smoothstep(-12.0, 14.0, sunUp)); }
-vec3 through(vec3 c, vec3 d, float far) {
-  vec3 haze = skyOf(normalize(vec3(d.x, .01, d.z))) * vec3(.60, .66, .76);
+vec3 hazeTowards(vec3 d) { return skyOf(normalize(vec3(d.x, .01, d.z))) * vec3(.60, .66, .76); }
+vec3 linear(vec3 shown) { return shown * shown * (.78 + .22 * shown); }   // within 0.01 of sRGB
+vec3 through(vec3 c, vec3 haze, float far) {
   return mix(c, haze, 1.0 - exp(-pow(far * air, 1.6) * vec3(.85, .95, 1.1)));
 }
 vec3 backdrop(vec3 d) {
@@ -28,43 +24,46 @@ vec3 backdrop(vec3 d) {
   float far = eye.y / -d.y;
   vec2 at = (eye.xz + d.xz * far) / extent + .5, near = clamp(at, .05, .95);
   float broad = log2(float(textureSize(colour, 0).x)) - 3.0 + length(at - near);
-  vec3 albedo = pow(textureLod(colour, near, broad).rgb, vec3(2.2));
-  vec3 ground = through(albedo * (beam() * max(sun.y, 0.0) + fill()), d, far);
+  vec3 albedo = linear(textureLod(colour, near, broad).rgb);
+  vec3 ground = through(albedo * (beam * max(sun.y, 0.0) + fill), hazeTowards(d), far);
   return mix(ground, skyOf(vec3(d.x, 0.0, d.z)), smoothstep(-.05, 0.0, d.y));
 }
 vec3 shown(vec3 c) {
   c = max(c, 0.0) * exposure;
   c = c * (2.51 * c + .03) / (c * (2.43 * c + .59) + .14);
-  return mix(12.92 * c, 1.055 * pow(max(c, 1e-5), vec3(1. / 2.4)) - .055, step(.0031308, c));
+  vec3 a = sqrt(c), b = sqrt(a), d = sqrt(b);   // of sRGB's power, within 0.003
+  return .662002687 * a + .684122060 * b - .323583601 * d - .0225411470 * c;
 }`;
 const GROUND_VERTEX = `#version 300 es
 precision highp float; precision highp sampler2D;
+${LIGHT}
 uniform sampler2D heights; uniform mat4 clip; uniform vec3 world; uniform ivec2 size; uniform int every; uniform float base;
-out vec2 uv; out vec3 at; out float solid;
+out vec2 uv; out vec3 at, haze; out float solid;
 void main() {
   ivec2 p = min(ivec2((gl_VertexID >> 1), gl_InstanceID + (gl_VertexID & 1)) * every, size - 1);
   float h = texelFetch(heights, p, 0).r;
   solid = h < -1e8 ? 0.0 : 1.0;
   uv = (vec2(p) + .5) / vec2(size);
   at = vec3(float(p.x) - float(size.x - 1) * .5, max(h, base) - base, float(p.y) - float(size.y - 1) * .5) * world;
+  haze = hazeTowards(at - eye);
   gl_Position = clip * vec4(at, 1.0);
 }`;
 const GROUND_FRAGMENT = `#version 300 es
 precision highp float;
 uniform sampler2D normals, light, open;
-in vec2 uv; in vec3 at; in float solid; out vec4 result;
+in vec2 uv; in vec3 at, haze; in float solid; out vec4 result;
 ${LIGHT}
 void main() {
   if (solid < 0.99) discard;
   vec2 n2 = texture(normals, uv).rg * 2.0 - 1.0;
-  vec3 n = vec3(n2.x, sqrt(max(0.0, 1.0 - dot(n2, n2))), n2.y), albedo = pow(texture(colour, uv).rgb, vec3(2.2));
+  vec3 n = vec3(n2.x, sqrt(max(0.0, 1.0 - dot(n2, n2))), n2.y), albedo = linear(texture(colour, uv).rgb);
   float lit = clamp((texture(light, uv).r - .02) * 1.04, 0.0, 1.0);
-  vec3 sky = fill() * (.45 + .55 * n.y) * texture(open, uv).r, bounced = beam() * max(sun.y, 0.0) * .06;
-  vec3 way = at - eye, d = normalize(way), c = albedo * (beam() * lit * max(dot(n, sun), 0.0) + sky + bounced);
+  vec3 sky = fill * (.45 + .55 * n.y) * texture(open, uv).r, bounced = beam * max(sun.y, 0.0) * .06;
+  vec3 c = albedo * (beam * lit * max(dot(n, sun), 0.0) + sky + bounced);
   vec2 e = min(uv, 1.0 - uv);
-  c = through(c, d, length(way));
+  c = through(c, haze, length(at - eye));
   float inside = smoothstep(0.0, .02, min(e.x, e.y));
-  if (inside < 1.0) c = mix(backdrop(d), c, inside);
+  if (inside < 1.0) c = mix(backdrop(normalize(at - eye)), c, inside);
   result = vec4(shown(c), 1.0);
 }`;
 const SKY_VERTEX = `#version 300 es
@@ -74,6 +73,17 @@ precision highp float;
 in vec2 p; out vec4 result; uniform mat3 rays;
 ${LIGHT}
 void main() { result = vec4(shown(backdrop(normalize(rays * vec3(p, 1.0)))), 1.0); }`;
+
+const smooth = (low, high, x) => { const t = Math.max(0, Math.min(1, (x - low) / (high - low))); return t * t * (3 - 2 * t); };
+// Light of the sun after its way through the air, and of the sky, by the sun's elevation [degrees].
+function beamOf(up) {
+  const mass = 1 / (Math.max(0, Math.sin(up * RAD)) + 0.15 * (Math.max(up, 0) + 3.885) ** -1.253);
+  return [0.07, 0.12, 0.24].map(thick => 3 * Math.exp(-thick * mass) * smooth(-0.8, 0.3, up));
+}
+function fillOf(up) {
+  const day = smooth(-12, 14, up);
+  return [[0.024, 0.125], [0.032, 0.17], [0.062, 0.28]].map(([dark, bright]) => dark + (bright - dark) * day);
+}
 
 function program(gl, vertex, fragment) {
   const p = gl.createProgram();
@@ -148,6 +158,7 @@ class Drawer {
       gl.uniform3f(at('sun'), Math.sin(a) * Math.cos(e), Math.sin(e), -Math.cos(a) * Math.cos(e));
       gl.uniform1f(at('sunUp'), sun.apparent); gl.uniform3fv(at('eye'), camera.eye);
       gl.uniform1f(at('exposure'), meta.exposure);
+      gl.uniform3fv(at('beam'), beamOf(sun.apparent)); gl.uniform3fv(at('fill'), fillOf(sun.apparent));
       gl.uniform2f(at('extent'), w * sx, h * sy); gl.uniform1f(at('air'), 0.75 / Math.hypot(w * sx, h * sy));
       ['heights', 'normals', 'light', 'colour', 'open'].forEach((n, i) => gl.uniform1i(at(n), i));
       if (p === this.sky) {

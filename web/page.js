@@ -107,7 +107,7 @@ async function start() {
     last = now;
     if (!lost && sun && (dirty || (coarse && !moving))) {
       dirty = false; coarse = moving;
-      if (moving) frame(Math.max(1, Math.round(Math.max(w, h) / 320)), ratio); else frame(fine, 2);
+      if (moving) frame(Math.max(1, Math.round(Math.max(w, h) / 200)), ratio); else frame(fine, 2);
     }
     requestAnimationFrame(loop);
   };
