@@ -21,7 +21,7 @@ HIDDEN = re.compile(r"log::\w+|command\.\w+|Command|command|gl::\w+|texture|dept
                     r"|ImGui_Impl\w+")
 # (file, pattern of texts, why)
 ALLOWED = (
-    (".*", r"Relevo|\{\} - Relevo", "a name"),
+    (".*", r"Relevo( \{\})?|\{\} - Relevo", "a name"),
     (".*", r"view: .*", "messages of the command line, before there is a window"),
     ("document.cpp", r"relevo \w+|agl", "command lines"),
     ("effects_panel.cpp", r" is off: ", "part of a notice of core, to find it"),

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -9,14 +6,10 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/export.h"
-#include "mesh/write.h"
-#include "output/export_text.h"
-#include "output/terrain_mesh.h"
+#include "output/mesh_file.h"
 
 namespace relevo::cli {
 namespace {
-
-constexpr double kWidth_mm = 150;  // of a model that nothing else is said of
 
 struct ExportMeshArguments {
     ExportArguments shared;
@@ -52,35 +45,15 @@ void check(const ExportMeshArguments& arguments) {
         bad_usage("--scale and --width-mm exclude each other; use one");
 }
 
-struct Box {
-    glm::dvec3 low, high;
-    glm::dvec3 size() const { return high - low; }
-};
-
-Box box_of(const mesh::Surface& surface) {
-    glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
-    for (const glm::vec3& position : surface.position_m) {
-        low = glm::min(low, position);
-        high = glm::max(high, position);
-    }
-    return {low, high};
-}
-
-/// Of the model, for a metre on the ground.
-double mm_per_m(const ExportMeshArguments& arguments, const Box& box) {
-    if (!arguments.scale.empty()) return 1000 / parse_scale(arguments.scale);
-    return arguments.width_mm.value_or(kWidth_mm) / std::max(box.size().x, box.size().y);
-}
-
-void print(const output::TerrainMesh& mesh, const output::GroundFrame& frame, double error_m,
-           const Box& box) {
-    const glm::dvec3 size = box.size();
+void print(const output::MeshFile& file, double error_m) {
+    const output::TerrainMesh& mesh = file.mesh;
+    const glm::dvec3& size = file.size_m;
     fmt::print("triangles   {}, {} of them ground, for {} posts\n", mesh.surface.triangles(),
                mesh.ground_triangles, mesh.posts);
     fmt::print("error       worst {:.4g} m, mean {:.4g} m, allowed {:g} m\n", mesh.worst_m,
                mesh.mean_m, error_m);
     fmt::print("size        {:.1f} m east, {:.1f} m north, {:.1f} m up, {}\n", size.x, size.y,
-               size.z, frame.is_flat() ? "flat, in the plane of the CRS" : "on the round Earth");
+               size.z, file.is_flat ? "flat, in the plane of the CRS" : "on the round Earth");
     if (mesh.base_m)
         fmt::print("solid       base at {:g} m, {:.6g} m3\n", *mesh.base_m,
                    mesh::volume_m3(mesh.surface));
@@ -93,34 +66,25 @@ void write(ExportMeshArguments& arguments) {
     FilesInUse files;
     arguments.shared.open(files, /*scale_file=*/false);
     output::ExportedGround ground = arguments.shared.read(std::nullopt, "");
-    output::TerrainMeshOptions options;
-    options.name = ground.field.about.path;
-    options.error_m = arguments.error_m;
-    options.solid = !arguments.base.empty();
-    if (options.solid) options.base_m = parse_base(arguments.base);
-    if (options.base_m) *options.base_m *= ground.exaggeration;
-    options.max_triangles = arguments.shared.dem.options().memory.posts * 4 / mesh::kBytesATriangle;
-    const output::GroundFrame frame(ground.field.grid, arguments.flat || options.solid);
-    const output::TerrainMesh mesh =
-        output::terrain_mesh(std::move(ground.field.height_m), ground.field.grid, frame, options);
-    const Box box = box_of(mesh.surface);
-    const std::string name =
-        printable(std::filesystem::path(ground.field.about.path).stem().string());
-    const bool is_stl = arguments.shared.ending() == "stl";
-    const double scale = mm_per_m(arguments, box);
-    if (is_stl)
-        mesh::write_stl(arguments.shared.file(), mesh.surface,
-                        fmt::format("{}: {}, 1:{:.6g}, mm", kGenerator, name, 1000 / scale), scale);
-    else
-        mesh::write_glb(arguments.shared.file(), mesh.surface,
-                        {kGenerator, name,
-                         output::mesh_json(ground, kGenerator, frame, mesh, arguments.error_m)});
+    output::MeshFileOptions options{.generator = kGenerator,
+                                    .is_stl = arguments.shared.ending() == "stl"};
+    output::TerrainMeshOptions& mesh = options.mesh;
+    mesh.error_m = arguments.error_m;
+    mesh.flat = arguments.flat;
+    mesh.solid = !arguments.base.empty();
+    if (mesh.solid) mesh.base_m = parse_base(arguments.base);
+    if (mesh.base_m) *mesh.base_m *= ground.exaggeration;
+    mesh.max_triangles = arguments.shared.dem.options().memory.posts * 4 / mesh::kBytesATriangle;
+    if (!arguments.scale.empty()) options.mm_per_m = 1000 / parse_scale(arguments.scale);
+    if (arguments.width_mm) options.width_mm = *arguments.width_mm;
+    const output::MeshFile file =
+        output::write_mesh(arguments.shared.file(), std::move(ground), options);
     files.finish_outputs();
-    print(mesh, frame, arguments.error_m, box);
-    if (is_stl) {
-        const glm::dvec3 size_mm = scale * box.size();
-        fmt::print("model       1:{:.0f}, {:.1f} x {:.1f} x {:.1f} mm\n", 1000 / scale, size_mm.x,
-                   size_mm.y, size_mm.z);
+    print(file, arguments.error_m);
+    if (options.is_stl) {
+        const glm::dvec3 size_mm = file.mm_per_m * file.size_m;
+        fmt::print("model       1:{:.0f}, {:.1f} x {:.1f} x {:.1f} mm\n", 1000 / file.mm_per_m,
+                   size_mm.x, size_mm.y, size_mm.z);
     }
 }
 

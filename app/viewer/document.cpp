@@ -286,6 +286,21 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
     return command.take();
 }
 
+std::string mesh_command(scene::Scene scene, const std::string& output, double error_m,
+                         bool is_solid) {
+    if (scene.holes == dem::Holes::Mark) scene.holes = dem::Holes::Fill;  // as pictures have them
+    CommandLine command("relevo export mesh");
+    add_dem(command, scene);
+    for (const scene::Option& option : scene::options())
+        if ((option.group == "DEM" || option.flag == "--holes" || option.flag == "--exaggerate") &&
+            !is_default(option, scene))
+            command.option(option.flag, text_of(option, scene));
+    command.option("--error", fmt::format("{}", error_m));
+    if (is_solid) command.option("--base", "auto");
+    command.option("-o", output);
+    return command.take();
+}
+
 std::string film_command(const scene::Scene& scene, const scene::FilmJob& film) {
     CommandLine command("relevo film");
     add_dem(command, scene);

@@ -102,6 +102,9 @@ scene::Effects without_values(scene::Effects effects, const std::string& of);
 std::string quoted(const std::string& word);
 /// The command line that renders a scene to the file `output`, quoted for a POSIX shell.
 std::string capture_command(const scene::Scene& scene, const std::string& output);
+/// The command line that writes the ground as a mesh, or as a solid for printing.
+std::string mesh_command(scene::Scene scene, const std::string& output, double error_m,
+                         bool is_solid);
 /// The command line that makes a film which `relevo film` knows: without views.
 std::string film_command(const scene::Scene& scene, const scene::FilmJob& film);
 

@@ -1,259 +1,295 @@
 #include "viewer/export_sheet.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
-#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/text.h"
-#include "scene/name_template.h"
-#include "scene/panorama.h"
 #include "scene/scene_words.h"
-#include "scene/stereo.h"
 #include "viewer/export.h"
 #include "viewer/sheet.h"
-#include "viewer/translation.h"
+#include "viewer/style.h"
 
 namespace relevo::viewer {
 namespace {
 
-struct Format {
-    const char* name;
-    const char* ending;
-    int bits = 8;
-    bool has_quality = false;
-    bool has_alpha = true;
-};
-constexpr std::array<Format, 7> kFormats = {{{"PNG", "png"},
-                                             {tr_later("PNG, 16 bits"), "png", 16},
-                                             {"JPEG", "jpg", 8, true, false},
-                                             {"WebP", "webp", 8, true},
-                                             {"AVIF", "avif", 8, true},
-                                             {"TIFF", "tif"},
-                                             {tr_later("EXR, linear light"), "exr"}}};
-
-struct Size {
-    const char* name;
-    glm::ivec2 px;  ///< 0: the window's
-};
-constexpr std::array<Size, 6> kSizes = {{{tr_later("window"), {0, 0}},
-                                         {"1920 x 1080", {1920, 1080}},
-                                         {"3840 x 2160", {3840, 2160}},
-                                         {tr_later("square, 2048 x 2048"), {2048, 2048}},
-                                         {tr_later("A4 at 300 dpi"), {3508, 2480}},
-                                         {tr_later("A2 at 300 dpi"), {7016, 4961}}}};
-
-constexpr int kPng = 0, kTiff = 5;  // indices of kFormats
-
-constexpr std::array<int, 4> kSamples = {1, 4, 8, 16};
-
-struct Kind {
-    const char* name;
-    glm::ivec2 size_px;
-    bool is_ortho = false;
-    scene::Panorama panorama = scene::Panorama::None;
-    scene::Stereo stereo = scene::Stereo::None;
-
-    bool is_picture() const {
-        return panorama == scene::Panorama::None && stereo == scene::Stereo::None;
-    }
-};
-constexpr std::array<Kind, 6> kKinds = {
-    {{tr_later("picture"), {1920, 1080}},
-     {tr_later("map of all of the DEM, with georeference"), {2048, 2048}, true},
-     {tr_later("panorama"), {8192, 1024}, false, scene::Panorama::Cylindrical},
-     {tr_later("sphere (equirectangular)"), {4096, 2048}, false, scene::Panorama::Equirectangular},
-     {tr_later("stereo pair"), {2560, 1024}, false, scene::Panorama::None, scene::Stereo::Parallel},
-     {tr_later("anaglyph"), {1920, 1080}, false, scene::Panorama::None, scene::Stereo::Anaglyph}}};
-
-/// Index of the kind of a scene.
-std::size_t kind_of(const scene::Scene& scene) {
-    const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) {
-        return kind.is_ortho == scene.ortho && kind.panorama == scene.view.panorama &&
-               kind.stereo == scene.view.stereo;
-    });
-    return found == kKinds.end() ? 0 : static_cast<std::size_t>(found - kKinds.begin());
-}
-
 /// Stamps of one scale and direction, which panoramas and stereo pairs lack.
-bool needs_picture(bool scene::Stamps::*stamp) {
+bool needs_lens(bool scene::Stamps::*stamp) {
     return stamp == &scene::Stamps::scale || stamp == &scene::Stamps::north ||
            stamp == &scene::Stamps::graticule;
 }
 
+void size_fields(ExportChoice& choice) {
+    if (ImGui::InputInt2(tr_label("Pixels"), &choice.size_px.x))
+        choice.size_px = glm::clamp(choice.size_px, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
+    if (choice.of().is_ortho)
+        ImGui::TextDisabled("%s", tr("at most: a map has the shape of the DEM"));
+    else
+        ImGui::Checkbox(tr_label("Centred on what the panels leave free"), &choice.is_centred);
+}
+
+void format_fields(ExportChoice& choice) {
+    const auto name_of = [](void*, int i, const char** name) {
+        *name = tr(kExportFormats[static_cast<std::size_t>(i)].name);
+        return true;
+    };
+    ImGui::Combo(tr_label("Format"), &choice.format, name_of, nullptr,
+                 static_cast<int>(kExportFormats.size()));
+    if (choice.file_format().has_quality)
+        ImGui::SliderInt(tr_label("Quality"), &choice.quality, 1, 100);
+    if (ImGui::BeginCombo(tr_label("Samples"), tr_format("{} a pixel", choice.samples).c_str())) {
+        for (const int samples : kExportSamples)
+            if (ImGui::Selectable(tr_format("{} a pixel", samples).c_str()))
+                choice.samples = samples;
+        ImGui::EndCombo();
+    }
+    ImGui::BeginDisabled(!choice.can_be_transparent());
+    ImGui::Checkbox(tr_label("Transparent where there is no ground"), &choice.is_transparent);
+    ImGui::EndDisabled();
+}
+
+/// Part of the displayed image as an exported picture has it. @returns whether all of it is known
+bool draw_view(const ExportView& view, ImVec2 at, ImVec2 size) {
+    constexpr int kColumns = 48, kRows = 32;
+    const auto texture = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(view.texture));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    bool is_whole = true;
+    for (int i = 0; i < kColumns * kRows; ++i) {
+        std::array<ImVec2, 4> place, shown;
+        bool is_shown = true;
+        for (int corner = 0; corner < 4; ++corner) {
+            const float x = static_cast<float>(i % kColumns + (corner == 1 || corner == 2)) /
+                            kColumns,
+                        y = static_cast<float>(i / kColumns + corner / 2) / kRows;
+            const auto k = static_cast<std::size_t>(corner);
+            place[k] = {at.x + x * size.x, at.y + y * size.y};
+            const auto from = view.shown_at({2 * x - 1, 1 - 2 * y});
+            is_shown =
+                is_shown && from && from->x >= 0 && from->x <= 1 && from->y >= 0 && from->y <= 1;
+            if (from) shown[k] = {from->x, from->y};
+        }
+        if (is_shown)
+            list.AddImageQuad(texture, place[0], place[1], place[2], place[3], shown[0], shown[1],
+                              shown[2], shown[3]);
+        is_whole = is_whole && is_shown;
+    }
+    return is_whole;
+}
+
 }  // namespace
 
-void ExportSheet::take_scene(const scene::Scene& scene) {
-    stamps_.reset();
-    what_ = kind_of(scene);
-}
-
-double ExportSheet::aspect() const {
-    // Side by side each eye has half of the width.
-    const bool is_pair = kKinds[what_].stereo == scene::Stereo::Parallel;
-    return static_cast<double>(size_px_.x) / (is_pair ? 2 * size_px_.y : size_px_.y);
-}
-
-/// A kind sets a size and a format that suit it.
-void ExportSheet::kind_field() {
-    if (!ImGui::BeginCombo(tr_label("What"), tr(kKinds[what_].name))) return;
-    for (std::size_t i = 0; i < kKinds.size(); ++i) {
-        if (!ImGui::Selectable(tr_label(kKinds[i].name), i == what_)) continue;
-        what_ = i;
-        size_px_ = kKinds[i].size_px;
-        if (kKinds[i].is_ortho)
-            format_ = kTiff;
-        else if (format_ == kTiff)
-            format_ = kPng;
-    }
-    ImGui::Separator();
-    if (ImGui::Selectable(tr_label("film ..."))) command_ = Command::Film;
-    if (ImGui::Selectable(tr_label("figures of the overlay, as GeoTIFF")))
-        command_ = Command::SaveOverlay;
+void ExportSheet::use_field(ExportChoice& choice, glm::vec2 window_px) {
+    const auto now =
+        std::ranges::find_if(kExportUses, [&](const ExportUse& use) { return use.is_of(choice); });
+    if (!ImGui::BeginCombo(tr_label("For"),
+                           now == kExportUses.end() ? tr("as chosen below") : tr(now->name)))
+        return;
+    for (const ExportUse& use : kExportUses)
+        if (ImGui::Selectable(tr_label(use.name)))
+            use.apply_to(choice, stamps_, glm::ivec2(window_px));
     ImGui::EndCombo();
 }
 
-void ExportSheet::size_fields(glm::vec2 window_px) {
-    if (ImGui::BeginCombo(tr_label("Size"),
-                          fmt::format("{} x {}", size_px_.x, size_px_.y).c_str())) {
-        for (const Size& size : kSizes)
-            if (ImGui::Selectable(tr_label(size.name)))
-                size_px_ = size.px.x > 0 ? size.px : glm::ivec2(window_px);
-        ImGui::EndCombo();
-    }
-    if (ImGui::InputInt2(tr_label("Pixels"), &size_px_.x))
-        size_px_ = glm::clamp(size_px_, glm::ivec2(1), glm::ivec2(scene::kMaxSide_px));
-    if (kKinds[what_].is_ortho) {
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("%s", tr("at most: a map has the shape of the DEM"));
-    } else {
-        ImGui::Checkbox(tr_label("Centred on what the panels leave free"), &is_centred_);
-    }
+void ExportSheet::kind_field(ExportChoice& choice) {
+    if (!ImGui::BeginCombo(tr_label("What"), tr(choice.of().name))) return;
+    for (std::size_t i = 0; i < kExportKinds.size(); ++i)
+        if (ImGui::Selectable(tr_label(kExportKinds[i].name), &kExportKinds[i] == &choice.of()))
+            choice.set_kind(static_cast<int>(i));
+    ImGui::Separator();
+    if (ImGui::Selectable(tr_label("film ..."))) command_ = Command::Film;
+    ImGui::EndCombo();
 }
 
-void ExportSheet::format_fields() {
-    const auto name_of = [](void*, int i, const char** name) {
-        *name = tr(kFormats[static_cast<std::size_t>(i)].name);
-        return true;
-    };
-    ImGui::Combo(tr_label("Format"), &format_, name_of, nullptr, static_cast<int>(kFormats.size()));
-    if (kFormats[static_cast<std::size_t>(format_)].has_quality)
-        ImGui::SliderInt(tr_label("Quality"), &quality_, 1, 100);
-    if (ImGui::BeginCombo(tr_label("Samples"), tr_format("{} a pixel", samples_).c_str())) {
-        for (const int samples : kSamples)
-            if (ImGui::Selectable(tr_format("{} a pixel", samples).c_str())) samples_ = samples;
-        ImGui::EndCombo();
-    }
-    ImGui::BeginDisabled(!can_be_transparent());
-    ImGui::Checkbox(tr_label("Transparent where there is no ground"), &is_transparent_);
-    ImGui::EndDisabled();
-}
-
-bool ExportSheet::can_be_transparent() const {
-    return kFormats[static_cast<std::size_t>(format_)].has_alpha &&
-           kKinds[what_].stereo != scene::Stereo::Anaglyph;
-}
-
-void ExportSheet::stamp_fields(const scene::Scene& scene) {
-    if (!stamps_) stamps_ = scene.stamps;
+void ExportSheet::stamp_fields(const ExportKind& kind) {
     ImGui::TextUnformatted(tr("On the picture:"));
     int column = 0;
     for (const auto& [word, member] : scene::stamp_words()) {
-        if (column++ % 3 != 0) ImGui::SameLine(9.0f * ImGui::GetFontSize() * ((column - 1) % 3));
-        ImGui::BeginDisabled(!kKinds[what_].is_picture() && needs_picture(member));
-        ImGui::Checkbox(std::string(word).c_str(), &((*stamps_).*member));
+        if (column++ % 3 != 0) ImGui::SameLine(7.5f * ImGui::GetFontSize() * ((column - 1) % 3));
+        ImGui::BeginDisabled(!kind.has_lens() && needs_lens(member));
+        ImGui::Checkbox(std::string(word).c_str(), &(stamps_.*member));
         ImGui::EndDisabled();
     }
-    ImGui::BeginDisabled(!kKinds[what_].is_picture());
-    ImGui::Checkbox(tr_label("Around the picture, so that nothing lies on it"), &stamps_->margin);
+    ImGui::BeginDisabled(!kind.has_lens());
+    ImGui::Checkbox(tr_label("Around the picture, so that nothing lies on it"), &stamps_.margin);
     ImGui::EndDisabled();
-    if (stamps_->title)
-        ImGui::InputText(tr_label("Title"), &stamps_->title_text,
-                         ImGuiInputTextFlags_AutoSelectAll);
-    if (stamps_->attribution)
-        ImGui::InputTextWithHint(tr_label("Source"), tr("of the data"), &stamps_->attribution_text,
+    if (stamps_.title)
+        ImGui::InputText(tr_label("Title"), &stamps_.title_text, ImGuiInputTextFlags_AutoSelectAll);
+    if (stamps_.attribution)
+        ImGui::InputTextWithHint(tr_label("Source"), tr("of the data"), &stamps_.attribution_text,
                                  ImGuiInputTextFlags_AutoSelectAll);
 }
 
-PictureOrder ExportSheet::order(const scene::Scene& scene, sun::Instant utc,
-                                const sun::Zone& zone) const {
-    const Format& format = kFormats[static_cast<std::size_t>(format_)];
-    PictureOrder order;
-    order.scene = scene;
-    order.scene.width_px = size_px_.x;
-    order.scene.height_px = size_px_.y;
-    order.scene.samples = samples_;
-    order.scene.transparent = is_transparent_ && can_be_transparent();
-    order.scene.stamps = stamps_.value_or(scene.stamps);
-    if (order.scene.stamps.attribution_text.empty()) order.scene.stamps.attribution = false;
-    const Kind& kind = kKinds[what_];
-    order.scene.ortho = kind.is_ortho;
-    order.scene.view.panorama = kind.panorama;
-    order.scene.view.stereo = kind.stereo;
-    order.scene.stamps.margin = order.scene.stamps.margin && kind.is_picture();
-    order.scene.resolution = 0;  // the sheet has a size
-    scene::check_panorama(order.scene);
-    scene::check_stereo(order.scene);
-    order.encoding.bits = format.bits;
-    if (format.has_quality) order.encoding.quality = quality_;
-    const std::string dem = std::filesystem::path(scene.dems.front()).stem().string();
-    const std::string stem =
-        scene::NameTemplate(name_, {}).name({.number = 1, .dem = dem, .utc = utc, .zone = zone});
-    order.path = free_name(stem, format.ending);
-    image::check_encoding(
-        order.path, order.encoding,
-        {.width_px = size_px_.x, .height_px = size_px_.y, .alpha = order.scene.transparent});
-    return order;
+void ExportSheet::fields(ExportChoice& choice, const ExportView& view, glm::vec2 window_px) {
+    ImGui::PushItemWidth(-widest({tr("For"), tr("What"), tr("Pixels"), tr("Format"), tr("Quality"),
+                                  tr("Samples"), tr("Title"), tr("Source")}));
+    use_field(choice, window_px);
+    kind_field(choice);
+    if (choice.of().is_picture()) {
+        size_fields(choice);
+        format_fields(choice);
+        stamp_fields(choice.of());
+    } else if (choice.kind == kFigures) {
+        if (!view.has_figures)
+            ImGui::TextWrapped(
+                "%s", tr("there is no sun overlay to export; O shows the day's sun hours"));
+    } else {
+        if (ImGui::InputDouble(tr_label("Error"), &choice.error_m, 0, 0, "%g m"))
+            choice.error_m = std::clamp(choice.error_m, kLeastError_m, kMostError_m);
+        ImGui::TextWrapped("%s", tr("No post is farther than this above or below the triangles"));
+    }
+    ImGui::PopItemWidth();
 }
 
-void ExportSheet::result(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone,
-                         bool is_busy) {
-    PictureOrder wanted;
-    try {
-        wanted = order(scene, utc, zone);
-    } catch (const Error& error) {
-        ImGui::TextWrapped("%s", error.what());
-        return;
-    }
-    const bool has_world_file = kKinds[what_].is_ortho && format_ != kTiff;
-    ImGui::TextWrapped("%s%s", printable(wanted.path).c_str(),
-                       has_world_file ? tr(", with a world file and .aux.xml") : "");
-    if (is_busy) ImGui::BeginDisabled();
-    if (ImGui::Button(is_busy ? tr_label("drawing ...") : tr_label("Export"),
-                      {8 * ImGui::GetFontSize(), 0}))
-        order_ = wanted;
-    if (is_busy) ImGui::EndDisabled();
+void ExportSheet::preview(const ExportChoice& choice, const ExportView& view) const {
+    const ExportKind& kind = choice.of();
+    if (!kind.is_picture()) return;
+    const float aspect =
+        kind.is_ortho ? static_cast<float>(view.map_aspect)
+                      : static_cast<float>(choice.size_px.x) / static_cast<float>(choice.size_px.y);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const float text = ImGui::GetTextLineHeightWithSpacing();
+    const float width = std::min(room.x, std::max(text, room.y - 3 * text) * aspect);
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size{width, width / aspect};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    const int eyes = kind.stereo == Stereo::Parallel ? 2 : 1;
+    const float eye = size.x / static_cast<float>(eyes);
+    bool is_whole = true;
+    if (!kind.is_ortho && !kind.is_panorama() && view.texture != 0)
+        for (int i = 0; i < eyes; ++i)
+            is_whole = draw_view(view, {at.x + static_cast<float>(i) * eye, at.y}, {eye, size.y});
+    list.AddRect(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::Dummy(size);
+    constexpr double kCm_a_px = 2.54 / 300;
+    ImGui::TextDisabled("%s", tr_format("at 300 dpi {:.1f} x {:.1f} cm",
+                                        choice.size_px.x * kCm_a_px, choice.size_px.y * kCm_a_px)
+                                  .c_str());
+    if (!is_whole) ImGui::TextDisabled("%s", tr("grey: not in the window's picture"));
+}
+
+void ExportSheet::file_fields(ExportChoice& choice) {
+    ImGui::PushItemWidth(-widest({tr("Folder"), tr("Name")}));
+    ImGui::InputTextWithHint(tr_label("Folder"), folder_of("x").c_str(), &choice.folder,
+                             ImGuiInputTextFlags_AutoSelectAll);
+    if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
+    ImGui::InputText(tr_label("Name"), &choice.name, ImGuiInputTextFlags_AutoSelectAll);
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+        ImGui::SetTooltip("%s", tr("{dem}, and {time:...} with the conversions of strftime"));
+    ImGui::PopItemWidth();
+}
+
+void ExportSheet::question(const ExportOrder& wanted) {
+    const std::filesystem::path path = wanted.path;
+    ExportOrder other = wanted;
+    other.path = free_name(path.parent_path() / path.stem(), path.extension().string().substr(1));
+    const std::string free = std::filesystem::path(other.path).filename().string();
+    const auto ends_with = [&](const ExportOrder& order, bool overwrite) {
+        order_ = order;
+        order_->overwrite = overwrite;
+        asks_.clear();
+    };
+    if (ImGui::Button(tr_format("Save as {}", printable(free)).c_str()) || is_entered_)
+        ends_with(other, false);
     ImGui::SameLine();
+    if (ImGui::Button(tr_label("Replace it"))) ends_with(wanted, true);
+    ImGui::SameLine();
+    if (ImGui::Button(tr_label("Cancel"))) asks_.clear();
+}
+
+void ExportSheet::buttons(const ExportOrder& wanted, bool is_taken, const ExportView& view) {
+    const bool is_figures = wanted.kind == kFigures;
+    const bool can_export = !view.is_busy && (!is_figures || view.has_figures);
+    ImGui::BeginDisabled(!can_export);
+    if (ImGui::Button(view.is_busy ? tr_label("drawing ...") : tr_label("Export"),
+                      {8 * ImGui::GetFontSize(), 0}) ||
+        (is_entered_ && can_export)) {
+        if (is_taken)
+            asks_ = wanted.path;
+        else
+            order_ = wanted;
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(is_figures);
     if (ImGui::Button(tr_label("Copy the command")))
         ImGui::SetClipboardText(command_of(wanted).c_str());
+    ImGui::EndDisabled();
 }
 
-void ExportSheet::draw(glm::vec2 window_px, const scene::Scene& scene, sun::Instant utc,
-                       const sun::Zone& zone, bool is_busy) {
+void ExportSheet::result(const ExportChoice& choice, const ExportView& view) {
+    ExportOrder wanted;
+    std::vector<std::string> files, taken;
+    try {
+        wanted = order_of(choice, stamps_, view.scene, view.utc, view.zone);
+        files = files_of(wanted);
+        std::ranges::copy_if(files, std::back_inserter(taken), relevo::is_taken);
+    } catch (const Error& error) {
+        ImGui::PushTextWrapPos();
+        ImGui::TextColored(style::error(), "%s", error.what());
+        ImGui::PopTextWrapPos();
+        return;
+    }
+    std::string text = printable(wanted.path);
+    for (std::size_t i = 1; i < files.size(); ++i)
+        text += ", " + printable(std::filesystem::path(files[i]).filename().string());
+    ImGui::TextWrapped("%s", text.c_str());
+    if (asks_ != wanted.path) asks_.clear();
+    if (!taken.empty())
+        ImGui::TextColored(
+            style::lit(), "%s",
+            tr_format("{} exists already",
+                      printable(std::filesystem::path(taken.front()).filename().string()))
+                .c_str());
+    if (asks_.empty())
+        buttons(wanted, !taken.empty(), view);
+    else
+        question(wanted);
+    if (!view.message.empty()) ImGui::TextWrapped("%s", view.message.c_str());
+}
+
+void ExportSheet::draw(glm::vec2 window_px, ExportChoice& choice, const ExportView& view) {
     if (!is_open_) return;
+    const bool has_keys = has_focus_ && !has_popup_;
+    const auto is_pressed = [&](ImGuiKey key) {
+        return has_keys && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+    };
+    is_entered_ = is_pressed(ImGuiKey_Enter) || is_pressed(ImGuiKey_KeyPadEnter);
+    // Return exports: it does not also edit the field that the arrows have reached.
+    if (is_entered_) ImGui::GetCurrentContext()->NavActivateInputId = 0;
+    if (is_pressed(ImGuiKey_Escape)) {
+        is_open_ = !asks_.empty();
+        takes_focus_ = is_open_;
+        asks_.clear();
+    }
     const float line = ImGui::GetFrameHeight();
-    ImGui::SetNextWindowPos({window_px.x - line, 5.5f * line}, ImGuiCond_Appearing, {1, 0});
-    ImGui::SetNextWindowSize({std::min(window_px.x - 20, 19 * line), 0}, ImGuiCond_Always);
-    if (ImGui::Begin(tr_label("Export a picture"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
-        ImGui::PushItemWidth(-widest({tr("What"), tr("Size"), tr("Pixels"), tr("Format"),
-                                      tr("Quality"), tr("Samples"), tr("Title"), tr("Name")}));
-        kind_field();
-        size_fields(window_px);
-        format_fields();
-        stamp_fields(scene);
-        ImGui::InputText(tr_label("Name"), &name_, ImGuiInputTextFlags_AutoSelectAll);
-        if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-            ImGui::SetTooltip("%s", tr("{dem}, and {time:...} with the conversions of strftime"));
-        ImGui::PopItemWidth();
+    ImGui::SetNextWindowPos({window_px.x / 2, window_px.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize(
+        {std::min(window_px.x - 20, 36 * line), std::min(window_px.y - 2 * line, 25 * line)},
+        ImGuiCond_Always);
+    if (ImGui::Begin(tr_label("Export"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
+        const float width = 0.55f * ImGui::GetContentRegionAvail().x;
+        const float height = ImGui::GetContentRegionAvail().y - 7 * line;
+        if (ImGui::BeginChild("fields", {width, height}, false, ImGuiWindowFlags_NavFlattened))
+            fields(choice, view, window_px);
+        ImGui::EndChild();
+        ImGui::SameLine();
+        if (ImGui::BeginChild("preview", {0, height})) preview(choice, view);
+        ImGui::EndChild();
         ImGui::Separator();
-        result(scene, utc, zone, is_busy);
-        if (closes_sheet()) is_open_ = false;
+        file_fields(choice);
+        result(choice, view);
+        has_focus_ = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
     }
     ImGui::End();
+    has_popup_ = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
+    has_focus_ = has_focus_ || has_popup_;
 }
 
 }  // namespace relevo::viewer

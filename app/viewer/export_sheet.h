@@ -1,57 +1,65 @@
 #pragma once
 
-#include <array>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
 #include "viewer/command.h"
-#include "viewer/picture_export.h"
+#include "viewer/export_choice.h"
 
 namespace relevo::viewer {
 
-/// Asks what is exported: kind of picture, size, format, samples, transparency, stamps, name.
+/// What the export sheet shows of the window.
+struct ExportView {
+    const scene::Scene& scene;  ///< as it is now, with the view of the picture
+    sun::Instant utc;           ///< its time, for the name
+    const sun::Zone& zone;
+    bool is_busy = false;        ///< a file is being written
+    bool has_figures = false;    ///< a sun overlay is shown, which can be written
+    const std::string& message;  ///< how the last export ended
+    double map_aspect = 1;       ///< of the DEM
+    unsigned texture = 0;        ///< the displayed image; rows from the bottom
+    /// Where that has an image position (-1 to 1) of the exported picture, from 0 to 1.
+    std::function<std::optional<glm::vec2>(glm::dvec2)> shown_at;
+};
+
+/// Asks what is exported and where to: for which use, kind, size, format, stamps, folder, name.
 class ExportSheet {
   public:
-    void open() { is_open_ = true; }
+    void open() { is_open_ = takes_focus_ = true; }
     void close() { is_open_ = false; }
-    /// Takes the stamps and the kind of picture of another scene.
-    void take_scene(const scene::Scene& scene);
     bool is_open() const { return is_open_; }
-    /// What the sheet does to the view: centres the picture on what the panels leave free.
-    bool is_centred() const { return is_centred_; }
-    /// Width over height of the picture, of a stereo pair of each of its two.
-    double aspect() const;
+    bool has_focus() const { return is_open_ && has_focus_; }
+    /// Takes the stamps of another scene.
+    void take_scene(const scene::Scene& scene) { stamps_ = scene.stamps; }
 
-    /// @param scene    as it is now, with the view of the picture
-    /// @param utc, zone  its time, for the name
-    /// @param is_busy  a picture is being exported
-    void draw(glm::vec2 window_px, const scene::Scene& scene, sun::Instant utc,
-              const sun::Zone& zone, bool is_busy);
+    void draw(glm::vec2 window_px, ExportChoice& choice, const ExportView& view);
     /// What was ordered since the last call.
-    std::optional<PictureOrder> take() { return std::exchange(order_, std::nullopt); }
-
-    /// The film panel, or the export of the overlay, if the user wants that instead.
+    std::optional<ExportOrder> take() { return std::exchange(order_, std::nullopt); }
+    /// The film panel, if the user wants that instead.
     std::optional<Command> take_command() { return std::exchange(command_, std::nullopt); }
 
   private:
-    void kind_field();
-    void size_fields(glm::vec2 window_px);
-    void format_fields();
-    bool can_be_transparent() const;
-    void stamp_fields(const scene::Scene& scene);
-    /// @throws Error (BadInput) for names and formats that cannot be
-    PictureOrder order(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone) const;
-    void result(const scene::Scene& scene, sun::Instant utc, const sun::Zone& zone, bool is_busy);
+    void use_field(ExportChoice& choice, glm::vec2 window_px);
+    void kind_field(ExportChoice& choice);
+    void fields(ExportChoice& choice, const ExportView& view, glm::vec2 window_px);
+    void stamp_fields(const ExportKind& kind);
+    void preview(const ExportChoice& choice, const ExportView& view) const;
+    void file_fields(ExportChoice& choice);
+    void result(const ExportChoice& choice, const ExportView& view);
+    void buttons(const ExportOrder& wanted, bool is_taken, const ExportView& view);
+    /// Asks what becomes of the file that has the name of `wanted`.
+    void question(const ExportOrder& wanted);
 
-    bool is_open_ = false, is_centred_ = true, is_transparent_ = false;
-    glm::ivec2 size_px_{1920, 1080};
-    int format_ = 0, samples_ = 4, quality_ = image::kQuality;
-    std::optional<scene::Stamps> stamps_;  // nullopt: the scene's
-    std::size_t what_ = 0;                 // index of a kind of picture
-    std::string name_ = "{dem}_{time:%Y%m%dT%H%M}";
-    std::optional<PictureOrder> order_;
+    bool is_open_ = false, takes_focus_ = false;
+    bool has_focus_ = false, has_popup_ = false;  // in the frame before
+    bool is_entered_ = false;                     // Return was pressed
+    scene::Stamps stamps_;
+    std::string asks_;  // the path whose file may be replaced; empty: none
+    std::optional<ExportOrder> order_;
     std::optional<Command> command_;
 };
 

@@ -12,6 +12,7 @@
 #include "scene/name_template.h"
 #include "session/film_day.h"
 #include "viewer/export.h"
+#include "viewer/export_choice.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -61,9 +62,10 @@ scene::FilmJob::Year year_of(const FilmWish& wish, session::SceneTimes& times) {
 
 std::string output_of(const FilmWish& wish) {
     const std::string dem = std::filesystem::path(wish.scene.dems.front()).stem().string();
-    return free_name(scene::NameTemplate(wish.file.name, {})
-                         .name({.number = 1, .dem = dem, .utc = wish.utc, .zone = wish.zone}),
-                     wish.file.ending);
+    const std::string stem =
+        scene::NameTemplate(wish.file.name, {})
+            .name({.number = 1, .dem = dem, .utc = wish.utc, .zone = wish.zone});
+    return free_name(path_in(wish.folder, stem), wish.file.ending);
 }
 
 }  // namespace
@@ -90,7 +92,8 @@ bool FilmWish::operator==(const FilmWish& other) const {
         return line_of({}, a) == line_of({}, b);
     };
     return utc == other.utc && zone.name() == other.zone.name() && choice == other.choice &&
-           file == other.file && std::ranges::equal(views, other.views, same) &&
+           file == other.file && folder == other.folder &&
+           std::ranges::equal(views, other.views, same) &&
            line_of(scene, scene.view) == line_of(other.scene, other.scene.view);
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -57,6 +59,9 @@ struct FilmPreset {
 /// The first is a day in 10 s at 30 frames per second.
 const std::vector<FilmPreset>& film_presets();
 
+inline constexpr int kLeastFilm_px = 16, kMostFilm_px = 16384;
+inline constexpr std::array<std::string_view, 4> kFilmEndings = {"mp4", "webm", "webp", "gif"};
+
 /// The file of a film.
 struct FilmFile {
     glm::ivec2 size_px{1280, 720};
@@ -81,6 +86,7 @@ struct FilmWish {
     std::vector<scene::View> views;  ///< of a flight through views
     FilmChoice choice;
     FilmFile file;
+    std::string folder{};  ///< empty: the working folder
 
     /// Equal wishes have equal films.
     bool operator==(const FilmWish& other) const;

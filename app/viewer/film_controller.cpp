@@ -90,7 +90,7 @@ std::string FilmController::progress() const {
 
 FilmWish FilmController::wish() const {
     const Document& document = state_.document;
-    const glm::dvec2 size(panel_.file().size_px);
+    const glm::dvec2 size(state_.settings.film.size_px);
     const auto scene_of = [&](const Document& of) {
         return source_.scene(of, panel_.is_centred(), size.x / size.y);
     };
@@ -99,7 +99,8 @@ FilmWish FilmController::wish() const {
                   .zone = document.zone,
                   .views = {},
                   .choice = panel_.choice(),
-                  .file = panel_.file()};
+                  .file = state_.settings.film,
+                  .folder = state_.settings.exporting.folder};
     if (wish.choice.camera != FilmChoice::Camera::Views) return wish;
     Document seen = document;
     for (const SavedView& view : state_.views) {

@@ -218,11 +218,12 @@ void film_file_fields(FilmFile& file, bool& is_centred, glm::vec2 window_px) {
     }
     rows.next(tr("Pixels"), 8);
     if (ImGui::InputInt2("##pixels", &file.size_px.x))
-        file.size_px = glm::clamp(file.size_px, glm::ivec2(16), glm::ivec2(16384));
+        file.size_px =
+            glm::clamp(file.size_px, glm::ivec2(kLeastFilm_px), glm::ivec2(kMostFilm_px));
     rows.next(tr("Format"), 5);
     if (ImGui::BeginCombo("##format", file.ending.c_str())) {
-        for (const char* const ending : {"mp4", "webm", "webp", "gif"})
-            if (ImGui::Selectable(ending, file.ending == ending)) file.ending = ending;
+        for (const std::string_view ending : kFilmEndings)
+            if (ImGui::Selectable(ending.data(), file.ending == ending)) file.ending = ending;
         ImGui::EndCombo();
     }
     {

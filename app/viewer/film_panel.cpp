@@ -102,7 +102,7 @@ void FilmPanel::buttons(const FilmStatus& status) {
     };
     const bool is_ready = has_frames(status) && status.is_planned;
     button(tr_label("Save film"), is_ready && !status.drawing, FilmAction::SaveFilm,
-           tr("Draws the film in the background, into the working folder"));
+           tr("Draws the film in the background, into the folder of the export sheet"));
     button(tr_label("Save job"), is_ready, FilmAction::SaveJob,
            tr("The film as a file for relevo run"));
     const bool has_command = choice_.camera != FilmChoice::Camera::Views;
@@ -149,9 +149,8 @@ void FilmPanel::stamp(const State& state, const FilmClock& clock, const FilmStat
     }
 }
 
-std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
-                                          const FilmStatus& status, glm::vec2 window_px,
-                                          float left_px, float right_px) {
+std::optional<FilmAction> FilmPanel::draw(State& state, FilmClock& clock, const FilmStatus& status,
+                                          glm::vec2 window_px, float left_px, float right_px) {
     if (!is_open_) return std::nullopt;
     const float below = kStatus_em * ImGui::GetFontSize();
     ImGui::SetNextWindowPos({left_px, window_px.y - below}, ImGuiCond_Always, {0, 1});
@@ -165,7 +164,7 @@ std::optional<FilmAction> FilmPanel::draw(const State& state, FilmClock& clock,
     if (shows) {
         if (!status.shows_frame) {
             film_choice_fields(choice_, state);
-            film_file_fields(file_, is_centred_, window_px);
+            film_file_fields(state.settings.film, is_centred_, window_px);
         }
         buttons(status);
         message(status.error, true);

@@ -32,12 +32,11 @@ class FilmPanel {
     void close() { is_open_ = false; }
     bool is_open() const { return is_open_; }
     const FilmChoice& choice() const { return choice_; }
-    const FilmFile& file() const { return file_; }
     bool is_centred() const { return is_centred_; }
 
     /// @param clock    its position; the panel moves and plays it
     /// @param left_px, right_px  the part of the window's lower edge that is free
-    std::optional<FilmAction> draw(const State& state, FilmClock& clock, const FilmStatus& status,
+    std::optional<FilmAction> draw(State& state, FilmClock& clock, const FilmStatus& status,
                                    glm::vec2 window_px, float left_px, float right_px);
 
   private:
@@ -47,7 +46,6 @@ class FilmPanel {
 
     bool is_open_ = false, is_centred_ = true;
     FilmChoice choice_ = film_presets().front().choice;
-    FilmFile file_;
     std::optional<FilmAction> action_;
 };
 

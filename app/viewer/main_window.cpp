@@ -197,7 +197,8 @@ void MainWindow::draw_panels() {
     find_sheet_.draw(size(), state_, opening_->opened()->dem->field.grid);
     if (!film_->shows_frame()) saver_->draw_sheet();
     status_line(state_, work_in_progress());
-    message_box(state_, unit());
+    // The export sheet shows the message itself.
+    if (!saver_->sheet().is_open()) message_box(state_, unit());
     if (sheet_) help_sheet(*sheet_, window_->context().info().renderer);
 }
 

@@ -88,7 +88,7 @@ void file_menu(State& state) {
     item(state, tr_label("Previous DEM in the folder"), tr("Ctrl+Page up"), Command::PreviousFile);
     ImGui::Separator();
     item(state, tr_label("Save picture"), "F12", Command::TakePicture);
-    item(state, tr_label("Export a picture..."), tr("Ctrl+P"), Command::ExportPicture);
+    item(state, tr_label("Export..."), tr("Ctrl+P"), Command::ExportPicture);
     item(state, tr_label("Film..."), "F", Command::Film);
     item(state, tr_label("Export overlay as GeoTIFF"), tr("Ctrl+E"), Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);

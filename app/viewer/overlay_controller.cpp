@@ -115,7 +115,9 @@ const OverlayController::ExportedOverlay* OverlayController::exported() const {
     return nullptr;
 }
 
-void OverlayController::start_export() {
+void OverlayController::start_export(const std::string& path, bool overwrite) {
+    path_ = path;
+    overwrites_ = overwrite;
     exports_when_complete_ = waits_for_posts();
     if (exports_when_complete_) return;
     if (!requested_ || requested_->file)
@@ -124,8 +126,9 @@ void OverlayController::start_export() {
     const bool is_in_memory = requested_->dem->field.reduction == 1;
     exports_when_complete_ = is_in_memory && !(is_complete() && is_displayed());
     if (exports_when_complete_) return;
-    export_ = std::make_unique<OverlaySave>(
-        *requested_, is_in_memory ? state_.overlay->raster : nullptr, &Window::wake);
+    export_ =
+        std::make_unique<OverlaySave>(*requested_, is_in_memory ? state_.overlay->raster : nullptr,
+                                      &Window::wake, path, overwrite);
 }
 
 void OverlayController::cancel_export() {
@@ -137,7 +140,7 @@ void OverlayController::cancel_export() {
 bool OverlayController::poll_export() {
     if (exports_when_complete_ && !shows_frame_ && is_complete()) {
         exports_when_complete_ = false;
-        if (is_displayed()) start_export();
+        if (is_displayed()) start_export(std::exchange(path_, {}), overwrites_);
     }
     state_.saving_progress.reset();
     if (exports_when_complete_) state_.saving_progress = 0;

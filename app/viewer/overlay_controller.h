@@ -33,7 +33,8 @@ class OverlayController {
     bool is_complete() const;
 
     /// Writes the overlay to a file, as soon as it is complete if the whole DEM is in memory.
-    void start_export();
+    /// @param path  empty: a free name in the working folder
+    void start_export(const std::string& path = {}, bool overwrite = false);
     void cancel_export();
     /// Reports a finished export. @returns whether there was one
     bool poll_export();
@@ -70,7 +71,8 @@ class OverlayController {
     std::optional<OverlayWanted> requested_;
     bool lays_overlay_ = false;
     std::unique_ptr<OverlaySave> export_;
-    bool exports_when_complete_ = false;
+    bool exports_when_complete_ = false, overwrites_ = false;
+    std::string path_;        // of the export
     bool is_hidden_ = false;  // in a film's frame
     bool shows_frame_ = false;
     std::vector<ExportedOverlay> exported_;

@@ -1,7 +1,9 @@
 #include "viewer/scene_saver.h"
 
+#include <optional>
 #include <utility>
 
+#include "scene/map_view.h"
 #include "viewer/export.h"
 #include "viewer/translation.h"
 
@@ -14,13 +16,17 @@ scene::Scene SceneSaver::whole_scene() const {
     return scene;
 }
 
-scene::Scene SceneSaver::scene_for(Document document, bool is_centred, double aspect) const {
+Pose SceneSaver::pose_for(const Document& document, bool is_centred, double aspect) const {
     const State& state = parts_.state;
     const glm::vec2 window = parts_.window.size();
-    if (is_centred)
-        document.pose = centred(document.pose, state.land, state.layout.insets(window),
-                                static_cast<double>(window.x) / window.y, aspect);
-    scene::Scene scene = viewer::whole_scene(document, state.land, parts_.window.size_px());
+    if (!is_centred) return document.pose;
+    return centred(document.pose, state.land, state.layout.insets(window),
+                   static_cast<double>(window.x) / window.y, aspect);
+}
+
+scene::Scene SceneSaver::scene_for(Document document, bool is_centred, double aspect) const {
+    document.pose = pose_for(document, is_centred, aspect);
+    scene::Scene scene = viewer::whole_scene(document, parts_.state.land, parts_.window.size_px());
     parts_.overlay.add_to(scene);
     return scene;
 }
@@ -49,10 +55,36 @@ void SceneSaver::save_job() {
 }
 
 void SceneSaver::draw_sheet() {
-    const Document& document = parts_.state.document;
-    if (sheet_.is_open())
-        sheet_.draw(parts_.window.size(), scene_for(document, sheet_.is_centred(), sheet_.aspect()),
-                    document.utc, document.zone, is_exporting());
+    // Arrows and Space move through the sheet as long as it has the keyboard.
+    if (sheet_.has_focus() && !parts_.window.panels_have_keys())
+        parts_.window.give_keys_to(nullptr);
+    if (had_sheet_ && !sheet_.is_open()) parts_.window.take_keys_back();
+    had_sheet_ = sheet_.is_open();
+    if (!had_sheet_) return;
+    State& state = parts_.state;
+    ExportChoice& choice = state.settings.exporting;
+    const Document& document = state.document;
+    const glm::vec2 window = parts_.window.size();
+    const double shown = static_cast<double>(window.x) / window.y, aspect = choice.aspect();
+    const scene::Scene scene = scene_for(document, choice.is_centred, aspect);
+    const scene::Camera from = camera_of(document.pose, state.land),
+                        to = camera_of(pose_for(document, choice.is_centred, aspect), state.land);
+    scene::Scene map = scene;
+    map.ortho = true;
+    scene::fit_map(map, parts_.opening.opened()->dem->source->grid());
+    sheet_.draw(window, choice,
+                {.scene = scene,
+                 .utc = document.utc,
+                 .zone = document.zone,
+                 .is_busy = is_exporting() || state.saving_progress,
+                 .has_figures = document.overlay.kind > OverlayKind::File,
+                 .message = state.message,
+                 .map_aspect = static_cast<double>(map.width_px) / map.height_px,
+                 .texture = parts_.window.texture(),
+                 .shown_at = [&](glm::dvec2 at) -> std::optional<glm::vec2> {
+                     const auto seen = in_picture(from, from.eye_m + ray(to, at, aspect), shown);
+                     return seen ? std::optional(glm::vec2(0.5 * (*seen + 1.0))) : std::nullopt;
+                 }});
 }
 
 void SceneSaver::poll(const std::shared_ptr<const Picture>& image) {
@@ -79,14 +111,17 @@ void SceneSaver::save_image(const Picture& image) {
 }
 
 void SceneSaver::start_export() {
-    std::optional<PictureOrder> order = sheet_.take();
+    std::optional<ExportOrder> order = sheet_.take();
     if (!order || export_) return;
-    if (parts_.opening.is_preview())
+    if (order->kind == kFigures) return parts_.overlay.start_export(order->path, order->overwrite);
+    const bool is_picture = order->is_picture();
+    if (is_picture && parts_.opening.is_preview())
         return parts_.messages.show(tr("the picture can be exported when all posts are read"));
-    if (const std::string note = parts_.overlay.missing_note(); !note.empty())
+    parts_.state.message.clear();
+    if (const std::string note = parts_.overlay.missing_note(); is_picture && !note.empty())
         parts_.messages.note(tr_format("the picture is {}", note));
-    export_ = std::make_unique<PictureExport>(std::move(*order), device_,
-                                              parts_.opening.opened()->dem, &Window::wake);
+    export_ = std::make_unique<FileExport>(std::move(*order), device_, parts_.opening.opened()->dem,
+                                           &Window::wake);
 }
 
 }  // namespace relevo::viewer

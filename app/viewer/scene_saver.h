@@ -4,6 +4,7 @@
 #include <string>
 
 #include "viewer/export_sheet.h"
+#include "viewer/file_export.h"
 #include "viewer/parts.h"
 
 namespace relevo::viewer {
@@ -20,6 +21,9 @@ class SceneSaver {
     /// The scene of a document for a picture.
     /// @param is_centred  on what the panels leave free
     scene::Scene scene_for(Document document, bool is_centred, double aspect) const;
+
+    /// The camera of such a picture.
+    Pose pose_for(const Document& document, bool is_centred, double aspect) const;
 
     void copy_command();
     void save_scene();
@@ -47,8 +51,8 @@ class SceneSaver {
     Parts parts_;
     std::string device_;
     ExportSheet sheet_;
-    std::unique_ptr<PictureExport> export_;
-    bool takes_picture_ = false;
+    std::unique_ptr<FileExport> export_;
+    bool takes_picture_ = false, had_sheet_ = false;
 };
 
 }  // namespace relevo::viewer

@@ -79,6 +79,58 @@ void take(const json& from, const char* name, T& value) {
     if (fits) value = member->get<T>();
 }
 
+/// What is remembered of exports: name in the file, value, range of whole numbers.
+template <typename Each>
+void each_of(ExportChoice& choice, FilmFile& film, const Each& each) {
+    each("kind", choice.kind, 0, static_cast<int>(kExportKinds.size()) - 1);
+    each("width_px", choice.size_px.x, 1, scene::kMaxSide_px);
+    each("height_px", choice.size_px.y, 1, scene::kMaxSide_px);
+    each("format", choice.format, 0, static_cast<int>(kExportFormats.size()) - 1);
+    each("samples", choice.samples, 1, kExportSamples.back());
+    each("quality", choice.quality, 1, 100);
+    each("transparent", choice.is_transparent);
+    each("centred", choice.is_centred);
+    each("error_m", choice.error_m);
+    each("folder", choice.folder);
+    each("name", choice.name);
+    each("film_width_px", film.size_px.x, kLeastFilm_px, kMostFilm_px);
+    each("film_height_px", film.size_px.y, kLeastFilm_px, kMostFilm_px);
+    each("film_format", film.ending);
+    each("film_quality", film.quality, 0, 100);
+    each("film_samples", film.samples, 1, kExportSamples.back());
+    each("film_date", film.has_date);
+    each("film_name", film.name);
+}
+
+struct Reader {
+    const json& from;
+
+    template <typename T>
+    void operator()(const char* name, T& value) const {
+        take(from, name, value);
+    }
+    void operator()(const char* name, int& value, int least, int most) const {
+        double number = value;
+        take(from, name, number);
+        value = static_cast<int>(std::clamp<double>(number, least, most));
+    }
+};
+
+void read_exports(const json& from, Settings& settings) {
+    const bool has_any = from.is_object() && from.contains("export");
+    each_of(settings.exporting, settings.film, Reader{has_any ? from["export"] : json()});
+    double& error_m = settings.exporting.error_m;
+    error_m = std::clamp(error_m, kLeastError_m, kMostError_m);
+    if (!contains(kFilmEndings, settings.film.ending)) settings.film.ending = FilmFile().ending;
+}
+
+ordered_json exports_of(Settings settings) {
+    ordered_json all;
+    each_of(settings.exporting, settings.film,
+            [&](const char* name, const auto& value, auto...) { all[name] = value; });
+    return all;
+}
+
 std::vector<std::string> strings(const json& from) {
     std::vector<std::string> result;
     if (!from.is_array()) return result;
@@ -191,6 +243,7 @@ Settings Memory::settings() const {
     take(from, "charts", settings.charts);
     take(from, "panel_width", panel_width);
     take(from, "charts_height", charts_height);
+    read_exports(from, settings);
     settings.light_style = style == "light";
     settings.text_px = static_cast<int>(std::clamp<double>(text_px, kLeastText_px, kMostText_px));
     settings.panel_width = static_cast<int>(std::clamp(panel_width, 0.0, kMostExtent));
@@ -209,7 +262,8 @@ void Memory::write(const Settings& settings) const {
                  {"panels", settings.panels},
                  {"charts", settings.charts},
                  {"panel_width", settings.panel_width},
-                 {"charts_height", settings.charts_height}});
+                 {"charts_height", settings.charts_height},
+                 {"export", exports_of(settings)}});
 }
 
 std::vector<RecentDem> Memory::recent() const {

@@ -7,6 +7,8 @@
 #include "geo/geodetic.h"
 #include "scene/scene.h"
 #include "sun/time.h"
+#include "viewer/export_choice.h"
+#include "viewer/film_choice.h"
 
 /// Settings and history of the viewer. Invalid files do not keep the window from opening: they
 /// count as empty. Files are replaced as a whole.
@@ -28,6 +30,8 @@ struct Settings {
     bool charts = true;     ///< the chosen point's horizon and year
     int panel_width = 360;  ///< of the side panel, in units of a layout for the usual text size
     int charts_height = 0;  ///< the same of the charts; 0: by the window
+    ExportChoice exporting;
+    FilmFile film;  ///< its folder is that of `exporting`
 
     bool operator==(const Settings&) const = default;
 };

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/files_in_use.h"
+#include "dem/files_of.h"
 #include "figure/horizons.h"
 #include "figure/hours.h"
 #include "figure/shadow.h"
@@ -299,8 +301,11 @@ void OverlayWork::tell(double share) {
 }
 
 OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const figure::Raster> whole,
-                         std::function<void()> on_change)
-    : wanted_(std::move(wanted)), on_change_(std::move(on_change)) {
+                         std::function<void()> on_change, std::string path, bool overwrite)
+    : wanted_(std::move(wanted)),
+      on_change_(std::move(on_change)),
+      path_(std::move(path)),
+      overwrite_(overwrite) {
     thread_ = std::thread([this, whole = std::move(whole)] { run(whole.get()); });
 }
 
@@ -319,11 +324,21 @@ void OverlaySave::run(const figure::Raster* whole) {
         const dem::Posts posts = wanted_.dem->field.reduction == 1
                                      ? dem::Posts(wanted_.dem->field)
                                      : dem::Posts::load(wanted_.dems, wanted_.options);
-        name_ = write_under_free_name("tif", [&](OutputFile& file) {
+        const auto write = [&](OutputFile& file) {
             double share = 0;
             figure::write_raster(file, *wanted_.figure.of(posts), posts, wanted_.options.memory,
                                  RELEVO_VERSION, whole, [&](double more) { tell(share += more); });
-        });
+        };
+        if (path_.empty()) {
+            name_ = write_under_free_name("tif", write);
+        } else {
+            FilesInUse files;
+            dem::add_named(wanted_.dems, files);
+            OutputFile& file = files.open_output(path_, overwrite_, "export");
+            dem::add_all(wanted_.dems, files);
+            write(file);
+            name_ = path_;
+        }
     } catch (const OverlayCancelled&) {
         return;
     } catch (...) {

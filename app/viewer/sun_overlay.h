@@ -103,13 +103,14 @@ class OverlayWork : public LatestWork<OverlayWanted, OverlayShown> {
     std::chrono::steady_clock::time_point reported_at_;
 };
 
-/// Writes the raster of all posts, as `relevo sun` does, to the working folder under a free name.
+/// Writes the raster of all posts, as `relevo sun` does.
 class OverlaySave {
   public:
     /// @param whole      the raster of all posts; null: it is computed in parts
     /// @param on_change  called on its thread, also at the end
+    /// @param path       empty: a free name in the working folder
     OverlaySave(OverlayWanted wanted, std::shared_ptr<const figure::Raster> whole,
-                std::function<void()> on_change);
+                std::function<void()> on_change, std::string path = {}, bool overwrite = false);
     OverlaySave(const OverlaySave&) = delete;
     OverlaySave& operator=(const OverlaySave&) = delete;
     /// Cancels. Leaves no partial file.
@@ -127,6 +128,8 @@ class OverlaySave {
 
     OverlayWanted wanted_;
     std::function<void()> on_change_;
+    const std::string path_;
+    const bool overwrite_;
     std::atomic<bool> is_cancelled_ = false, is_done_ = false;
     std::atomic<double> progress_ = 0;
     std::string name_;

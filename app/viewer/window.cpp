@@ -376,6 +376,10 @@ void Window::take(const Picture& picture) {
     impl_->shown.take(picture);
 }
 
+unsigned Window::texture() const {
+    return impl_->shown.frame ? impl_->shown.frame->colour.name() : impl_->shown.texture.name();
+}
+
 void Window::take_before(const Picture* picture) {
     if (picture)
         impl_->before.take(*picture);

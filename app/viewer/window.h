@@ -65,6 +65,8 @@ class Window {
 
     /// Sets the displayed frame.
     void take(const Picture& picture);
+    /// The displayed frame's texture; 0: none yet.
+    unsigned texture() const;
     /// Sets the frame left of the dividing line, of the same view; null: none.
     void take_before(const Picture* picture);
     /// Position of the dividing line as a fraction of the window's width.

@@ -226,10 +226,10 @@ TEST_F(Viewer, EscClosesMenusListsAndTheCalendar) {
     };
     is_closed_again({150, 560, 200, 180}, {210, 783}, "1");  // the calendar of the date
     // A list of the export sheet: the sheet stays for the next Esc.
-    const glm::ivec4 sheet{850, 130, 300, 260};
+    const glm::ivec4 sheet{300, 150, 300, 260};
     const image::Image8 without = display_.screen();
     press({"key", "ctrl+p"});
-    is_closed_again(sheet, {1000, 162}, "1");
+    is_closed_again(sheet, {420, 192}, "1");
     EXPECT_GT(count_other(without, display_.screen(), sheet), 1000);
     press({"key", "Escape"});
     EXPECT_TRUE(wait([&] { return count_other(without, display_.screen(), sheet) < 30; }));

@@ -282,37 +282,6 @@ TEST_F(Viewer, WalksAtTheClickedPointElseInTheMiddleOfThePicture) {
     EXPECT_GT(std::abs(eye()[1].get<double>() - middle[1].get<double>()), 0.01);
 }
 
-TEST_F(Viewer, TheSheetExportsWhatItsCommandCaptures) {
-    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
-    constexpr glm::ivec4 kSheet{850, 130, 400, 396};
-    ASSERT_TRUE(changes_in(kSheet, [&] { act({"key", "ctrl+p"}); }));
-    act({"mousemove", "910", "518"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    act({"click", "1"});
-    const auto file = folder_ / "jacksboro_20260621T1400.png";
-    ASSERT_TRUE(wait([&] { return std::filesystem::exists(file); })) << program_->output();
-    const auto captured = folder_ / "captured.png";
-    test::WindowedProgram capture(
-        display_, test::build_dir() / "bin/relevo",
-        {"-q", "capture", "--from", file.string(), "-o", captured.string()});
-    ASSERT_EQ(capture.status(), 0) << capture.output();
-    const image::Image8 a = image::read(file), b = image::read(captured);
-    EXPECT_EQ(a.width, 1920);
-    EXPECT_EQ(a.height, 1080);
-    EXPECT_EQ(test::difference(a, b, 2), 0);
-    // The DEM is in the middle: as much sky on the left as on the right.
-    const auto first_ground = [&](bool from_left) {
-        const int row = 3 * a.height / 5;
-        const std::uint8_t* const sky = a.row(2);
-        for (int x = 0; x < a.width; ++x) {
-            const std::uint8_t* const at = a.row(row) + 3 * (from_left ? x : a.width - 1 - x);
-            if (std::abs(at[0] - sky[0]) > 12) return x;
-        }
-        return a.width;
-    };
-    EXPECT_LT(std::abs(first_ground(true) - first_ground(false)), a.width / 6);
-}
-
 TEST_F(Viewer, EscGivesUpOpeningADem) {
     const std::filesystem::path slow = slow_dem(folder_, dem_);
     std::filesystem::create_directories(folder_ / "bin");

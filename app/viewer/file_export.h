@@ -7,33 +7,23 @@
 #include <string>
 #include <thread>
 
-#include "image/image.h"
 #include "session/session.h"
+#include "viewer/export_choice.h"
 
 namespace relevo::viewer {
 
-/// A picture to be written.
-struct PictureOrder {
-    scene::Scene scene;  ///< with size, samples, transparency and stamps
-    std::string path;
-    image::Encoding encoding;
-};
-
-/// The command line that makes the picture.
-std::string command_of(const PictureOrder& order);
-
-/// Draws and writes a picture on a thread and a device of its own, while the window goes on.
-class PictureExport {
+/// Writes a picture, drawn on a device of its own, or a mesh on a thread, while the window goes on.
+class FileExport {
   public:
     /// @param device     as session::Options
     /// @param dem        the scene's DEM
     /// @param on_change  called on its thread at the end
-    PictureExport(PictureOrder order, std::string device,
-                  std::shared_ptr<const session::LoadedDem> dem, std::function<void()> on_change);
-    PictureExport(const PictureExport&) = delete;
-    PictureExport& operator=(const PictureExport&) = delete;
-    /// Waits for the picture.
-    ~PictureExport();
+    FileExport(ExportOrder order, std::string device, std::shared_ptr<const session::LoadedDem> dem,
+               std::function<void()> on_change);
+    FileExport(const FileExport&) = delete;
+    FileExport& operator=(const FileExport&) = delete;
+    /// Waits for the file.
+    ~FileExport();
 
     bool is_done() const { return is_done_; }
     /// "tyrol.png: picture saved, 1920 x 1080". Requires is_done().
@@ -42,9 +32,10 @@ class PictureExport {
 
   private:
     void run();
-    std::string write();
+    std::string write_picture();
+    std::string write_mesh();
 
-    PictureOrder order_;
+    ExportOrder order_;
     std::string device_;
     std::shared_ptr<const session::LoadedDem> dem_;
     std::function<void()> on_change_;

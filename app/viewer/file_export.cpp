@@ -1,4 +1,4 @@
-#include "viewer/picture_export.h"
+#include "viewer/file_export.h"
 
 #include <filesystem>
 #include <optional>
@@ -10,43 +10,37 @@
 #include "base/files_in_use.h"
 #include "base/text.h"
 #include "dem/files_of.h"
+#include "mesh/refine.h"
+#include "output/mesh_file.h"
 #include "scene/map_view.h"
 #include "session/picture_file.h"
 #include "session/record.h"
-#include "viewer/document.h"
 #include "viewer/export.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
 
-std::string command_of(const PictureOrder& order) {
-    std::string command = capture_command(order.scene, order.path);
-    if (order.encoding.bits != 8) command += fmt::format(" --bits {}", order.encoding.bits);
-    if (order.encoding.quality) command += fmt::format(" --quality {}", *order.encoding.quality);
-    return command;
-}
-
-PictureExport::PictureExport(PictureOrder order, std::string device,
-                             std::shared_ptr<const session::LoadedDem> dem,
-                             std::function<void()> on_change)
+FileExport::FileExport(ExportOrder order, std::string device,
+                       std::shared_ptr<const session::LoadedDem> dem,
+                       std::function<void()> on_change)
     : order_(std::move(order)),
       device_(std::move(device)),
       dem_(std::move(dem)),
       on_change_(std::move(on_change)),
       thread_([this] { run(); }) {}
 
-PictureExport::~PictureExport() {
+FileExport::~FileExport() {
     thread_.join();
 }
 
-std::string PictureExport::result() const {
+std::string FileExport::result() const {
     if (failure_) std::rethrow_exception(failure_);
     return result_;
 }
 
-void PictureExport::run() {
+void FileExport::run() {
     try {
-        result_ = write();
+        result_ = order_.is_picture() ? write_picture() : write_mesh();
     } catch (const Error&) {
         failure_ = std::current_exception();
     } catch (const std::exception& error) {
@@ -58,7 +52,7 @@ void PictureExport::run() {
     on_change_();
 }
 
-std::string PictureExport::write() {
+std::string FileExport::write_picture() {
     scene::Scene scene = order_.scene;
     // Linear light has no stamps.
     if (image::holds_linear_light(order_.path)) scene.stamps.margin = false;
@@ -66,15 +60,15 @@ std::string PictureExport::write() {
     const std::filesystem::path path = order_.path;
     FilesInUse files;
     dem::add_named(scene.dems, files);
-    OutputFile& file = files.open_output(path, /*overwrite=*/false, "export");
+    OutputFile& file = files.open_output(path, order_.overwrite, "export");
     const session::SceneIn scene_in = session::scene_in(path, scene);
     OutputFile* const sidecar =
         scene_in == session::SceneIn::Sidecar
-            ? &files.open_output(session::sidecar_to_write(path), /*overwrite=*/false, "export")
+            ? &files.open_output(session::sidecar_to_write(path), order_.overwrite, "export")
             : nullptr;
     std::vector<OutputFile*> beside;
     for (const std::filesystem::path& file_beside : session::files_beside(scene, path))
-        beside.push_back(&files.open_output(file_beside, /*overwrite=*/false, "export"));
+        beside.push_back(&files.open_output(file_beside, order_.overwrite, "export"));
     const session::PictureFormat format{.bits = order_.encoding.bits};
     const bool linear = image::holds_linear_light(path);
     const bool in_bands = session::needs_bands(scene, format, linear);
@@ -82,6 +76,7 @@ std::string PictureExport::write() {
     image::load_format(path);
     session::SceneInputs inputs(RELEVO_VERSION);
     inputs.record(scene);
+    dem::add_all(scene.dems, files);
     session::Session session(
         scene, {.device = device_, .dem = dem_, .radiance = linear, .format = format}, files);
     std::optional<image::Picture> picture;
@@ -98,6 +93,30 @@ std::string PictureExport::write() {
     for (const std::string& note : session.stamp_notes())
         text += "; " + note;
     return text;
+}
+
+std::string FileExport::write_mesh() {
+    const scene::Scene& scene = order_.scene;
+    FilesInUse files;
+    dem::add_named(scene.dems, files);
+    OutputFile& file = files.open_output(order_.path, order_.overwrite, "export");
+    dem::add_all(scene.dems, files);
+    const bool is_solid = order_.kind == kSolid;
+    output::MeshFileOptions options{.generator = fmt::format("Relevo {}", RELEVO_VERSION),
+                                    .is_stl = is_solid};
+    options.mesh.error_m = order_.error_m;
+    options.mesh.solid = is_solid;
+    options.mesh.max_triangles = scene.dem.memory.posts * 4 / mesh::kBytesATriangle;
+    const dem::Holes holes = scene.holes == dem::Holes::Mark ? dem::Holes::Fill : scene.holes;
+    const output::MeshFile made = output::write_mesh(
+        file,
+        output::read_ground(dem::Source::open(scene.dems, scene.dem), scene.dem,
+                            {.holes = holes, .exaggeration = scene.exaggeration, .remedy = ""}),
+        options);
+    files.finish_outputs();
+    return tr_format("{}: mesh saved in {}, {} triangles, worst error {:.2g} m",
+                     printable(order_.path), folder_of(order_.path), made.mesh.surface.triangles(),
+                     made.mesh.worst_m);
 }
 
 }  // namespace relevo::viewer
