@@ -70,7 +70,7 @@ void CameraMoves::look_to_moon() {
     pose.pitch_deg = degrees(elevation_rad);
 }
 
-void CameraMoves::ask_sun_over_point() {
+void CameraMoves::ask_over_point(sun::Body body) {
     const geo::Geodetic eye = view_of(parts_.state.document.pose, parts_.state.land).eye->place;
     if (!parts_.state.chosen || parts_.opening.is_preview()) return;
     if (std::isnan(parts_.state.land.height_m(eye)))
@@ -78,7 +78,7 @@ void CameraMoves::ask_sun_over_point() {
             tr("the eye is outside the DEM: right click, Stand here, then ask"));
     const Opened& opened = *parts_.opening.opened();
     if (!sun_over_.ask({opened.dem, opened.scene, eye, *parts_.state.chosen,
-                        parts_.state.document.utc, parts_.state.document.zone}))
+                        parts_.state.document.utc, parts_.state.document.zone, body}))
         parts_.messages.note(tr("still looking for the time that was asked for before"));
 }
 

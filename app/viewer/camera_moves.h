@@ -36,7 +36,7 @@ class CameraMoves {
     /// Looks at the middle of what a file holds on the DEM, unless some of it is in view.
     void show(const FilePlace& place);
     /// When the sun next stands over the chosen point: goes there once it is known.
-    void ask_sun_over_point();
+    void ask_over_point(sun::Body body);
     void poll_sun_over();
 
   private:

@@ -31,6 +31,7 @@ enum class Command {
     LookThere,  ///< to the chosen point
     LookToMoon,
     SunOverPoint,  ///< when it next stands over the chosen point, seen from here
+    MoonOverPoint,
     SaveView,
     Measure,  ///< begins or ends a line
     EndMeasuring,

@@ -135,7 +135,9 @@ void MainWindow::run_scene_command(Command command) {
         case Command::SaveJob:
             return saver_->save_job();
         case Command::SunOverPoint:
-            return moves_->ask_sun_over_point();
+            return moves_->ask_over_point(sun::Body::Sun);
+        case Command::MoonOverPoint:
+            return moves_->ask_over_point(sun::Body::Moon);
         case Command::SaveView:
             return save_view();
         case Command::Measure:

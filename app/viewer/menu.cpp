@@ -193,6 +193,8 @@ void sun_menu(State& state) {
     item(state, tr_label("Look to the moon"), "L", Command::LookToMoon);
     item(state, tr_label("When the sun stands over the point"), nullptr, Command::SunOverPoint,
          false, state.chosen.has_value());
+    item(state, tr_label("When the moon stands over the point"), nullptr, Command::MoonOverPoint,
+         false, state.chosen.has_value());
     item(state, tr_label("Sun hours of the day"), "O", Command::Overlay,
          state.document.overlay.shows_day());
     item(state, tr_label("Horizon and year of the point"), "P", Command::Charts,

@@ -124,6 +124,8 @@ void point_menu(State& state, bool opens) {
     if (ImGui::MenuItem(tr_label("Look there"))) state.commands.push_back(Command::LookThere);
     if (ImGui::MenuItem(tr_label("When the sun stands over it")))
         state.commands.push_back(Command::SunOverPoint);
+    if (ImGui::MenuItem(tr_label("When the moon stands over it")))
+        state.commands.push_back(Command::MoonOverPoint);
     if (ImGui::MenuItem(tr_label("Measure from here"), "M"))
         state.commands.push_back(Command::Measure);
     if (state.chosen && ImGui::MenuItem(tr_label("Copy coordinates")))

@@ -23,7 +23,8 @@ SunOverAnswer sun_over(const SunOverQuestion& question) {
         {.eye_height_m = question.eye.height_m, .eye_above_ground = false, .few_directions = true});
     const sun::Date first = question.zone.local(question.after).wall.date;
     const sun::Date last = std::min(sun::add_days(first, 366), sun::Date{sun::kLastYear, 12, 31});
-    light::AlignmentOptions options;
+    const bool is_moon = question.body == sun::Body::Moon;
+    light::AlignmentOptions options{.body = question.body};
     options.refraction = light::refraction_at(question.scene.refraction, horizon.place());
     const light::Alignments found =
         light::alignments(horizon, question.target, first, last, question.zone, options);
@@ -32,13 +33,17 @@ SunOverAnswer sun_over(const SunOverQuestion& question) {
         return passage.sun_visible && passage.utc > question.after;
     });
     if (next == found.passages.end())
-        return {{}, tr("within a year the sun does not stand over that point, seen from here")};
+        return {{},
+                is_moon ? tr("within a year the moon does not stand over that point, seen from "
+                             "here")
+                        : tr("within a year the sun does not stand over that point, seen from "
+                             "here")};
     const double right_deg = degrees(next->right_rad);
-    return {next->utc,
-            tr_format("the sun stands over the point, {:.2f}° {} and {:.2f}° {} it",
-                      std::abs(right_deg), right_deg < 0 ? tr("to the left") : tr("to the right"),
-                      std::abs(degrees(next->above_rad)),
-                      next->above_rad < 0 ? tr("below") : tr("above"))};
+    return {next->utc, tr_format("{} stands over the point, {:.2f}° {} and {:.2f}° {} it",
+                                 is_moon ? tr("the moon") : tr("the sun"), std::abs(right_deg),
+                                 right_deg < 0 ? tr("to the left") : tr("to the right"),
+                                 std::abs(degrees(next->above_rad)),
+                                 next->above_rad < 0 ? tr("below") : tr("above"))};
 }
 
 bool SunOver::ask(SunOverQuestion question) {

@@ -6,11 +6,12 @@
 #include <string>
 
 #include "session/session.h"
+#include "sun/body.h"
 #include "sun/zone.h"
 
 namespace relevo::viewer {
 
-/// A question: when does the sun next stand over a point?
+/// A question: when does the sun or the moon next stand over a point?
 struct SunOverQuestion {
     std::shared_ptr<const session::LoadedDem> dem;
     scene::Scene scene;    ///< files and options of the DEM, refraction
@@ -18,6 +19,7 @@ struct SunOverQuestion {
     geo::Geodetic target;  ///< the same height
     sun::Instant after;
     sun::Zone zone;
+    sun::Body body = sun::Body::Sun;
 };
 
 struct SunOverAnswer {
@@ -25,8 +27,8 @@ struct SunOverAnswer {
     std::string words;                ///< for the user
 };
 
-/// The first passage of the sun within half a degree, in sight of the eye, in the year after a
-/// time, as `relevo sun when` finds it.
+/// The first passage of the body within half a degree, in sight of the eye, in the year after a
+/// time, as `relevo sun when` finds the sun's.
 SunOverAnswer sun_over(const SunOverQuestion& question);
 
 /// Answers the latest question in the background.

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "light/fields.h"
 #include "light/point/alignment.h"
+#include "sun/moon.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 
@@ -65,6 +66,40 @@ TEST(Alignments, AreTheMomentsOfLeastSeparation) {
     EXPECT_EQ(found.definition,
               "closest approach of the sun's centre to the point, within 1.5 degrees; " +
                   air.description() + "; terrestrial refraction k = 0.13");
+}
+
+TEST(Alignments, OfTheMoonMissNoneAndAreClosest) {
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    AlignmentOptions options{.body = sun::Body::Moon};
+    options.tolerance_rad = radians(4);
+    const Alignments found =
+        alignments(here, field.place(40, 110), {2026, 3, 1}, {2026, 3, 10}, kZurich, options);
+    const sun::Refraction air = sun::Refraction::standard(here.place());
+    const auto separation_rad = [&](sun::Instant t) {
+        const sun::MoonPosition p = sun::moon_position(t, here.place());
+        const double a = p.azimuth_rad - found.sight.azimuth_rad;
+        const double e = air.apparent_rad(p.elevation_rad), f = found.sight.elevation_rad;
+        return std::acos(
+            std::min(1.0, std::sin(e) * std::sin(f) + std::cos(e) * std::cos(f) * std::cos(a)));
+    };
+    // Looked at every ten minutes, it comes near at no other time.
+    int times = 0;
+    const sun::Instant begin = kZurich.day({2026, 3, 1}).begin;
+    for (double t_s = 0; t_s < 10 * 86400; t_s += 600) {
+        if (separation_rad(begin + t_s) > options.tolerance_rad) continue;
+        ++times;
+        EXPECT_TRUE(std::ranges::any_of(found.passages, [&](const Alignment& passage) {
+            return std::abs(passage.utc - (begin + t_s)) < 3600;
+        })) << t_s;
+    }
+    EXPECT_GE(times, 2);
+    for (const Alignment& passage : found.passages) {
+        EXPECT_NEAR(separation_rad(passage.utc), passage.separation_rad, 1e-6);
+        for (const double s : {-20.0, 20.0})
+            EXPECT_GT(separation_rad(passage.utc + s), passage.separation_rad);
+    }
+    EXPECT_TRUE(found.definition.starts_with("closest approach of the moon's centre"));
 }
 
 TEST(Alignments, MissNoDay) {

@@ -16,8 +16,9 @@ namespace relevo::light {
 namespace {
 
 // The sky turns by 15.041 arcsec/s, the sun along the ecliptic by 0.04 more; refraction shortens
-// ways.
-constexpr double kFastestWay_rad_s = 15.1 * kArcsecond_rad;
+// ways. The moon's own way and its parallax are below 0.8 arcsec/s.
+constexpr double kFastestWay_rad_s = 15.1 * kArcsecond_rad,
+                 kFastestMoon_rad_s = 15.9 * kArcsecond_rad;
 constexpr double kNear_s = 30;
 constexpr double kClosest_s = 0.05;
 
@@ -31,16 +32,16 @@ double angle_rad(const glm::dvec3& a, const glm::dvec3& b) {
     return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
 }
 
-/// The sun against a point that is seen from a place.
+/// The sun or the moon against a point that is seen from a place.
 class Approach {
   public:
-    Approach(const TerrainHorizon& from, const Sight& sight, const sun::Refraction& refraction,
-             sun::Instant begin, sun::Instant end)
+    Approach(sun::Body body, const TerrainHorizon& from, const Sight& sight,
+             const sun::Refraction& refraction, sun::Instant begin, sun::Instant end)
         : from_(from),
           sight_(sight),
           refraction_(refraction),
           begin_(begin),
-          table_(begin, end),
+          table_(begin, end, body),
           observer_(from.place()),
           wanted_(direction(sight.azimuth_rad, sight.elevation_rad)) {}
 
@@ -110,19 +111,22 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
     const sun::Refraction refraction =
         options.refraction ? *options.refraction : sun::Refraction::standard(from.place());
     result.definition = fmt::format(
-        "closest approach of the sun's centre to the point, within {:.4g} degrees; {}; terrestrial "
+        "closest approach of the {}'s centre to the point, within {:.4g} degrees; {}; terrestrial "
         "refraction k = {:.4g}",
-        degrees(options.tolerance_rad), refraction.description(), from.options().refraction);
+        sun::name_of(options.body), degrees(options.tolerance_rad), refraction.description(),
+        from.options().refraction);
 
     const sun::Instant begin = zone.day(first).begin, end = zone.day(last).end;
-    const Approach approach(from, result.sight, refraction, begin, end);
+    const Approach approach(options.body, from, result.sight, refraction, begin, end);
     // Far from the target, the sun cannot come within the tolerance any sooner than this.
+    const double fastest_rad_s =
+        options.body == sun::Body::Moon ? kFastestMoon_rad_s : kFastestWay_rad_s;
     const double length_s = end - begin;
     double before_s = 0, t_s = 0;
     double before_rad = kPi, here_rad = approach.separation_rad(0);
     while (t_s < length_s) {
         const double step_s =
-            std::max(kNear_s, (here_rad - options.tolerance_rad) / kFastestWay_rad_s - kNear_s);
+            std::max(kNear_s, (here_rad - options.tolerance_rad) / fastest_rad_s - kNear_s);
         const double next_s = std::min(t_s + step_s, length_s);
         const double next_rad = approach.separation_rad(next_s);
         if (here_rad <= before_rad && here_rad < next_rad) {

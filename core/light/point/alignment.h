@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "light/point/horizon.h"
+#include "sun/body.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
 
 namespace relevo::light {
 
 struct AlignmentOptions {
+    sun::Body body = sun::Body::Sun;  ///< of the moon read "moon" for "sun" below
     /// How near the sun's centre must come to the target [rad].
     double tolerance_rad = 0.5 * 3.14159265358979323846 / 180;
     /// Of the sun; none: integrated through the standard atmosphere over the place.
