@@ -97,17 +97,21 @@ std::vector<geo::KnownCrs> named_and_usual(const RecentDem& dem,
 
 }  // namespace
 
-std::string where_text(const geo::Geodetic& place) {
+std::string near_text(const geo::Geodetic& place) {
     constexpr double kNear_m = 50'000;
-    const std::string degrees = coordinates_text(place, Coordinates::Degrees);
     try {
         if (const names::Entry* const named =
                 names::Gazetteer::shipped().nearest_place({place, kNear_m}))
-            return tr_format("near {} ({}), {}", named->name, named->country, degrees);
+            return tr_format("near {} ({})", named->name, named->country);
     } catch (const Error&) {
         // The sheet that finds names says that their lists cannot be read.
     }
-    return degrees;
+    return {};
+}
+
+std::string where_text(const geo::Geodetic& place) {
+    const std::string name = near_text(place);
+    return (name.empty() ? "" : name + ", ") + coordinates_text(place, Coordinates::Degrees);
 }
 
 std::vector<CrsSuggestion> suggest_crs(const RecentDem& dem, const RecentDem& other) {

@@ -23,5 +23,7 @@ std::vector<CrsSuggestion> suggest_crs(const RecentDem& dem, const RecentDem& ot
 
 /// "near Telfs (AT), 47.30800 N 11.07200 E", by the names that Relevo brings.
 std::string where_text(const geo::Geodetic& place);
+/// "near Innsbruck (AT)"; empty: no place is within 50 km, or the lists of names cannot be read.
+std::string near_text(const geo::Geodetic& place);
 
 }  // namespace relevo::viewer

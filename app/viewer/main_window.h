@@ -1,5 +1,6 @@
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,6 +84,8 @@ class MainWindow {
     void poll_threads();
     void poll_opening();
     void poll_images();
+    /// Names the place in the window's title: after the first picture, as reading names takes time.
+    void poll_place();
     void stop_comparison();
     /// @param is_first  of the window
     /// @param view      of a DEM that was read again; none: the scene's
@@ -171,9 +174,11 @@ class MainWindow {
     const Clock::time_point began_at_ = Clock::now();
     Clock::time_point checked_at_ = Clock::now();  // files
     std::optional<Clock::time_point> first_picture_at_;
-    bool sun_moved_ = false;        // in the frame before
-    bool has_new_input_ = false;    // ImGui has processed input since process_mouse()
-    std::optional<Command> sheet_;  // of help, that is shown
+    std::future<std::string> place_;  // of the DEM, in words
+    bool names_place_ = false;        // once there is a picture
+    bool sun_moved_ = false;          // in the frame before
+    bool has_new_input_ = false;      // ImGui has processed input since process_mouse()
+    std::optional<Command> sheet_;    // of help, that is shown
     bool closes_menus_ = false;
     bool opens_point_menu_ = false, quits_ = false;
     std::optional<Command> gives_keys_;  // PanelKeys or MenuKeys: when they are drawn

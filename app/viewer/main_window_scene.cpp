@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "sun/zone_of_place.h"
+#include "viewer/crs_suggestions.h"
 #include "viewer/main_window.h"
 #include "viewer/translation.h"
 
@@ -93,6 +94,7 @@ Wanted MainWindow::wanted_now() const {
 void MainWindow::poll_threads() {
     poll_opening();
     if (is_open()) poll_images();
+    if (is_open() && picture_) poll_place();
     if (auto message = opening_->thread().take_message()) {
         messages_.show(std::move(*message));
         pacing_.need_frames(2);
@@ -141,6 +143,20 @@ void MainWindow::poll_images() {
     if (compares && !comparison_->thread()) state_.compare_is_wanted = false;
 }
 
+void MainWindow::poll_place() {
+    using namespace std::chrono_literals;
+    if (std::exchange(names_place_, false))
+        place_ = std::async(std::launch::async, [centre = state_.centre] {
+            std::string place = near_text(centre);
+            Window::wake();
+            return place;
+        });
+    if (!place_.valid() || place_.wait_for(0s) != std::future_status::ready) return;
+    if (const std::string place = place_.get(); !place.empty())
+        window_->set_title(
+            fmt::format("{} - Relevo", opening_->opened()->scene.dems.front() + ", " + place));
+}
+
 void MainWindow::stop_comparison() {
     comparison_->stop();
     state_.compare_is_wanted = false;
@@ -174,6 +190,8 @@ void MainWindow::start_scene(bool is_first, const std::optional<scene::View>& vi
             tr_format("heights × {:g}; Camera, Heights sets another", scene.exaggeration));
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
+    place_ = {};
+    names_place_ = true;
     const std::vector<std::string> names = absolute_names(scene.dems);
     state_.views = memory_.views(names);
     try_or_log([&] { memory_.add_recent({names, scene.dem, scene.holes}); });

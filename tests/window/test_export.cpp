@@ -204,6 +204,10 @@ class ExportWindow : public Viewer {
 
 TEST_F(ExportWindow, ReturnExportsWhatTheCommandCaptures) {
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    // The title of the window names the place, once the names are read.
+    EXPECT_TRUE(wait([&] {
+        return program_->title().ends_with("jacksboro.tif, near Caryville (US) - Relevo");
+    })) << program_->title();
     open_sheet();
     press({"key", "Return"});
     const auto file = folder_ / "jacksboro_20260621T1400.png";
