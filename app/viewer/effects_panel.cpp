@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "shader/params.h"
 #include "viewer/state.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -244,7 +245,9 @@ void effect_row(State& state, const effect::Effect& effect) {
         ImGui::SetTooltip("%s: %s", effect.id().c_str(), effect.manifest.description.c_str());
     if (const std::string why = is_on ? "" : lack_of(state, effect); !why.empty()) {
         ImGui::SameLine();
-        ImGui::TextDisabled("%s", why.c_str());
+        const bool has_room =
+            ImGui::CalcTextSize(why.c_str()).x <= ImGui::GetContentRegionAvail().x;
+        ImGui::TextDisabled("%s", has_room ? why.c_str() : "(?)");
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (is_on) offer_view(state, effect);
@@ -277,7 +280,10 @@ void effect_group(State& state, std::string_view word, const char* title) {
     if (found.empty()) return;
     std::ranges::sort(found, {}, [](const effect::Effect* one) { return one->manifest.name; });
     ImGui::Spacing();
-    ImGui::TextDisabled("%s", title);
+    {
+        const style::Sized small(style::Size::Small);
+        ImGui::TextDisabled("%s", title);
+    }
     for (const effect::Effect* const effect : found)
         effect_row(state, *effect);
 }

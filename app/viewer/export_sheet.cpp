@@ -167,6 +167,7 @@ void ExportSheet::preview(const ExportChoice& choice, const ExportView& view) co
             is_whole = draw_view(view, {at.x + static_cast<float>(i) * eye, at.y}, {eye, size.y});
     list.AddRect(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::Dummy(size);
+    const style::Sized small(style::Size::Small);
     constexpr double kCm_a_px = 2.54 / 300;
     ImGui::TextDisabled("%s", tr_format("at 300 dpi {:.1f} x {:.1f} cm",
                                         choice.size_px.x * kCm_a_px, choice.size_px.y * kCm_a_px)

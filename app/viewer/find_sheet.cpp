@@ -15,6 +15,7 @@
 #include "viewer/latest_work.h"
 #include "viewer/overlay.h"
 #include "viewer/sheet.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 #include "viewer/window.h"
 
@@ -192,6 +193,7 @@ void FindSheet::draw(glm::vec2 size_px, State& state, const dem::Grid& grid) {
                                       : is_done_    ? tr("nothing found")
                                                     : tr("searching ..."));
         if (!error_.empty()) ImGui::TextWrapped("%s", error_.c_str());
+        const style::Sized small(style::Size::Small);
         ImGui::TextDisabled("%s", tr("Names: GeoNames, CC BY 4.0, and others (Help, About)"));
         if (closes_sheet()) close();
     }

@@ -1,11 +1,15 @@
 #include "viewer/fonts.h"
 
+#include <cmath>
 #include <filesystem>
+#include <list>
 #include <memory>
 
 #include <fontconfig/fontconfig.h>
 #include <imgui.h>
 #include <imgui_internal.h>
+
+#include "viewer/style.h"
 
 namespace relevo::viewer {
 namespace {
@@ -95,6 +99,33 @@ std::vector<FontFile> fonts_with(const std::set<char32_t>& letters) {
         if (!file.letters.empty()) fonts.push_back(std::move(file));
     }
     return fonts;
+}
+
+void load_fonts(float text_px, const std::set<char32_t>& letters) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    // Latin with accents, Greek, Cyrillic, dashes, degrees: is_usual(). A title is a name of ASCII.
+    static const ImWchar usual[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
+    static const ImWchar ascii[] = {0x20, 0x7e, 0};
+    const std::string file = usual_font_file();
+    if (file.empty()) return;
+    // Must exist until the atlas is built.
+    static std::list<std::vector<ImWchar>> ranges;
+    ranges.clear();
+    const std::vector<FontFile> others = fonts_with(letters);
+    for (const float size_px : {text_px, style::kSmall * text_px}) {
+        atlas.AddFontFromFileTTF(file.c_str(), std::round(size_px), nullptr, usual);
+        for (const FontFile& font : others) {
+            std::vector<ImWchar>& range = ranges.emplace_back();
+            for (const char32_t letter : font.letters)
+                range.insert(range.end(), 2, static_cast<ImWchar>(letter));
+            range.push_back(0);
+            ImFontConfig config;
+            config.MergeMode = true;
+            config.FontNo = font.face;
+            atlas.AddFontFromFileTTF(font.path.c_str(), std::round(size_px), &config, range.data());
+        }
+    }
+    atlas.AddFontFromFileTTF(file.c_str(), std::round(style::kTitle * text_px), nullptr, ascii);
 }
 
 }  // namespace relevo::viewer

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/overlay.h"
+#include "viewer/style.h"
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
@@ -54,7 +55,10 @@ void first_steps() {
 
 void about(const std::string& device) {
     begin_in_the_middle(tr_label("About Relevo"));
-    ImGui::TextUnformatted(tr_format("Relevo {}", RELEVO_VERSION).c_str());
+    {
+        const style::Sized title(style::Size::Title);
+        ImGui::TextUnformatted(fmt::format("Relevo {}", RELEVO_VERSION).c_str());
+    }
     ImGui::TextUnformatted(tr_format("draws with {}", device).c_str());
     ImGui::Separator();
     // What ships with it: data/README.md has the terms.
@@ -99,7 +103,7 @@ void keys() {
         {"C", tr_later("compare: the left side stays, the right side follows; drag the line")},
         {"O", tr_later("sun hours of the day on the ground, on and off")},
         {"F12", tr_later("save the image as a picture")},
-        {tr_later("Ctrl + P"), tr_later("export a picture: size, format, samples, stamps")},
+        {tr_later("Ctrl + P"), tr_later("export: picture, map, film, mesh, figures")},
         {tr_later("Ctrl + C"), tr_later("copy the command for this picture")},
         {tr_later("Ctrl + S"), tr_later("save the scene")},
         {tr_later("Ctrl + E"), tr_later("export the sun overlay as GeoTIFF")},

@@ -35,7 +35,7 @@ struct Layout {
 
 /// Least and greatest width of the side panel, and least height of the charts, as shares of the
 /// window or in units of a layout for the default text size.
-inline constexpr float kLeastPanel = 240, kMostPanelShare = 0.5f, kLeastCharts = 120,
+inline constexpr float kLeastPanel = 240, kMostPanelShare = 0.5f, kLeastCharts = 150,
                        kMostChartsShare = 0.5f;
 
 /// @param window  its size

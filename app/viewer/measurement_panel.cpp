@@ -59,8 +59,9 @@ std::vector<std::optional<Place>> places_of(const std::vector<glm::dvec3>& line_
 }
 
 void draw_dot(ImDrawList& list, ImVec2 at) {
-    list.AddCircleFilled(at, 5, style::kMark);
-    list.AddCircle(at, 6, style::kInk, 0, 1.5f);
+    const float unit = style::px(1);
+    list.AddCircleFilled(at, 5 * unit, style::kMark);
+    list.AddCircle(at, 6 * unit, style::kInk, 0, 1.5f * unit);
 }
 
 /// Straight, from the last corner to the first.
@@ -68,7 +69,7 @@ void draw_closing_line(const Measurement& measurement, const Picture& picture, g
     if (measurement.corners_m.size() < 3) return;
     const auto a = at_window(picture, size_px, measurement.corners_m.front());
     const auto b = at_window(picture, size_px, measurement.corners_m.back());
-    if (a && b) ImGui::GetBackgroundDrawList()->AddLine(*a, *b, style::kFaintMark, 2);
+    if (a && b) ImGui::GetBackgroundDrawList()->AddLine(*a, *b, style::kFaintMark, style::px(2));
 }
 
 }  // namespace
@@ -80,7 +81,8 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
         if (places[i - 1] && places[i])
             list.AddLine(
                 places[i - 1]->at, places[i]->at,
-                places[i - 1]->hidden || places[i]->hidden ? style::kFaintMark : style::kMark, 2);
+                places[i - 1]->hidden || places[i]->hidden ? style::kFaintMark : style::kMark,
+                style::px(2));
     draw_closing_line(measurement, picture, size_px);
     std::optional<ImVec2> last;
     for (const glm::dvec3& corner_m : measurement.corners_m) {
@@ -91,10 +93,7 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
         if (const auto& place = places[*measurement.marked]) draw_dot(list, place->at);
     if (!last || !measurement.profile) return;
     const std::string length = length_text(measurement.profile->level_m);
-    const ImVec2 at{last->x + 12, last->y - 8}, extent = ImGui::CalcTextSize(length.c_str());
-    list.AddRectFilled({at.x - 3, at.y - 1}, {at.x + extent.x + 3, at.y + extent.y + 1},
-                       style::kShade, 3);
-    list.AddText(at, style::kInk, length.c_str());
+    label_over({last->x + style::px(15), last->y - style::px(8)}, length.c_str());
 }
 
 namespace {

@@ -16,8 +16,6 @@
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
-namespace {}  // namespace
-
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
     for (const double digit : {5.0, 2.0})
@@ -33,14 +31,22 @@ std::string length_text(double length_m) {
                          : fmt::format("{:.3g} cm", 100 * length_m);
 }
 
-void draw_sides(float line_px, float top_px) {
+void label_over(ImVec2 at, const char* words, float wrap_px) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImVec2 extent = ImGui::CalcTextSize(words, nullptr, false, wrap_px);
+    const float beside = style::px(6), above = style::px(3);
+    list.AddRectFilled({at.x - beside, at.y - above},
+                       {at.x + extent.x + beside, at.y + extent.y + above}, style::kShade,
+                       style::px(4));
+    list.AddText(nullptr, 0, at, style::kInk, words, nullptr, std::max(0.0f, wrap_px));
+}
+
+void draw_sides(float line_px, float top_px) {
     const auto label = [&](const char* words, bool left) {
         const ImVec2 extent = ImGui::CalcTextSize(words);
-        const ImVec2 at{left ? line_px - extent.x - 14 : line_px + 14, top_px + 8};
-        list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3},
-                           style::kShade, 4);
-        list.AddText(at, style::kInk, words);
+        const float beside = style::px(14);
+        label_over({left ? line_px - extent.x - beside : line_px + beside, top_px + style::px(8)},
+                   words);
     };
     label(tr("as it was"), true);
     label(tr("as it is now"), false);
@@ -48,19 +54,42 @@ void draw_sides(float line_px, float top_px) {
 
 namespace {
 
-constexpr float kNorthRadius_px = 34;
+/// Of the north arrow.
+float radius() {
+    return style::px(34);
+}
 
 ImVec2 north_middle(const Area& free) {
-    return {free.end().x - 46, free.at.y + 46};
+    return {free.end().x - style::px(46), free.at.y + style::px(46)};
+}
+
+/// A scale bar across the view. @param m_a_px  of the ground
+void draw_scale(const Area& free, double m_a_px) {
+    const double length_m = round_length(double{style::px(160)} * m_a_px);
+    const auto width = static_cast<float>(length_m / m_a_px);
+    const std::string text = tr_format("{} here", length_text(length_m));
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+    // Of a narrow picture the status line takes the lowest rows.
+    const bool is_narrow = free.size.x < style::px(620);
+    const float unit = style::px(1), up = is_narrow ? 62 * unit : 24 * unit;
+    const ImVec2 end{free.end().x - 24 * unit, free.end().y - up};
+    const float wide = std::max(width, extent.x), tall = extent.y + 10 * unit;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({end.x - wide - 8 * unit, end.y - tall},
+                       {end.x + 8 * unit, end.y + 8 * unit}, style::kShade, 4 * unit);
+    list.AddLine({end.x - width, end.y}, end, style::kInk, 2 * unit);
+    for (const float x : {end.x - width, end.x})
+        list.AddLine({x, end.y - 5 * unit}, {x, end.y + unit}, style::kInk, 2 * unit);
+    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3 * unit}, style::kInk,
+                 text.c_str());
 }
 
 }  // namespace
 
 chart::Rect north_place(const Area& free) {
     const ImVec2 middle = north_middle(free);
-    return {static_cast<double>(middle.x - kNorthRadius_px),
-            static_cast<double>(middle.y - kNorthRadius_px), 2 * double{kNorthRadius_px},
-            2 * double{kNorthRadius_px}};
+    return {double{middle.x - radius()}, double{middle.y - radius()}, 2 * double{radius()},
+            2 * double{radius()}};
 }
 
 void draw_scale_and_north(const Picture& picture, const Land& land,
@@ -73,32 +102,21 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
     const ImVec2 middle = north_middle(free);
-    const auto tip = [&](glm::dvec2 way, double length) {
-        return ImVec2(middle.x + static_cast<float>(way.x * length),
-                      middle.y - static_cast<float>(way.y * length));
+    const auto tip = [&](glm::dvec2 way, float length) {
+        return ImVec2(middle.x + static_cast<float>(way.x) * style::px(length),
+                      middle.y - static_cast<float>(way.y) * style::px(length));
     };
-    list.AddCircleFilled(middle, kNorthRadius_px, style::kShade);
+    list.AddCircleFilled(middle, radius(), style::kShade);
     list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), style::kMark);
     list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), style::kInk);
     const ImVec2 letter = tip(north, 26), letter_px = ImGui::CalcTextSize(compass_text(0));
     list.AddText({letter.x - letter_px.x / 2, letter.y - letter_px.y / 2}, style::kInk,
                  compass_text(0));
     if (!middle_m) return;
-    // A scale bar across the view, at the depth of the ground in the centre.
+    // At the depth of the ground in the centre.
     const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);
     const double m_a_px = 2 * depth_m * std::tan(picture.camera.fov_y_rad / 2) / size_px.y;
-    constexpr double kBar_px = 160;
-    const double length_m = round_length(kBar_px * m_a_px);
-    const auto width = static_cast<float>(length_m / m_a_px);
-    const std::string text = tr_format("{} here", length_text(length_m));
-    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 end{free.end().x - 24, free.end().y - 24};
-    const float wide = std::max(width, extent.x), tall = extent.y + 10;
-    list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, style::kShade, 4);
-    list.AddLine({end.x - width, end.y}, end, style::kInk, 2);
-    list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, style::kInk, 2);
-    list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, style::kInk, 2);
-    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, style::kInk, text.c_str());
+    draw_scale(free, m_a_px);
 }
 
 const char* compass_text(double azimuth_deg) {

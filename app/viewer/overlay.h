@@ -6,6 +6,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <imgui.h>
 
 #include "chart/drawing.h"
 #include "viewer/command.h"
@@ -29,6 +30,9 @@ const char* compass_text(double azimuth_deg);
 /// @param aspect_deg  downhill, from true north; NaN on level ground
 std::string slope_text(double slope_deg, double aspect_deg);
 
+/// A text over the image, on a shade.
+/// @param wrap_px  width of its lines; -1: one line
+void label_over(ImVec2 at, const char* words, float wrap_px = -1);
 /// Labels for both sides of a comparison's dividing line.
 /// @param line_px  from the left edge
 void draw_sides(float line_px, float top_px);

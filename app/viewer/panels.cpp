@@ -89,13 +89,11 @@ void status_line(const State& state, const std::string& work) {
         text +=
             std::string("   ") + tr("reading all posts; terrain and shadows are coarse until then");
     if (!work.empty()) text += "   " + work;
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const Area& picture = state.layout.picture;
-    const ImVec2 at{picture.at.x + 12, picture.end().y - extent.y - 10};
-    list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
-                       style::kShade, 4);
-    list.AddText(at, style::kInk, text.c_str());
+    const float room = std::max(1.0f, picture.size.x - style::px(24));
+    const float high = ImGui::CalcTextSize(text.c_str(), nullptr, false, room).y;
+    label_over({picture.at.x + style::px(12), picture.end().y - high - style::px(10)}, text.c_str(),
+               room);
 }
 
 void draw_no_picture() {
@@ -111,9 +109,10 @@ void opening_card(const State& state, const scene::Scene& scene, double since_s)
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, free.size.y});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::SetWindowFontScale(1.75f);
-    ImGui::TextUnformatted("Relevo");
-    ImGui::SetWindowFontScale(1);
+    {
+        const style::Sized title(style::Size::Title);
+        ImGui::TextUnformatted("Relevo");
+    }
     ImGui::PushTextWrapPos();
     ImGui::TextUnformatted(tr_format("opening {} ...", printable(scene.dems.front())).c_str());
     ImGui::PopTextWrapPos();
@@ -136,7 +135,7 @@ void message_box(State& state, double px_a_unit) {
     const Area& picture = state.layout.picture;
     constexpr double kBeside = 80;  // for legend and north arrow
     const float width = picture.size.x - static_cast<float>(2 * kBeside * px_a_unit);
-    ImGui::SetNextWindowPos({picture.at.x + picture.size.x / 2, picture.at.y + 10},
+    ImGui::SetNextWindowPos({picture.at.x + picture.size.x / 2, picture.at.y + style::px(10)},
                             ImGuiCond_Always, {0.5f, 0});
     ImGui::SetNextWindowSizeConstraints({0, 0}, {width, picture.size.y / 2});
     ImGui::Begin("##message", nullptr,
@@ -144,7 +143,7 @@ void message_box(State& state, double px_a_unit) {
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
     if (ImGui::SmallButton("x")) state.message.clear();
     ImGui::SameLine();
-    ImGui::PushTextWrapPos(width - 20);
+    ImGui::PushTextWrapPos(width - style::px(20));
     ImGui::TextUnformatted(state.message.c_str());
     ImGui::PopTextWrapPos();
     ImGui::End();

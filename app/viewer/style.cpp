@@ -94,6 +94,12 @@ ImVec4 by_theme(unsigned dark, unsigned light) {
 
 }  // namespace
 
+Sized::Sized(Size size) {
+    const ImVector<ImFont*>& fonts = ImGui::GetIO().Fonts->Fonts;  // as load_fonts() orders them
+    const int index = 1 + static_cast<int>(size);
+    ImGui::PushFont(index < fonts.Size ? fonts[index] : nullptr);
+}
+
 ImVec4 lit() {
     return by_theme(0xffd966, 0x855200);
 }

@@ -2,12 +2,32 @@
 
 #include <imgui.h>
 
-/// Colours of the window; no other file of it has any.
+/// Colours and text sizes of the window; no other file of it has any.
 namespace relevo::viewer::style {
 
 constexpr ImU32 colour(unsigned rgb, unsigned opacity = 255) {
     return IM_COL32(rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255, opacity);
 }
+
+/// A length that is `usual` pixels with texts of the usual size on a display of usual density.
+inline float px(float usual) {
+    return usual * ImGui::GetFontSize() / 16;
+}
+
+// ---- texts
+
+/// Sizes besides the usual one: notes, and the name of the program.
+enum class Size { Small, Title };
+inline constexpr float kSmall = 0.8125f, kTitle = 1.75f;
+
+/// Texts have another size as long as it lives.
+class Sized {
+  public:
+    explicit Sized(Size size);
+    ~Sized() { ImGui::PopFont(); }
+    Sized(const Sized&) = delete;
+    Sized& operator=(const Sized&) = delete;
+};
 
 // ---- over the picture
 

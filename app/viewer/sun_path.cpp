@@ -79,13 +79,10 @@ void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture
         const auto at = direction_at_window(picture, size_px, point.direction);
         if (minute % 60 != 0 || point.elevation_deg < kLowest_deg || !at) continue;
         const bool clear = is_sky(picture, size_px, *at);
-        list.AddCircleFilled(*at, 3, clear ? style::kSun : style::kHiddenSun);
+        list.AddCircleFilled(*at, style::px(3), clear ? style::kSun : style::kHiddenSun);
         if (!clear) continue;
         const std::string hour = fmt::format("{}", minute / 60);
-        const ImVec2 text{at->x + 7, at->y - 19}, extent = ImGui::CalcTextSize(hour.c_str());
-        list.AddRectFilled({text.x - 3, text.y}, {text.x + extent.x + 3, text.y + extent.y},
-                           style::kShade, 3);
-        list.AddText(text, style::kInk, hour.c_str());
+        label_over({at->x + style::px(9), at->y - style::px(19)}, hour.c_str());
     }
 }
 
@@ -97,22 +94,24 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
         days.push_back(&extreme);
     fetch_depths(days, picture, size_px);
     for (const SunDay& extreme : state.extremes)
-        draw_way(extreme, picture, size_px, style::kSolstice, style::kHiddenSolstice, 1.5f);
-    draw_way(state.day, picture, size_px, style::kWay, style::kHiddenWay, 2.5f);
+        draw_way(extreme, picture, size_px, style::kSolstice, style::kHiddenSolstice,
+                 style::px(1.5f));
+    draw_way(state.day, picture, size_px, style::kWay, style::kHiddenWay, style::px(2.5f));
     draw_hours(state.day, state.document.zone, picture, size_px);
     const SunPoint now = sun_at(picture.utc, state.centre, state.air);
     const auto at = direction_at_window(picture, size_px, now.direction);
     if (!at || now.elevation_deg < kLowest_deg) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const bool clear = is_sky(picture, size_px, *at);
-    list.AddCircleFilled(*at, kSun_px, clear ? style::kSun : style::kHiddenSun);
-    list.AddCircle(*at, kSun_px + 1, style::kSunRim, 0, 1.5f);
+    const float radius = style::px(kSun_px), unit = style::px(1);
+    list.AddCircleFilled(*at, radius, clear ? style::kSun : style::kHiddenSun);
+    list.AddCircle(*at, radius + unit, style::kSunRim, 0, 1.5f * unit);
 }
 
 std::optional<sun::Instant> time_at(const State& state, const Picture& picture, glm::vec2 size_px,
                                     glm::vec2 at_px) {
     std::optional<sun::Instant> best;
-    float least = kReach_px;
+    float least = style::px(kReach_px);
     const std::vector<SunPoint>& points = state.day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         if (points[i].elevation_deg < kLowest_deg) continue;

@@ -262,12 +262,15 @@ std::string zone_text(const State& state) {
 
 void clock(State& state) {
     std::string text = wall_clock(state.document.utc, state.document.zone);
-    ImGui::SetNextItemWidth(3.4f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(3 * ImGui::GetFontSize());
     const bool is_entered = ImGui::InputText(
         "##clock", &text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
         ImGui::SetTooltip("%s\n%s", tr("Time, then Enter: 14:05, 1405 or 14"),
                           zone_text(state).c_str());
+    ImGui::SameLine();
+    const sun::LocalTime local = state.document.zone.local(state.document.utc);
+    ImGui::TextUnformatted(local.abbreviation.c_str());
     if (!is_entered) return;
     const std::optional<int> minute = minute_of(text);
     if (!minute) {
@@ -303,7 +306,7 @@ void steps(State& state, int sign) {
 
 void play(State& state) {
     if (ImGui::Button(state.playing ? tr_label("Pause") : tr_label("Play"),
-                      {5 * ImGui::GetFontSize(), 0}))
+                      {3.8f * ImGui::GetFontSize(), 0}))
         state.playing = !state.playing;
     ImGui::SameLine();
     static constexpr std::array<double, 5> kSpeeds = {1.0 / 6, 0.5, 1, 3, 24};
@@ -312,7 +315,7 @@ void play(State& state) {
     int speed = 0;
     for (std::size_t i = 0; i < kSpeeds.size(); ++i)
         if (kSpeeds[i] <= state.hours_a_second + 1e-9) speed = static_cast<int>(i);
-    ImGui::SetNextItemWidth(6.875f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(5.6f * ImGui::GetFontSize());
     if (ImGui::Combo("##speed", &speed, tr_all(kNames).data(), static_cast<int>(kNames.size())))
         state.hours_a_second = kSpeeds[static_cast<std::size_t>(speed)];
     ImGui::SameLine();

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <list>
 #include <optional>
 #include <set>
 #include <span>
@@ -83,30 +82,6 @@ std::string& last_error() {
 std::atomic<bool>& is_open() {
     static std::atomic<bool> open{false};
     return open;
-}
-
-/// @param text_px  in pixels of the display
-/// @param letters  additional characters
-void load_fonts(float text_px, const std::set<char32_t>& letters) {
-    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    // Latin with accents, Greek, Cyrillic, dashes, degrees: is_usual().
-    static const ImWchar usual[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
-    const std::string file = usual_font_file();
-    if (file.empty()) return;
-    fonts.AddFontFromFileTTF(file.c_str(), text_px, nullptr, usual);
-    // Must exist until the atlas is built.
-    static std::list<std::vector<ImWchar>> ranges;
-    ranges.clear();
-    for (const FontFile& font : fonts_with(letters)) {
-        std::vector<ImWchar>& range = ranges.emplace_back();
-        for (const char32_t letter : font.letters)
-            range.insert(range.end(), 2, static_cast<ImWchar>(letter));
-        range.push_back(0);
-        ImFontConfig config;
-        config.MergeMode = true;
-        config.FontNo = font.face;
-        fonts.AddFontFromFileTTF(font.path.c_str(), text_px, &config, range.data());
-    }
 }
 
 /// A displayed frame on the window's device.

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "support/support.h"
+#include "viewer/fonts.h"
 #include "viewer/style.h"
 
 namespace relevo::viewer {
@@ -65,6 +66,22 @@ TEST(Style, TextOverThePictureIsLegibleWhateverThePictureIs) {
         const ImVec4 shade = over(style::kShade, {grey, grey, grey, 1});
         EXPECT_GE(contrast(over(style::kInk, shade), shade), 4.5) << grey;
     }
+}
+
+TEST(Style, HasThreeSizesOfText) {
+    ImGui::CreateContext();
+    load_fonts(20, {});
+    const ImVector<ImFont*>& fonts = ImGui::GetIO().Fonts->Fonts;
+    ASSERT_EQ(fonts.Size, 3);
+    EXPECT_EQ(fonts[0]->ConfigData->SizePixels, 20);
+    EXPECT_EQ(fonts[1]->ConfigData->SizePixels, 16);
+    EXPECT_EQ(fonts[2]->ConfigData->SizePixels, 35);
+    ImGui::DestroyContext();
+    // Scaled letters are blurred.
+    for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "app/viewer"))
+        EXPECT_THAT(read_text(entry.path(), "test"),
+                    testing::Not(testing::HasSubstr("SetWindowFontScale")))
+            << entry.path();
 }
 
 TEST(Style, HasAllColoursOfTheWindow) {
