@@ -56,6 +56,21 @@ def latencies_ms(screen, move, times=40):
     return sorted(result)
 
 
+def bar_ms(screen, times=20):
+    """From a notch of the wheel on the time bar to the first other picture, which is coarse, and to the full one."""
+    coarse, full = [], []
+    screen.act("mousemove", 700, 765)
+    for turn in range(times):
+        settle(screen)
+        before, began = screen.sample(), time.perf_counter()
+        screen.click(4 + turn % 2)
+        while screen.sample() == before and time.perf_counter() - began < 3:
+            time.sleep(0.001)
+        coarse.append(1e3 * (time.perf_counter() - began))
+        full.append(coarse[-1] + 1e3 * sharp_after_s(screen))
+    return statistics.median(coarse), statistics.median(full)
+
+
 def first_start(program, arguments, env, screen):
     """Seconds, and seconds of processor time, to the first picture where the driver keeps no programs yet."""
     with tempfile.TemporaryDirectory() as cache:
@@ -127,6 +142,7 @@ def bench(program, dem):
         sun = pictures_a_second(screen, lambda i: time.sleep(0.001))
         screen.act("key", "space")
         settle(screen)
+        coarse_ms, full_ms = bar_ms(screen)
         time.sleep(2)
         used_s = processor_s(viewer)
         time.sleep(5)
@@ -134,7 +150,8 @@ def bench(program, dem):
         print(f"{dem or 'bundled DEM'}: first picture {first_s:.2f} s, without kept programs {cold_s:.2f} s "
               f"({cold_used_s:.2f} s of processor time); orbiting {orbit:.1f} pictures/s; "
               f"sun moving {sun:.1f} pictures/s; input to picture median {statistics.median(delays):.0f} ms, "
-              f"95 % {delays[int(0.95 * len(delays))]:.0f} ms; sharp {sharp_s:.2f} s after the last move; "
+              f"95 % {delays[int(0.95 * len(delays))]:.0f} ms; time bar to coarse picture {coarse_ms:.0f} ms, to full picture "
+              f"{full_ms:.0f} ms; sharp {sharp_s:.2f} s after the last move; "
               f"{used_ms:.0f} ms of processor time a picture; idle {100 * idle:.1f} % of a processor")
     finally:
         viewer.terminate()

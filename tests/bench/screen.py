@@ -49,6 +49,11 @@ class Screen:
         self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, ctypes.c_ulong(0))
         self.x11.XFlush(self.display)
 
+    def click(self, button):
+        for is_press in (1, 0):
+            self.xtest.XTestFakeButtonEvent(self.display, button, is_press, ctypes.c_ulong(0))
+        self.x11.XFlush(self.display)
+
     def close(self):
         self.x11.XCloseDisplay(self.display)
         self.server.terminate()
