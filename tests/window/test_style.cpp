@@ -71,11 +71,11 @@ TEST(Style, TextOverThePictureIsLegibleWhateverThePictureIs) {
 TEST(Style, HasThreeSizesOfText) {
     ImGui::CreateContext();
     load_fonts(20, {});
-    const ImVector<ImFont*>& fonts = ImGui::GetIO().Fonts->Fonts;
+    const ImVector<ImFontConfig>& fonts = ImGui::GetIO().Fonts->ConfigData;
     ASSERT_EQ(fonts.Size, 3);
-    EXPECT_EQ(fonts[0]->ConfigData->SizePixels, 20);
-    EXPECT_EQ(fonts[1]->ConfigData->SizePixels, 16);
-    EXPECT_EQ(fonts[2]->ConfigData->SizePixels, 35);
+    EXPECT_EQ(fonts[0].SizePixels, 20);
+    EXPECT_EQ(fonts[1].SizePixels, 16);
+    EXPECT_EQ(fonts[2].SizePixels, 35);
     ImGui::DestroyContext();
     // Scaled letters are blurred.
     for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "app/viewer"))
