@@ -70,8 +70,9 @@ void SceneSaver::draw_sheet() {
     const scene::Camera from = camera_of(document.pose, state.land),
                         to = camera_of(pose_for(document, choice.is_centred, aspect), state.land);
     scene::Scene map = scene;
-    map.ortho = true;
-    scene::fit_map(map, parts_.opening.opened()->dem->source->grid());
+    map.ortho = choice.of().is_ortho;
+    parts_.messages.try_to(
+        [&] { scene::fit_map(map, parts_.opening.opened()->dem->source->grid()); });
     sheet_.draw(window, choice,
                 {.scene = scene,
                  .utc = document.utc,

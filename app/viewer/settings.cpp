@@ -122,6 +122,10 @@ void read_exports(const json& from, Settings& settings) {
     double& error_m = settings.exporting.error_m;
     error_m = std::clamp(error_m, kLeastError_m, kMostError_m);
     if (!contains(kFilmEndings, settings.film.ending)) settings.film.ending = FilmFile().ending;
+    if (!contains(kExportSamples, settings.exporting.samples))
+        settings.exporting.samples = ExportChoice().samples;
+    if (!contains(kExportSamples, settings.film.samples))
+        settings.film.samples = FilmFile().samples;
 }
 
 ordered_json exports_of(Settings settings) {

@@ -166,13 +166,14 @@ TEST_F(ExportOrders, AreRemembered) {
     EXPECT_EQ(memory.settings(), settings);
     // Whatever stands there, the sheet has what can be.
     std::ofstream(folder_ / "config/settings.json")
-        << R"({"export": {"kind": 77, "width_px": 1e300, "quality": -5, "format": "x",)"
+        << R"({"export": {"kind": 77, "width_px": 1e300, "quality": -5, "format": "x", "samples": 3,)"
            R"( "error_m": 0, "name": [], "film_format": "avi", "film_samples": 0}})";
     const Settings odd = memory.settings();
     EXPECT_EQ(odd.exporting.kind, kFigures);
     EXPECT_EQ(odd.exporting.format, kPng);
     EXPECT_EQ(odd.exporting.size_px.x, scene::kMaxSide_px);
     EXPECT_EQ(odd.exporting.quality, 1);
+    EXPECT_EQ(odd.exporting.samples, 4);
     EXPECT_EQ(odd.exporting.error_m, kLeastError_m);
     EXPECT_EQ(odd.exporting.name, ExportChoice().name);
     EXPECT_EQ(odd.film.ending, "mp4");

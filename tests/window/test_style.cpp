@@ -45,11 +45,13 @@ class Theme : public testing::TestWithParam<bool> {
 TEST_P(Theme, TextIsLegible) {
     const ImVec4* const colours = ImGui::GetStyle().Colors;
     for (const ImGuiCol ground :
-         {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_MenuBarBg, ImGuiCol_TitleBg,
-          ImGuiCol_TitleBgActive, ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive,
-          ImGuiCol_Button, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive, ImGuiCol_Header,
-          ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive, ImGuiCol_Tab, ImGuiCol_TabHovered,
-          ImGuiCol_TabActive, ImGuiCol_TextSelectedBg})
+         {ImGuiCol_WindowBg,       ImGuiCol_PopupBg,         ImGuiCol_MenuBarBg,
+          ImGuiCol_TitleBg,        ImGuiCol_TitleBgActive,   ImGuiCol_FrameBg,
+          ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive,   ImGuiCol_Button,
+          ImGuiCol_ButtonHovered,  ImGuiCol_ButtonActive,    ImGuiCol_Header,
+          ImGuiCol_HeaderHovered,  ImGuiCol_HeaderActive,    ImGuiCol_Tab,
+          ImGuiCol_TabHovered,     ImGuiCol_TabActive,       ImGuiCol_TextSelectedBg,
+          ImGuiCol_SliderGrab,     ImGuiCol_SliderGrabActive})
         EXPECT_GE(contrast(colours[ImGuiCol_Text], colours[ground]), 4.5) << ground;
     for (const ImGuiCol ground : {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_FrameBg})
         EXPECT_GE(contrast(colours[ImGuiCol_TextDisabled], colours[ground]), 4.5) << ground;
