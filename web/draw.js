@@ -147,6 +147,8 @@ class Drawer {
     const gl = this.gl, [w, h] = this.ground.meta.size;
     gl.activeTexture(gl.TEXTURE2); gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, w, h, gl.RED, gl.UNSIGNED_BYTE, light);
   }
+  // Waits until all is drawn.
+  finish() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
   // Draws every `every`-th post.
   draw(camera, sun, every) {
     const gl = this.gl, {meta, base} = this.ground, [w, h] = meta.size, [sx, sy] = meta.step_m;

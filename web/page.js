@@ -98,17 +98,23 @@ async function start() {
     drawer.draw(view.camera(cw / ch), sun, every);
     $('needle').style.transform = `rotate(${180 - view.azimuth}deg)`;
   };
-  // While something moves: as many pixels as the device draws 20 times a second. At rest: two for one of the layout.
-  let coarse = false, ratio = 1, last = 0;
-  const fine = Math.max(1, Math.round(Math.max(w, h) / 1200));
+  // While something moves: few posts, and as many pixels as the device draws 20 times a second, which the first frame
+  // finds out. At rest: two pixels for one of the layout and all posts; of a slow device, so many that it takes no second.
+  const side = Math.max(w, h), every = most => Math.max(1, Math.ceil(side / most));
+  let coarse = false, ratio = 0, last = 0;
+  const draw = (moving, now) => {
+    if (moving && coarse) ratio = Math.max(0.5, Math.min(2, ratio * (now - last > 60 ? 0.8 : now - last < 30 ? 1.1 : 1)));
+    if (moving) frame(every(200), ratio); else if (ratio < 1) frame(every(550), 1); else frame(every(1800), 2);
+    dirty = false; coarse = moving;
+  };
   const loop = now => {
-    const moving = performance.now() - movedAt < 150, spent = now - last;
-    if (moving && coarse) ratio = Math.max(0.5, Math.min(2, ratio * (spent > 60 ? 0.8 : spent < 30 ? 1.1 : 1)));
+    const moving = performance.now() - movedAt < 150;
+    if (!lost && sun && !ratio) {
+      const began = performance.now();
+      frame(every(200), 0.5); drawer.finish();
+      ratio = performance.now() - began > 25 ? 0.5 : 2;
+    } else if (!lost && sun && (dirty || (coarse && !moving))) draw(moving, now);
     last = now;
-    if (!lost && sun && (dirty || (coarse && !moving))) {
-      dirty = false; coarse = moving;
-      if (moving) frame(Math.max(1, Math.round(Math.max(w, h) / 200)), ratio); else frame(fine, 2);
-    }
     requestAnimationFrame(loop);
   };
   Object.assign(page, {ground, drawer, view, bar, frame, choose, at, start_ms: 0, light: null});

@@ -239,8 +239,7 @@ void export_web(const WebArguments& arguments) {
     web::check_grid(source.grid());
     const Outputs outputs = open_outputs(arguments, files);
     dem::add_all(scene.dems, files);
-    const double most_bytes =
-        (arguments.megabytes * kMegabyte - static_cast<double>(web::page_overhead())) * 3 / 4;
+    const double most_bytes = web::room_for_data(arguments.megabytes * kMegabyte);
     const web::Content content = content_of(arguments, scene, files);
     const web::PageGround ground =
         ground_within(source, scene,

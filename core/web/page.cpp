@@ -107,8 +107,9 @@ std::string page(const std::string& title, const Beside& files) {
                         "'self'"});
 }
 
-std::size_t page_overhead() {
-    return page("", std::span<const std::byte>()).size();
+double room_for_data(double page_bytes) {
+    const std::string empty = page("", std::span<const std::byte>());
+    return (page_bytes - static_cast<double>(empty.size())) * 3 / 4;  // base64
 }
 
 }  // namespace relevo::web

@@ -22,11 +22,7 @@ struct Beside {
 };
 std::string page(const std::string& title, const Beside& files);
 
-/// Bytes of a page without data.
-std::size_t page_overhead();
-/// Bytes that data take in a page.
-constexpr std::size_t bytes_in_page(std::size_t data) {
-    return (data + 2) / 3 * 4;
-}
+/// Bytes of data that a page of so many bytes has room for; below 0 where it has none.
+double room_for_data(double page_bytes);
 
 }  // namespace relevo::web

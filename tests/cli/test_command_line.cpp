@@ -78,9 +78,10 @@ TEST(CommandLine, NoOptionOfAnyVerbTakesAnEmptyValue) {
         EXPECT_EQ(said_of_words(words), said);
     }
     // --only '' is core alone (docs/cli.md): a list, and the empty one is a choice.
-    EXPECT_EQ(exceptions, (std::vector<std::string>{"relevo view --only", "relevo capture --only",
-                                                    "relevo run --only", "relevo plan run --only",
-                                                    "relevo film --only"}));
+    EXPECT_EQ(exceptions,
+              (std::vector<std::string>{"relevo view --only", "relevo capture --only",
+                                        "relevo run --only", "relevo plan run --only",
+                                        "relevo film --only", "relevo export web --only"}));
 }
 
 TEST(CommandLine, TheNameOfAnOptionIsNoValueOfAnother) {
