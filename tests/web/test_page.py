@@ -290,6 +290,13 @@ class WebPage(unittest.TestCase):
             self.assertIn("no WebGL2", page.value("document.getElementById('message').textContent"))
             page.wait("document.getElementById('still').naturalWidth === 1200")
 
+    def test_a_lost_context_leaves_the_picture(self):
+        with opened(page_of(OURS)) as page:
+            page.wait("!!page.light")
+            page.value("page.drawer.gl.getExtension('WEBGL_lose_context').loseContext()")
+            page.wait("!document.getElementById('still').hidden")
+            self.assertIn("Reload", page.value("document.getElementById('message').textContent"))
+
     def test_a_folder_is_for_a_server(self):
         folder = pathlib.Path(FOLDER.name) / "site"
         relevo("export", "web", OURS, "--folder", "-o", folder)
