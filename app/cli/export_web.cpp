@@ -159,7 +159,7 @@ web::Content content_of(const WebArguments& arguments, const scene::Scene& given
 /// As many posts as fit into so many bytes: all, or means.
 web::PageGround ground_within(const dem::Source& source, const scene::Scene& scene,
                               double most_bytes) {
-    constexpr double kClose = 0.95;
+    constexpr double kClose = 0.95, kLeastSide = 16;
     const auto around = web::GroundAround::of(scene.dems, scene.dem, source.grid());
     const auto read = [&](double side) {
         return output::read_ground(source, scene.dem,
@@ -180,15 +180,26 @@ web::PageGround ground_within(const dem::Source& source, const scene::Scene& sce
         share = most_bytes / page.bytes();
         const bool is_close = side == most_side || share < 1 / kClose || tries >= 3;
         if (share >= 1 && is_close) return page;
+        if (share < 1 && side < kLeastSide)  // what is left are horizons of the ground around
+            bad_input("export web: --megabytes: leaves no room for heights; expected more");
     }
 }
 
+glm::ivec2 posts_of(const web::PageGround& ground) {
+    return {ground.grid.columns(), ground.grid.rows()};
+}
+
+/// "means of 3600 x 3600 posts"; empty for a page with all posts of a DEM.
+std::string means_text(const web::PageGround& ground, const dem::Grid& grid) {
+    const glm::ivec2 all = posts_of(grid, kInfinity);
+    return all == posts_of(ground) ? "" : fmt::format("means of {} x {} posts", all.x, all.y);
+}
+
 void print(const web::PageGround& ground, const dem::Grid& grid, std::size_t bytes) {
-    const glm::ivec2 posts(ground.grid.columns(), ground.grid.rows());
-    fmt::print("posts       {} x {}", posts.x, posts.y);
-    if (posts_of(grid, kInfinity) != posts)
-        fmt::print(", means of {} x {} of the DEM", grid.columns(), grid.rows());
-    fmt::print("\nheights     within {:.2g} m of these\nsize        {:.2f} MB\n",
+    const std::string means = means_text(ground, grid);
+    fmt::print("posts       {} x {}{}\n", posts_of(ground).x, posts_of(ground).y,
+               means.empty() ? "" : ", " + means);
+    fmt::print("heights     within {:.2g} m of these\nsize        {:.2f} MB\n",
                ground.height_error_m, static_cast<double>(bytes) / kMegabyte);
 }
 
@@ -234,17 +245,20 @@ void export_web(const WebArguments& arguments) {
     const scene::Scene scene = scene_of(arguments);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
+    if (!scene.weather_file.empty()) files.add_input(scene.weather_file, "the weather");
     dem::add_named(scene.dems, files);
     const dem::Source source = dem::Source::open(scene.dems, scene.dem);
     web::check_grid(source.grid());
     const Outputs outputs = open_outputs(arguments, files);
     dem::add_all(scene.dems, files);
     const double most_bytes = web::room_for_data(arguments.megabytes * kMegabyte);
-    const web::Content content = content_of(arguments, scene, files);
+    web::Content content = content_of(arguments, scene, files);
     const web::PageGround ground =
         ground_within(source, scene,
                       most_bytes - std::min(web::bytes_of(content) + kDescription_bytes,
                                             (1 - kShareOfHeights) * most_bytes));
+    if (const std::string means = means_text(ground, source.grid()); !means.empty())
+        content.credits.push_back("Heights: " + means);
     const std::size_t bytes = write(
         outputs, content, web::page_data(ground, content, static_cast<std::size_t>(most_bytes)));
     files.finish_outputs();

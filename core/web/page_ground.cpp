@@ -29,6 +29,17 @@ double step_m(const dem::Heightfield& ground) {
     return whole ? 1 : std::min(spacing_m.x, spacing_m.y) / 200;
 }
 
+/// How far heights in steps are off, at most.
+double worst_m(const Heights& heights, const Array2d<float>& height_m) {
+    double worst = 0;
+    for (std::size_t i = 0; i < height_m.size(); ++i)
+        if (heights.value.begin()[i] != kVoid)
+            worst =
+                std::max(worst, std::abs(heights.min_m + heights.step_m * heights.value.begin()[i] -
+                                         height_m.begin()[i]));
+    return worst;
+}
+
 /// The sky-view factor, 0 to 255, of every second post; open where there is none.
 std::vector<std::byte> sky_view(const dem::Heightfield& half) {
     const dem::Posts posts(half);
@@ -87,15 +98,16 @@ PageGround page_ground(const dem::Heightfield& ground, const FarHorizons* far) {
     const glm::dvec2 spacing_m = ground.grid.post_spacing_m();
     const dem::Heightfield half =
         output::stretched(ground, {std::max(2, columns / 2), std::max(2, rows / 2)});
+    const double error_m = worst_m(heights, ground.height_m);
     ordered_json about{
         {"size", {columns, rows}},
         {"step_m", {spacing_m.x, spacing_m.y}},
-        {"height", {{"min", heights.min_m}, {"step", heights.step_m}}},
+        {"height", {{"min", heights.min_m}, {"step", heights.step_m}, {"error", error_m}}},
         {"crs", ground.grid.crs().text()},
         {"transform", ground.grid.affine().geotransform()},
         {"grid", ordered_json::parse(grid_json(ground.grid))},
         {"sky_view", {{"columns", half.height_m.width()}, {"rows", half.height_m.height()}}}};
-    PageGround page{ground.grid, heights.step_m == 1 ? 0 : heights.step_m / 2, {}, {}};
+    PageGround page{ground.grid, error_m, {}, {}};
     page.blocks = {deflated("heights", planes_of(heights.value)),
                    deflated("sky_view", sky_view(half))};
     if (far) {
