@@ -31,7 +31,7 @@ struct Settings {
     int panel_width = 360;  ///< of the side panel, in units of a layout for the usual text size
     int charts_height = 0;  ///< the same of the charts; 0: by the window
     ExportChoice exporting;
-    FilmFile film;  ///< its folder is that of `exporting`
+    FilmFile film;  ///< `exporting` has its folder
 
     bool operator==(const Settings&) const = default;
 };

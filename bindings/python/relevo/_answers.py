@@ -1,5 +1,5 @@
-"""What figures of places say: the program's `--json`, with times as datetimes in UTC. docs/cli.md has all keys;
-those of voids are there where a DEM has voids, direct light where there is a DEM."""
+"""What figures of places say: the program's `--json`, with times as datetimes in UTC. docs/cli.md has all keys.
+Keys of direct light need a DEM, keys of voids a DEM that has some."""
 
 from __future__ import annotations
 

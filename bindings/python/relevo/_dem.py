@@ -140,7 +140,7 @@ class Dem:
             a time zone needs `tz`. None: a time that shows relief.
         size: (columns, rows) of pictures [pixels]. None: 1280 x 720.
         date: of an event
-        tz: of a time that has none: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (that of the place)
+        tz: zone of times without an offset: "Europe/Zurich", "+02:00", a ZoneInfo, "auto" (the place's)
         camera: as in scenes, such as {"orbit": {"azimuth": 210, "elevation": 30}}. None: one that shows relief.
         exaggeration: vertical exaggeration. None: 1.
         scene: what else a scene has (docs/scene.md), a dict or JSON: effects, overlay, stamps. Arguments go before it.

@@ -18,11 +18,11 @@ class OfPlace(Generic[Days]):
 
     lat, lon: degrees of WGS 84
     date: a day; or start and end, both included; or year
-    tz: of the days, "Europe/Zurich", "+05:30", a ZoneInfo. None: that of the place.
-    height: of the eye, above sea level [m]. None: over a DEM that of the ground, else 0.
+    tz: zone of the days: "Europe/Zurich", "+05:30", a ZoneInfo. None: the place's.
+    height: height of the eye above sea level [m]. None: on the ground of a DEM, else 0.
     eye_height: above the ground of a DEM, or above the level ground around, instead [m] (0)
     limb: part of the disc that counts: "upper", "center", "lower"
-    dip: of a level horizon, instead of that of eye_height [degrees]
+    dip: dip of the level horizon [degrees]. None: by eye_height.
     refraction: "standard" (integrated ICAO atmosphere), "saemundsson", "none"
     terrestrial_refraction: of lines of sight over a DEM (0.13)
     highest: what no terrain outside of a DEM exceeds [m] (the DEM's highest post)

@@ -119,7 +119,7 @@ class SunOverDem(OfSun, _OverDem):
 
         One of these: date, a day; start and end, both included; year, all of its days.
 
-        tz: of the days, "Europe/Zurich", "+05:30", a ZoneInfo. None: that of the place.
+        tz: zone of the days: "Europe/Zurich", "+05:30", a ZoneInfo. None: the place's.
         bands: "hours" [h]; of at most four days "first", "last" (minutes from the beginning to the first and the last
             sun) and "spells" (sunshine periods); "global", "beam", "diffuse", "reflected" (clear sky, kWh/m2). A list
             gives values of (bands, rows, columns).
