@@ -176,8 +176,14 @@ TEST(ExportVerb, PagesHaveTheirDemAndSayWhatIsWrong) {
     fails({"--panorama", "cylindrical"}, 2, "--panorama: a web page has a plain camera; remove it");
     fails({"--megabytes", "0.2"}, 2,
           "--megabytes: expected 0.3 to 100 but got 0.2; see relevo export web --help");
-    fails({"--crop", "-84.28,36.25,-84.2,36.33", "--megabytes", "0.3"}, 3,
-          "export web: --megabytes: leaves no room for heights; expected more");
+    const Result small = relevo({"export", "web", dem, "-o", out("b.html"), "--crop",
+                                 "-84.28,36.25,-84.2,36.33", "--megabytes", "0.3"});
+    EXPECT_EQ(small.status, 3);
+    EXPECT_EQ(
+        small.err,
+        "relevo: time zone America/New_York of the place; --tz sets another\n"
+        "relevo: error: export web: --megabytes: leaves no room for heights; expected more\n");
+    EXPECT_FALSE(std::filesystem::exists(out("b.html")));
     fails({"--view", "az=0,el=-80"}, 1,
           "export web: the first view shows only sky; turn the camera");
     expect_failure({"export", "web", dem, "-o", html}, 3,
