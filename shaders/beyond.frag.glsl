@@ -27,8 +27,8 @@ Surface beyond_surface(in vec3 ray, in vec3 position_m, in float distance_m) {
     s.anchored_m = ground_anchored_at(position_m, s.up, s.height_m);
     s.tangent = tangent_of(s.up);
     s.bitangent = cross(s.up, s.tangent);
-    vec3 dx = footprint(position_m, s.up, ray, frame.pixel_ray_dx.xyz);
-    vec3 dy = footprint(position_m, s.up, ray, frame.pixel_ray_dy.xyz);
+    vec3 dx = footprint(position_m, s.up, ray, 0.5 * BEYOND_PX * frame.pixel_ray_dx.xyz);
+    vec3 dy = footprint(position_m, s.up, ray, 0.5 * BEYOND_PX * frame.pixel_ray_dy.xyz);
     float longest = max(length(dx), length(dy)), shortest = min(length(dx), length(dy));
     float most = max(shortest * frame.footprint_limit, 1e-6);
     s.ground_dx_m = dx * min(1.0, most / length(dx));

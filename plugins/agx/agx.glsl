@@ -1,10 +1,13 @@
-//! provides  tone mapping by AgX under a low sun: the brighter a colour is, the paler, as on film; neutral by day
+//! provides  tone mapping by AgX under a low sun: the brighter a colour is, the paler, as on film; by day neutral, with
+//!           the contrast and the saturation of a print
 //! hook      tonemap
 //! writes    colour, linear, 0 to 1
 //! source    T. Sobotka, AgX (2022): matrix, range of stops and the curve's slope and powers
 
 uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
 uniform float agx_day = 0.5; //@ range(-10, 10) unit(EV) label("Exposure by day") description("In stops, while the sun is high and tones are neutral")
+uniform float agx_day_contrast = 0.22; //@ range(0, 1) label("Contrast by day") description("How much darker shade and how much brighter light is drawn; 0: tones stay")
+uniform float agx_day_saturation = 0.55; //@ range(0, 2) label("Saturation by day") description("How much more of their colour tones get that are neither pale nor full; 0: none")
 uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
 uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
 
@@ -17,6 +20,7 @@ const float agx_stops_below = 10.0;   // it, and
 const float agx_stops_above = 6.5;    // above it
 const float agx_slope = 2.0;
 const float agx_toe = 3.0, agx_shoulder = 3.25;  // powers: higher ones bend more sharply
+const float agx_day_middle = 0.1726;  // luminance that contrast by day leaves as it is: L* 48
 const float agx_low_sun = 0.17, agx_high_sun = 0.31;  // apparent elevations; in between tones go over [rad]
 const float agx_display = 2.2;        // the curve's values are for a display of this exponent
 
@@ -50,6 +54,22 @@ vec3 agx_tones(in vec3 colour) {
     return pow(clamp(tone, 0.0, 1.0), vec3(agx_display));
 }
 
+/// Darker shade by a power of its luminance, brighter middle tones; snow and white stay. Then more of their colour to tones
+/// that are neither pale nor full, but for blue ones: air would turn violet.
+/// @param colour  linear, 0 to 1
+vec3 agx_print(in vec3 colour) {
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    float before = max(dot(colour, luminance), 1e-6), above = max(before / agx_day_middle - 1.0, 0.0);
+    float left = max(1.0 - before, 0.0) / (1.0 - agx_day_middle);
+    float light = 1.0 + agx_day_contrast * above * left * left / (1.0 + 0.3 * above);  // as steep as shade where they meet
+    float shade = pow(min(before / agx_day_middle, 1.0), agx_day_contrast);
+    colour *= light * shade;
+    float after = before * light * shade;
+    float most = max(colour.r, max(colour.g, colour.b)), pale = min(colour.r, min(colour.g, colour.b)) / max(most, 1e-6);
+    float blue = clamp((colour.b - max(colour.r, colour.g)) / max(0.3 * most, 1e-6), 0.0, 1.0);
+    return clamp(after + (colour - after) * (1.0 + agx_day_saturation * pale * (1.0 - pale) * (1.0 - blue)), 0.0, 1.0);
+}
+
 void agx_on_tonemap(inout vec3 colour) {
     // Models and maps have colours that are compared with legends and photographs.
 #if HAS_outside || HAS_tint || HAS_drape
@@ -57,6 +77,6 @@ void agx_on_tonemap(inout vec3 colour) {
 #else
     vec3 neutral = exp2(agx_day) * colour;
     core_on_tonemap(neutral);
-    colour = mix(agx_tones(colour), neutral, smoothstep(agx_low_sun, agx_high_sun, frame.eye_sun.w));
+    colour = mix(agx_tones(colour), agx_print(neutral), smoothstep(agx_low_sun, agx_high_sun, frame.eye_sun.w));
 #endif
 }

@@ -25,7 +25,8 @@ const float bump_gully_turns = 1.3;      // gullies across a cell
 const float bump_gully_finest_m = 12.0;  // finer cells have none: a DEM that fine has its own
 const float bump_gully_true_m = 60.0;    // posts as near as that show how steep the ground is
 const int bump_gully_octaves = 4;        // each starts on the sides of the one before, and so they branch
-const float bump_gully_depth = 0.34;     // slope of a middling gully's sides, for a slope of 1 of the hillside
+const float bump_gully_depth = 0.42;     // slope of a middling gully's sides, for a slope of 1 of the hillside
+const float bump_gully_fading = 0.62;    // of that, to the next octave: fine ones as steep would look combed
 const float bump_gully_octave = 0.47;    // from a cell's side to the next ones'
 const float bump_octave = 0.43;      // from a noise's cells to the next ones': no power of it is near that of a whole number
 
@@ -91,13 +92,15 @@ vec2 bump_gully_slope(in vec2 anchored_m, in vec2 fall, in float pixel_m) {
     // What posts far apart say is less steep than the ground, by a power of their distance. Walls would be organ pipes.
     float steep = min(tangent * max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0), 1.0);
     steep *= 1.0 - smoothstep(1.0, 2.5, tangent);
+    float depth = bump_gully_depth;
     for (int i = 0; i < bump_gully_octaves; ++i) {
         float seen = 1.0 - smoothstep(0.15, 0.5, bump_gully_turns * pixel_m / size_m);
         if (seen == 0.0 || size_m < bump_gully_finest_m) break;
         vec2 across = vec2(-fall.y, fall.x) * inversesqrt(max(dot(fall, fall), 1e-9));
-        vec2 slope = bump_gully_depth * steep * bump_gully_wave(anchored_m, across, size_m) * across;
+        vec2 slope = depth * steep * bump_gully_wave(anchored_m, across, size_m) * across;
         sum += seen * slope;
         fall += slope;
+        depth *= bump_gully_fading;
         size_m *= bump_gully_octave;
     }
     return sum;

@@ -44,14 +44,14 @@ uniform vec3 cover_straw = vec3(0.195, 0.172, 0.082); //@ colour label("Grass, d
 uniform vec3 cover_tundra = vec3(0.15, 0.14, 0.062); //@ colour label("Alpine grass")
 uniform vec3 cover_heath = vec3(0.074, 0.060, 0.036); //@ colour label("Heath") description("Moors of cool and wet country")
 uniform vec3 cover_scrub = vec3(0.095, 0.092, 0.047); //@ colour label("Scrub") description("Evergreen shrubs on the slopes of dry, mild country")
-uniform vec3 cover_conifers = vec3(0.028, 0.046, 0.021); //@ colour label("Needleleaf forest")
-uniform vec3 cover_broadleaf = vec3(0.044, 0.078, 0.022); //@ colour label("Broadleaf forest")
+uniform vec3 cover_conifers = vec3(0.033, 0.045, 0.020); //@ colour label("Needleleaf forest")
+uniform vec3 cover_broadleaf = vec3(0.052, 0.076, 0.022); //@ colour label("Broadleaf forest")
 uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Bare broadleaf forest")
 uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, green")
 uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
 uniform vec3 cover_town = vec3(0.168, 0.150, 0.132); //@ colour label("Towns")
-uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
+uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
 uniform vec3 cover_white = vec3(0.77, 0.79, 0.82); //@ colour label("Snow")
@@ -126,7 +126,7 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
 /// @param noise  of mean 0 and standard deviation 0.19
 /// @param near   0..1: how far such places are larger than pixels
 float cover_mosaic(in float share, in float noise, in float near) {
-    const float edge = 0.05;  // of a place, so that it has no stairs
+    float edge = mix(0.2, 0.05, near);  // of a place, so that it has no stairs
     float limit = smoothstep(-0.36, 0.36, noise);
     float here = smoothstep(limit - edge, limit + edge, mix(-edge, 1.0 + edge, share));
     return mix(share, here, near);
@@ -135,12 +135,13 @@ float cover_mosaic(in float share, in float noise, in float near) {
 /// From near rock among trees, clearings in woods and the last snow have edges.
 void cover_part(inout cover_Shares shares, inout LandClasses land, in cover_Shape shape) {
     float near = 0.9 / (1.0 + shape.across_m * shape.across_m * 0.005);
+    float middle = 0.9 / (1.0 + shape.across_m * shape.across_m * 0.0002);
     shares.rock = cover_mosaic(shares.rock, shape.small.r + 0.6 * shape.small.a, near);
-    shares.forest = cover_mosaic(shares.forest, shape.broad.r + 0.7 * shape.small.g, near);
-    shares.snow = cover_mosaic(shares.snow, 0.8 * shape.small.g + 0.8 * shape.small.a, near);
+    shares.forest = cover_mosaic(shares.forest, shape.broad.r + 0.7 * shape.small.g, middle);
+    shares.snow = cover_mosaic(shares.snow, 0.8 * shape.small.g + 0.8 * shape.small.a, middle);
     land.fields = cover_mosaic(land.fields, shape.broad.g + 0.7 * shape.small.r, near);
     land.bare = cover_mosaic(land.bare, shape.broad.a + 0.7 * shape.small.r, near);
-    land.towns = cover_mosaic(land.towns, 0.7 * shape.broad.g + shape.small.a, near);
+    land.towns = cover_mosaic(land.towns, 0.6 * shape.broad.g + 0.6 * shape.small.r + 0.8 * shape.small.a, middle);
 }
 
 /// Tangents of two slopes, in degrees, of which the second is the greater one: else smoothstep is undefined.
@@ -214,13 +215,15 @@ vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in f
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
     vec3 plot = cover_plot(s, shape);
     float gardens = 0.5 + plot.z * (0.9 * plot.x * plot.x - 0.3) + shape.small.a + 0.5 * shape.small.g;
-    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.2 + 0.6 * clamp(gardens, 0.0, 1.0));
+    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.35 + 0.5 * clamp(gardens, 0.0, 1.0));
     float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
     vec4 shares = vec4(rest, land.fields, land.bare, land.towns) / max(rest + land.fields + land.bare + land.towns, 1e-3);
     vec3 open = shares.x * low + shares.y * cover_field(plot, ground.green) + shares.z * cover_soil + shares.w * town;
     // The ground's colour is that of its soil: fields and meadows show less of it, towns the least.
     float bare_tint = mix(0.95, 0.4, smoothstep(0.5, 1.2, ground.dryness));
-    return open * exp2(dot(shares, vec4(0.75, 0.6, bare_tint, 0.25)) * land.tint);
+    vec3 colour = open * exp2(dot(shares, vec4(0.75, 0.6, bare_tint, 0.25)) * land.tint);
+    // Soils and plants have as much green as red and blue in the mean: with less they would be pink.
+    return vec3(colour.r, max(colour.g, 0.5 * (colour.r + colour.b)), colour.b);
 }
 
 vec3 cover_forest(in ClimateGround ground, in float growth) {
@@ -307,10 +310,13 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, 
     float crowns = cover_crowns * (1.0 - smoothstep(0.0, 0.8 * size_m, across_m)) *
                    (1.0 - smoothstep(0.3 * size_m, 2.0 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
                    smoothstep(0.03, 0.12, -dot(s.position_m, s.geometric_normal) / s.distance_m);
-    float stands = 1.0 - smoothstep(4.0, cover_near_m, across_m);
+    float stands = 1.0 - smoothstep(0.4 * cover_near_m, cover_near_m, across_m);
     if (stands == 0.0) return canopy;
-    vec4 stand = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / stand_m);  // east and north change places
-    canopy.light += stands * (1.4 * stand.a + 0.5 * stand.r + 0.5 * stand.g * vec3(1.0, 0.2, -0.5));
+    // Clumps of trees, and where they are smaller than pixels groups of clumps.
+    float larger = max(log2(across_m / 1.5), 0.0), by = fract(larger);
+    mat2 per_m = mat2(cover_turn[1], cover_turn[0]) * (exp2(by - larger) / stand_m);  // east and north change places
+    vec4 stand = mix(cover_turned_patch(s, per_m), cover_turned_patch(s, 0.5 * per_m), by);
+    canopy.light += stands * (1.4 * stand.a + 0.5 * stand.r + 0.4 * stand.g * vec3(1.0, 0.3, -0.4));
     if (crowns == 0.0) return canopy;
     cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
     bool between = crown.height < -1.0;
@@ -420,7 +426,7 @@ void cover_on_albedo(inout Surface s) {
     cover_part(shares, land, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.
-    float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.001);
+    float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
     float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r + 0.4 * shape.broad.a + 0.3 * shape.broad.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     open = mix(open, cover_land(land, s, ground, growth, shape), land.known);
@@ -429,10 +435,11 @@ void cover_on_albedo(inout Surface s) {
                             1.0 - smoothstep(-600.0, -440.0, s.height_m));
     open = mix(open, cover_floor, floor_share);
     open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
-    vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
+    vec3 rock = mix(cover_rock, 0.45 * cover_desert + 0.3 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
     // Wet rock is dark, with lichen and moss on it.
     rock *= (1.0 + 1.6 * tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
-    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone);
+    // Stands of another age or kind are darker or bluer.
+    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone + near * shape.broad.g * vec3(0.65, 0.45, 0.1));
     vec3 albedo = mix(open, rock, shares.rock);
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);

@@ -50,7 +50,7 @@ float sea_height_m(in Surface s) {
 // Of a seen floor, chosen by eye: its colour in deep water, what is added to that at the shore, and the depths that
 // this fades over [m]: blue reaches deepest.
 const vec3 sea_basin = vec3(0.006, 0.035, 0.10);
-const vec3 sea_shallows = vec3(0.08, 0.22, 0.22);
+const vec3 sea_shallows = vec3(0.045, 0.112, 0.125);
 const vec3 sea_fade_m = vec3(100.0, 450.0, 1400.0);
 
 const float sea_low_m = 4000.0;  // eyes higher than this above the water see maps, lower ones see water

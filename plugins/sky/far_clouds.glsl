@@ -44,7 +44,7 @@ float sky_heap(in vec2 cells) {
 
 /// Width of a cell [m], by that of the DEM.
 float sky_cell_m(in float width_m) {
-    return clamp(0.08 * width_m, 2500.0, 25000.0);
+    return clamp(0.08 * width_m, 2500.0, 60000.0);
 }
 
 /// Share of the sky that clouds cover above a place, which begins at some way from the DEM: they are not over its ground.
@@ -73,7 +73,7 @@ vec4 sky_far_clouds(in vec3 direction, in int slices) {
     float last_m = beyond_distance_above(direction, sky_base_m);
     vec2 from = frame.eye_m.xy / cell_m + vec2(5000.0 * frame.polar_axis.z, sky_cells_a_year * frame.time_of_year);
     float edge = mix(0.82, 0.34, sky_cover_at(frame.eye_m.xy + last_m * direction.xy, sides_m, width_m));
-    float soft = 0.07 + 0.1 * min(last_m * length(frame.pixel_ray_dx.xyz) / (cell_m * max(-sine, 0.02)), 1.0);
+    float soft = 0.07 + 0.3 * min(last_m * length(frame.pixel_ray_dx.xyz) / (cell_m * max(-sine, 0.02)), 1.0);
     float share = 0.0, high = 0.0;
     for (int i = 0; i < slices; ++i) {
         float level = 1.0 - float(i) / float(sky_slices - 1);

@@ -75,6 +75,8 @@ TEST(Agx, MakesAColourOfDarknessAndOfLightWithoutEnd) {
 
 TEST(Agx, IsNeutralByDay) {
     test::GpuSnippet gpu("agx");
+    gpu.values().set("agx.day_contrast", "0");
+    gpu.values().set("agx.day_saturation", "0");
     const auto toned_at = [&](float sun_rad) {
         gpu.frame().eye_sun.w = sun_rad;
         return gpu.run("vec3 c = vec3(0.2, 0.1, 0.05);\nagx_on_tonemap(c);\nresult = vec4(c, 1.0);",
@@ -86,6 +88,37 @@ TEST(Agx, IsNeutralByDay) {
     EXPECT_NEAR(high.z, 0.05 * std::exp2(0.5), 1e-4);
     EXPECT_LT(low.z, high.z - 0.01) << "film has darker shade";
     EXPECT_NEAR(between.z, (low.z + high.z) / 2, 1e-3);
+}
+
+TEST(Agx, HasTheContrastOfAPrintByDay) {
+    test::GpuSnippet gpu("agx");
+    const int count = 1000;
+    const auto greys = gpu.run("result = vec4(agx_print(vec3(float(x) / 999.0)), 0.0);", count, 1);
+    const auto slope = [&](int i) {
+        return 999.0 / 2 *
+               (greys[static_cast<std::size_t>(i + 1)].x -
+                greys[static_cast<std::size_t>(i - 1)].x);
+    };
+    for (int i = 1; i < count; ++i) {
+        const glm::vec4& grey = greys[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(grey.x, grey.z, 1e-6) << i;  // greys stay grey
+        EXPECT_GT(grey.x, greys[static_cast<std::size_t>(i - 1)].x) << i;
+    }
+    EXPECT_NEAR(greys[50].x, std::pow(50 / 999.0, 1.22) * std::pow(0.1726, -0.22), 1e-4);  // shade
+    EXPECT_NEAR(slope(168), slope(177), 0.03);  // no edge at the middle, which is at 172
+    EXPECT_GT(greys[350].x, 0.35 * 1.05);
+    EXPECT_NEAR(greys[999].x, 1, 1e-4);
+    EXPECT_NEAR(slope(980), 1, 0.03) << "snow keeps its form";
+    // Colours get more of themselves, but neither air nor what has all of it already.
+    const auto colours = gpu.run(
+        "vec3 c = x == 0 ? vec3(0.16, 0.18, 0.12) : x == 1 ? vec3(0.15, 0.17, 0.3) : vec3(0.3, "
+        "0.0, 0.0);\n"
+        "vec3 p = agx_print(c);\n"
+        "result = vec4(p / max(p.r, max(p.g, p.b)), 0.0);",
+        3, 1);
+    EXPECT_LT(colours[0].z, 0.12 / 0.18 - 0.02);
+    EXPECT_NEAR(colours[1].x, 0.15 / 0.3, 1e-3);
+    EXPECT_NEAR(colours[2].y, 0, 1e-6);
 }
 
 }  // namespace

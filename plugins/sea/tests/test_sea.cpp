@@ -244,7 +244,7 @@ TEST(Sea, ItsFloorsColourFollowsTheDepth) {
     for (std::size_t x = 0; x < results.size(); ++x) {
         const double depth_m = 2.0 * static_cast<double>(x);
         const glm::dvec3 expected = glm::dvec3(0.006, 0.035, 0.1) +
-                                    glm::dvec3(0.08, 0.22, 0.22) *
+                                    glm::dvec3(0.045, 0.112, 0.125) *
                                         glm::exp(-glm::sqrt(depth_m / glm::dvec3(100, 450, 1400)));
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(results[x][c], expected[c], 1e-4) << depth_m;
