@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/folder_watch.h"
 #include "base/held_notices.h"
@@ -134,6 +135,8 @@ void capture(const CaptureArguments& arguments) {
     arguments.exaggeration.apply_to(scene,
                                     !arguments.scene.file.empty() || !arguments.from.empty());
     const bool linear = image::holds_linear_light(output);
+    if (contains(split(arguments.scene.stamps, ','), "all") && scene::is_from_above(scene.view))
+        scene.stamps.margin = true;  // a map sheet
     const bool stamped = scene.stamps != scene::Stamps();
     if (linear) scene.stamps.margin = false;  // without stamps
     scene::check_panorama(scene);

@@ -216,13 +216,27 @@ void add_around(const Panels& panels, const Rect& map, const image::Image8& pict
     }
 }
 
+/// A label outside of a map, next to its edge.
+Stamps::Label outside(Stamps::Label label, const Rect& map) {
+    if (std::abs(label.away.x) > std::abs(label.away.y)) {
+        label.at_px.x = label.away.x < 0 ? map.x : map.x + map.width;
+        label.away = {label.away.x < 0 ? -1 : 1, 0};
+    } else {
+        label.at_px.y = label.away.y < 0 ? map.y : map.y + map.height;
+        label.away = {0, label.away.y < 0 ? -1 : 1};
+    }
+    return label;
+}
+
 /// @returns how many labels had no room
-int add_labels(const std::vector<Stamps::Label>& labels, Layout& layout, image::Image8& picture) {
+int add_labels(const std::vector<Stamps::Label>& labels, const std::optional<Rect>& map,
+               Layout& layout, image::Image8& picture) {
     if (labels.empty()) return 0;
     const double unit = layout.unit_px(), size = kStampLetters * unit;
     Drawing drawing(picture.width, picture.height);
     int left_out = 0;
-    for (const Stamps::Label& label : labels) {
+    for (const Stamps::Label& each : labels) {
+        const Stamps::Label label = map ? outside(each, *map) : each;
         const double width = text_width(label.words, size), half = size * 0.5;
         const double reach = std::abs(label.away.x) * width / 2 + std::abs(label.away.y) * half;
         const glm::dvec2 middle = label.at_px + (reach + 5 * unit) * label.away;
@@ -293,7 +307,7 @@ std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
         add_around(panels, *map, picture, layout, missing);
     else
         add_to_corners(panels, layout, missing);
-    const int labels = add_labels(stamps.graticule, layout, picture);
+    const int labels = add_labels(stamps.graticule, map, layout, picture);
     if (labels > 0)
         missing.names.push_back(
             fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));

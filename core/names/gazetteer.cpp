@@ -190,13 +190,13 @@ const Entry* Gazetteer::nearest_place(const Near& near) const {
     return nearest;
 }
 
-std::vector<const Entry*> Gazetteer::summits_within(const Near& near) const {
+std::vector<const Entry*> Gazetteer::within(Kind kind, const Near& near) const {
     const glm::vec3 from = on_sphere(near.centre);
     // The sphere's distances differ from the ellipsoid's by less than this.
     const float reach = chord_of(1.01 * near.radius_m);
     std::vector<const Entry*> found;
     for (std::size_t i = 0; i < entries_.size(); ++i)
-        if (entries_[i].kind == Kind::Summit && glm::distance(positions_[i], from) <= reach)
+        if (entries_[i].kind == kind && glm::distance(positions_[i], from) <= reach)
             found.push_back(&entries_[i]);
     return found;
 }

@@ -57,8 +57,8 @@ class Gazetteer {
 
     /// The place nearest to another one. @returns null: none within the distance
     const Entry* nearest_place(const Near& near) const;
-    /// Summits within a distance of a place, in the order of the file.
-    std::vector<const Entry*> summits_within(const Near& near) const;
+    /// Entries within a distance of a place, in the order of the files.
+    std::vector<const Entry*> within(Kind kind, const Near& near) const;
 
   private:
     struct Hit;

@@ -134,7 +134,7 @@ Summit on_top(const Entry& entry, const dem::Grid& grid, const PostHeight& heigh
 std::vector<Summit> summits_on(const Gazetteer& gazetteer, const dem::Grid& grid,
                                const PostHeight& height_m, const Near& near) {
     std::vector<Summit> summits;
-    for (const Entry* const entry : gazetteer.summits_within(near))
+    for (const Entry* const entry : gazetteer.within(Kind::Summit, near))
         if (is_on(grid, entry->place)) summits.push_back(on_top(*entry, grid, height_m));
     // A top has one name: that with a height, else the nearest.
     std::map<std::pair<double, double>, Summit*> tops;

@@ -46,6 +46,7 @@ void update_light(PassContext& frame, bool with_walls) {
     if (frame.is_read("light_clearance") && (sees_ground || !light.shadow_sun()))
         light.update_shadows(inputs.direct_light(), inputs.exaggeration, pixel_posts);
     if (frame.is_read("light_sky")) light.update_sky_view(inputs.exaggeration);
+    if (frame.is_read(kHeightMeansTexture)) frame.terrain.height_means().update(frame.block);
     light.describe(frame.block);
 }
 
@@ -111,8 +112,9 @@ class Declaration {
     void resources() {
         using enum PixelFormat;
         const PixelFormat shown = facts_.deep ? RGBA16 : RGBA8;
-        for (const char* name : {"tiles", "frame", "parameters", "light_clearance",
-                                 "light_fraction", "light_sky", "floor_ground"})
+        for (const char* name :
+             {"tiles", "frame", "parameters", "light_clearance", "light_fraction", "light_sky",
+              kHeightMeansTexture, "floor_ground"})
             provided(name);
         add(Resource{.name = "gbuffer", .format = RGBA32UI, .output = facts_.audited});
         add(Resource{.name = "depth", .format = Depth32F, .output = true});
@@ -159,7 +161,7 @@ class Declaration {
         add(Pass{.name = "light",
                  .kind = PassKind::Host,
                  .reads = {"tiles"},
-                 .writes = {"light_clearance", "light_fraction", "light_sky"},
+                 .writes = {"light_clearance", "light_fraction", "light_sky", kHeightMeansTexture},
                  .body = [with_walls = facts_.outside](PassContext& frame) {
                      update_light(frame, with_walls);
                  }});

@@ -25,6 +25,7 @@
 #include "gl/context.h"
 #include "light/raster/clearance.h"
 #include "light/raster/horizons.h"
+#include "render/block_means.h"
 #include "render/coverage_texture.h"
 #include "render/device_shadows.h"
 #include "render/shadow_texels.h"
@@ -35,30 +36,6 @@ namespace {
 
 constexpr int kMaxSide_px = 16384;     // that OpenGL 4.5 guarantees
 constexpr double kClearancePosts = 4;  // shaders clamp clearances to so many post spacings
-
-/// Means of squares of side x side posts, excluding voids, as Source::read() computes them.
-/// @param factor  of the heights
-Array2d<float> block_means(const Array2d<float>& height_m, int side, float factor) {
-    const int columns = height_m.width() / side, rows = height_m.height() / side;
-    Array2d<float> means(columns, rows);
-    parallel_for(0, rows, 8, [&](int first, int last) {
-        for (int row = first; row < last; ++row)
-            for (int column = 0; column < columns; ++column) {
-                float sum = 0;
-                int count = 0;
-                for (int y = row * side; y < (row + 1) * side; ++y)
-                    for (int x = column * side; x < (column + 1) * side; ++x) {
-                        const float h = height_m.at(x, y);
-                        if (std::isnan(h)) continue;
-                        sum += h;
-                        ++count;
-                    }
-                means.at(column, row) = count > 0 ? factor * sum / static_cast<float>(count)
-                                                  : std::numeric_limits<float>::quiet_NaN();
-            }
-    });
-    return means;
-}
 
 /// The smallest power of two such that means of reduction x reduction posts number at most
 /// `max_posts` and fit into a texture. Leaves at least 2 means a side.
@@ -431,7 +408,7 @@ void GroundLight::describe(FrameBlock& block) const {
     const int sky_reduction = my.sky_view ? my.sky_view->ground.reduction : 1;
     const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
     block.light_grid = {static_cast<float>(1 / (given * reduction)),
-                        static_cast<float>(1 / (given * sky_reduction)), 0,
+                        static_cast<float>(1 / (given * sky_reduction)), block.light_grid.z,
                         static_cast<float>(kClearancePosts * reduction *
                                            std::max(spacing_m.x, spacing_m.y) * exaggeration)};
     block.eye_above_ground = static_cast<float>(eye_above_ground_m(my.field, block, exaggeration));
@@ -443,7 +420,7 @@ void GroundLight::describe(FrameBlock& block) const {
                (2 * step_m);
     };
     block.light_axes = {posts_per_m(kPi / 2), posts_per_m(0)};
-    block.light_map = {grid.crs().is_geographic() ? 1 : 0, 0, 0, 0};
+    block.light_map.x = grid.crs().is_geographic() ? 1 : 0;
 }
 
 }  // namespace relevo::render

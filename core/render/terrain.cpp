@@ -120,6 +120,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       polar_axis_(frame.up(kPi / 2, 0)),
       natural_(grid_, frame_, pyramid_, options.climate_alone),
       light_(heightfield, frame, options.sky, options.shadows_on, options.memory.light_posts),
+      height_means_(heightfield),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
@@ -243,6 +244,7 @@ void Terrain::require_surface_pages() {
 
 const gl::Texture* Terrain::texture(std::string_view name) const {
     if (const gl::Texture* const natural = natural_.texture(name)) return natural;
+    if (name == kHeightMeansTexture) return height_means_.texture();
     if (name == "page_table") return &page_table_.texture();
     if (name == "water_pages" && dry_.name() != 0) return &dry_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;

@@ -22,6 +22,7 @@
 #include "render/frame_block.h"
 #include "render/ground_light.h"
 #include "render/ground_rasters.h"
+#include "render/height_means.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/natural_ground.h"
@@ -169,6 +170,7 @@ class Terrain {
 
     /// Climate and land cover.
     NaturalGround& natural() { return natural_; }
+    HeightMeans& height_means() { return height_means_; }
 
     /// Sun and sky light after occlusion by terrain.
     GroundLight& light() { return light_; }
@@ -221,6 +223,7 @@ class Terrain {
     glm::dvec3 polar_axis_;
     NaturalGround natural_;
     GroundLight light_;
+    HeightMeans height_means_;
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
     int normal_layers_ = 1;

@@ -187,7 +187,7 @@ constexpr Option kOptions[] = {
      [](const Scene& s) { return flag(s.stamps.legend); },
      [](Scene& s, const Value& v) { s.stamps.legend = v.boolean; }},
     {"stamps", "title", "--title", "Stamps",
-     "Title on the picture; default: the DEM's name", Kind::Text, 0, 0, {},
+     "Title on the picture; default: the largest place and the highest summit on the DEM", Kind::Text, 0, 0, {},
      [](const Scene& s) { return text(s.stamps.title_text); },
      [](Scene& s, const Value& v) { s.stamps.title_text = printable(v.text); }},
     {"stamps", "attribution", "--attribution", "Stamps",

@@ -120,6 +120,13 @@ double within_a_turn_deg(double angle_deg) {
     return std::abs(angle_deg) <= 360 ? angle_deg : std::fmod(angle_deg, 360.0);
 }
 
+bool is_from_above(const View& view) {
+    const Orbit& orbit = view.orbit;
+    return !view.eye && !view.look_at && !orbit.aerial && orbit.azimuth_deg == 180 &&
+           orbit.elevation_deg == 90 && orbit.zoom == 1 && view.panorama == Panorama::None &&
+           view.stereo == Stereo::None;
+}
+
 namespace {
 
 struct Side {

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "base/error.h"
 #include "scene/map_view.h"
@@ -38,6 +39,13 @@ Place place_of(const chart::Margins& margins, const glm::ivec2& whole, const Sha
     return {corner + (room - size) / 2, size};
 }
 
+/// The largest size within a room whose sides are to each other as those of a grid.
+glm::ivec2 ground_size(const dem::Grid& grid, const glm::ivec2& room) {
+    const glm::dvec2 sides_m = grid.sides_m();
+    const double px_per_m = std::min(room.x / sides_m.x, room.y / sides_m.y);
+    return glm::max(glm::ivec2(glm::round(px_per_m * sides_m)), glm::ivec2(kLeastSide_px));
+}
+
 /// A white picture with the view in it and a line around that.
 template <typename T>
 image::Pixels<T> framed(const image::Pixels<T>& view, const Place& place, const glm::ivec2& whole) {
@@ -58,24 +66,31 @@ image::Pixels<T> framed(const image::Pixels<T>& view, const Place& place, const 
 
 image::Picture Session::Impl::make_with_margin(const Session& session, render::PassTimes* times) {
     const glm::ivec2 whole(state.scene.width_px, state.scene.height_px);
-    const Place place = place_of(
-        chart::margins_for(planned_stamps(session), whole.x, whole.y), whole,
-        [&](const glm::ivec2& room) {
-            return state.is_map() ? scene::map_size(session.dem()->source->grid(), 0, room) : room;
-        });
-    struct Sized {  // the scene's size is that of the whole picture before and after
+    const dem::Grid& grid = session.dem()->source->grid();
+    const bool from_above = !state.is_map() && scene::is_from_above(state.scene.view);
+    const Place place = place_of(chart::margins_for(planned_stamps(session), whole.x, whole.y),
+                                 whole, [&](const glm::ivec2& room) {
+                                     return state.is_map() ? scene::map_size(grid, 0, room)
+                                            : from_above   ? ground_size(grid, room)
+                                                           : room;
+                                 });
+    struct Sized {  // the scene is that of the whole picture before and after
         Impl& impl;
         glm::ivec2 whole;
+        scene::View view;
         Sized(Impl& of, const glm::ivec2& whole_px, const glm::ivec2& view_px)
-            : impl(of), whole(whole_px) {
+            : impl(of), whole(whole_px), view(of.state.scene.view) {
             impl.resize(view_px.x, view_px.y);
         }
         ~Sized() {
             impl.state.scene.width_px = whole.x;
             impl.state.scene.height_px = whole.y;
+            impl.state.scene.view = view;
         }
     } const sized(*this, whole, place.size);
-    look(state.scene.view);
+    scene::View seen = state.scene.view;
+    if (from_above) seen.orbit.zoom = 1 / scene::kFill;  // the ground ends at the line around it
+    look(seen);
     PictureMaker maker(*this);
     if (maker.is_tiled()) maker.keep_depths();
     image::Picture picture = maker.whole(times);

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/text.h"
+#include "names/ground_name.h"
 #include "scene/map_view.h"
 #include "session/graticule.h"
 #include "session/image_parts.h"
@@ -25,7 +26,10 @@ constexpr double kLeastNorth = 0.02;
 /// Greatest distance of drawn ground from the DEM's surface [px].
 constexpr double kGround_px = 4;
 
-std::string name_of(const scene::Scene& scene) {
+/// By the names that Relevo knows on a DEM, else by its file.
+std::string name_of(const scene::Scene& scene, const dem::Grid& grid) {
+    const std::string known = names::ground_name(names::Gazetteer::shipped(), grid);
+    if (!known.empty()) return known;
     return scene.dems.empty()
                ? std::string()
                : printable(std::filesystem::path(scene.dems.front()).stem().string());
@@ -67,7 +71,8 @@ class Stamper {
         chart::Stamps stamps;
         if (wanted_.legend) stamps.legends = legends;
         if (wanted_.title)
-            stamps.title = wanted_.title_text.empty() ? name_of(of_.scene) : wanted_.title_text;
+            stamps.title = wanted_.title_text.empty() ? name_of(of_.scene, of_.dem.source->grid())
+                                                      : wanted_.title_text;
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
         if (wanted_.date) add_line("", of_.clock, "date", stamps);
         if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);

@@ -31,10 +31,11 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sun_light_table[128];  // over the DEM, by the sine of the geometric elevation: as sun_light[0] (sun_light())
     vec4 light_heights;       // of light_by_height, for lib/ground.glsl; x: height of its first row [m], y: 1 / (its last - its
                               // first) [1/m]
-    vec4 light_grid;          // of render/ground_light.h: texels per post, x: of light_clearance, y: of light_sky; z: 0
+    vec4 light_grid;          // of render/ground_light.h: texels per post, x: of light_clearance, y: of light_sky; z: of height_means;
                               // w: limit of clearances [m]
     vec4 light_axes;          // xy: columns and rows of the DEM to a metre east, zw: north, at its centre
-    vec4 light_map;           // x: 1 where these are so everywhere by the compass, 0 where they are by the frame's x, y
+    vec4 light_map;           // x: 1 where these are so everywhere by the compass, 0 where they are by the frame's x, y;
+                              // y: mean slope of the ground as a picture of the whole DEM shows it, where lib/height_means.glsl is read
     vec4 instance_shadow_axes[3];  // of the shadow maps; xyz: across the light, upwards across it, towards the sun
     vec4 instance_shadow_maps[3];  // finest first; xyz: from a map's centre to the eye along these axes [m], w: 1 / half of
                               // its side [1/m]

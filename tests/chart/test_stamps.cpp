@@ -83,6 +83,35 @@ TEST(Stamps, StandAroundAMapThatLeavesTheMarginsTheyNeed) {
     }
 }
 
+TEST(Stamps, LabelsOfTheGraticuleStandAroundAMap) {
+    Stamps stamps;
+    stamps.title = "Inn valley";
+    stamps.scale = Stamps::Scale{0.011, ""};
+    stamps.north = glm::dvec2(0, -1);
+    stamps.graticule = {{.words = "47°20'N"}};
+    const Margins margins = margins_for(stamps, 900, 900);
+    const Rect map{double(margins.left), double(margins.top),
+                   double(900 - margins.left - margins.right),
+                   double(900 - margins.top - margins.bottom)};
+    stamps.graticule.clear();
+    // Lines end where ground does, which may be some pixels within the map.
+    for (int i = 1; i < 6; ++i) {
+        const double share = i / 6.0;
+        stamps.graticule.push_back({{map.x + 12, map.y + share * map.height}, {-1, 0}, "47°20'N"});
+        stamps.graticule.push_back(
+            {{map.x + share * map.width, map.y + map.height - 9}, {0.05, 0.999}, "11°20'E"});
+    }
+    image::Image8 picture = grey(900, 900);
+    std::vector<Rect> taken;
+    EXPECT_THAT(stamp(stamps, picture, &taken, map), IsEmpty());
+    ASSERT_EQ(taken.size(), 13u);
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+        EXPECT_FALSE(overlap(taken[i], map)) << i;
+        for (std::size_t k = 0; k < i; ++k)
+            EXPECT_FALSE(overlap(taken[i], taken[k])) << i << ", " << k;
+    }
+}
+
 TEST(Stamps, AMapWithoutStampsHasANarrowMargin) {
     const Margins margins = margins_for({}, 900, 900);
     EXPECT_EQ(margins.left, 12);

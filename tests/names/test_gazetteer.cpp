@@ -75,14 +75,14 @@ TEST(Gazetteer, RanksByDistanceNearADem) {
 }
 
 TEST(Gazetteer, SummitsWithinADistance) {
-    const auto around = Gazetteer::shipped().summits_within(at(47.2, 11.4, 30e3));
+    const auto around = Gazetteer::shipped().within(Kind::Summit, at(47.2, 11.4, 30e3));
     EXPECT_THAT(names_of(around), testing::IsSupersetOf({"Serles AT", "Patscherkofel AT"}));
     for (const Entry* const entry : around) {
         EXPECT_EQ(entry->kind, Kind::Summit);
         EXPECT_LT(geo::geodesic(geodetic_deg(47.2, 11.4), entry->place).distance_m, 30.4e3);
     }
-    EXPECT_EQ(Gazetteer::shipped().summits_within(at(0, 0, 21e6)).size(), 46356u);
-    EXPECT_THAT(names_of(Gazetteer::shipped().summits_within(at(0, -160, 1e5))), IsEmpty());
+    EXPECT_EQ(Gazetteer::shipped().within(Kind::Summit, at(0, 0, 21e6)).size(), 46356u);
+    EXPECT_THAT(names_of(Gazetteer::shipped().within(Kind::Summit, at(0, -160, 1e5))), IsEmpty());
 }
 
 TEST(Gazetteer, TheNearestPlaceWithinADistance) {

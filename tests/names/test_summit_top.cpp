@@ -193,7 +193,7 @@ std::int64_t count_on(int columns, int rows, double west_deg, double north_deg, 
 TEST(SummitsOn, EveryGridOfTheEarth) {
     EXPECT_EQ(count_on(3600, 1800, -179.95, 89.95, 0.1), 46356);
     // Over 180 degrees, counted both ways.
-    const auto all = Gazetteer::shipped().summits_within({geodetic_deg(0, 0), 21e6});
+    const auto all = Gazetteer::shipped().within(Kind::Summit, {geodetic_deg(0, 0), 21e6});
     const auto over_180 = std::ranges::count_if(all, [](const Entry* entry) {
         return std::abs(degrees(entry->place.lon_rad)) > 160 &&
                std::abs(degrees(entry->place.lat_rad)) < 70;

@@ -21,6 +21,8 @@ inline const std::vector<EffectGroup> kEffectGroups = {
     {},
     {"bloom", "occlusion", "contours", "grade", "wet"},
     {"snowfall", "tint", "vsm"},
+    {"ridges", "softlight", "tint"},
+    {"ridges", "swiss"},
     {"trees", "avalanche"}};  // with vsm, each part of a panorama has shadow maps of trees
 
 inline std::string name_of(const testing::TestParamInfo<EffectGroup>& group) {

@@ -46,6 +46,12 @@ scene::Scene view_alone(const Drawn& framed) {
         chart::margins_for(planned_stamps(framed.session), scene.width_px, scene.height_px);
     scene.width_px -= margins.left + margins.right;
     scene.height_px -= margins.top + margins.bottom;
+    // From above it has the shape of the ground, which fills it.
+    const glm::dvec2 sides_m = framed.session.dem()->source->grid().sides_m();
+    const double px_per_m = std::min(scene.width_px / sides_m.x, scene.height_px / sides_m.y);
+    scene.width_px = static_cast<int>(std::lround(px_per_m * sides_m.x));
+    scene.height_px = static_cast<int>(std::lround(px_per_m * sides_m.y));
+    scene.view.orbit.zoom = 1 / scene::kFill;
     scene.stamps = {.legend = false};
     return scene;
 }
@@ -71,8 +77,25 @@ TEST(Margin, TheViewIsThatOfAPictureOfItsOwnAndNothingLiesOnIt) {
     EXPECT_EQ(framed.image().at(0, 0, 0), 255);
 }
 
+TEST(Margin, AMapSheetIsFullOfGround) {
+    scene::Scene scene = scene_of(900, 700);
+    scene.effects.presets = {"swiss"};
+    scene.stamps.graticule = true;
+    const Drawn framed(scene);
+    EXPECT_THAT(framed.session.stamp_notes(), testing::IsEmpty());
+    const Drawn alone(view_alone(framed));
+    const image::Image8& view = alone.image();
+    int white = 0;
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x)
+            white += view.at(x, y, 0) == 255 && view.at(x, y, 2) == 255;
+    EXPECT_LT(white, 0.03 * view.width * view.height);
+    EXPECT_EQ(framed.session.scene().view, scene.view);  // which is recorded
+}
+
 TEST(Margin, PicturesOf16BitsAndTransparentOnesHaveIt) {
     scene::Scene scene = scene_of(400, 360);
+    scene.view = scene::parse_view("south,el=60");
     scene.transparent = true;
     const Drawn framed(scene, 16);
     const auto& image = std::get<image::Image16>(framed.picture.pixels);

@@ -28,7 +28,7 @@ class PictureAlgorithm(RelevoAlgorithm):
     ENABLE, DISABLE, VALUES, STAMPS, OVERLAY = "ENABLE", "DISABLE", "VALUES", "STAMPS", "OVERLAY"
     group_title = "Pictures"
     # The built-in ones (data/presets).
-    PRESETS = ["none", "aspect", "clay", "paper", "relief", "slope"]
+    PRESETS = ["none", "aspect", "bathymetry", "clay", "paper", "relief", "slope", "swiss"]
     _STAMPS = ["title", "scale", "north", "graticule", "date", "sun"]
 
     def add_scene(self) -> None:
