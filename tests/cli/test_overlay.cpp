@@ -237,6 +237,23 @@ TEST_F(OverlayOption, StampsAreInTheSceneThatAPictureCarries) {
     EXPECT_EQ(image::read(dir_ / "again.png").values, first.values);
 }
 
+TEST(MapSheet, IsWhatAllStampsOfAViewFromAboveMake) {
+    const std::filesystem::path dir = scratch_dir("cli_map_sheet");
+    const auto taken = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            "-q",     "capture", bundled_dem(), "-o",      (dir / name).string(),
+            "--view", "top",     "--size",      "400x400", "--overwrite"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Result run = relevo(words);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return image::Image8(image::read(dir / name));
+    };
+    const image::Image8 sheet = taken("sheet.png", {"--stamp", "all"});
+    EXPECT_EQ(sheet.values, taken("margin.png", {"--stamp", "all", "--margin"}).values);
+    EXPECT_EQ(sheet.at(0, 0, 0), 255);
+    EXPECT_NE(taken("some.png", {"--stamp", "title"}).at(0, 0, 0), 255);
+}
+
 TEST_F(OverlayOption, StampsThatAreNoneAreRefused) {
     EXPECT_EQ(
         capture("refused.png", {"--stamp", "title,scael"}).err,

@@ -21,7 +21,6 @@ inline const std::vector<EffectGroup> kEffectGroups = {
     {},
     {"bloom", "occlusion", "contours", "grade", "wet"},
     {"snowfall", "tint", "vsm"},
-    {"ridges", "softlight", "tint"},
     {"ridges", "swiss"},
     {"trees", "avalanche"}};  // with vsm, each part of a panorama has shadow maps of trees
 
