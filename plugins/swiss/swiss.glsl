@@ -26,7 +26,7 @@ const vec3 swiss_land[swiss_lands] = vec3[](
 const vec3 swiss_sea[swiss_seas] = vec3[](
     vec3(0.80, 0.89, 0.93), vec3(0.67, 0.81, 0.88), vec3(0.53, 0.71, 0.82), vec3(0.40, 0.59, 0.74)); //@ ramp(0, floor) unit(m) label("Height")
 const vec3 swiss_water = vec3(0.70, 0.83, 0.90);  // lakes, and sea of unknown depth
-const vec3 swiss_shade = vec3(0.29, 0.33, 0.50), swiss_sun = vec3(1.08, 1.03, 0.80);
+const vec3 swiss_shade = vec3(0.31, 0.35, 0.47), swiss_sun = vec3(1.07, 1.02, 0.86);
 const vec3 swiss_air = vec3(0.83, 0.885, 0.925);
 
 const int swiss_bands = 5;  // of widths of forms, each twice as wide as the one before
