@@ -33,6 +33,18 @@ ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
 
 }  // namespace
 
+std::string lit_label(const light::LightDay& day, const sun::Zone& zone) {
+    if (day.lit.empty()) return tr("no direct sun");
+    const auto clock = [&](const light::LightEdge& edge) {
+        return edge.midnight ? std::string(tr("midnight")) : clock_label(edge.utc, zone);
+    };
+    std::string text;
+    for (const light::LitInterval& lit : day.lit)
+        text += (text.empty() ? "" : "\n") +
+                tr_format("sun {} to {}", clock(lit.begin), clock(lit.end));
+    return text;
+}
+
 template <typename Chart>
 void ChartsPanel::Shown<Chart>::take(std::shared_ptr<const Chart> newer) {
     if (newer == chart) return;
@@ -76,8 +88,10 @@ void ChartsPanel::year(State& state) {
     if (across < 0 || across >= 1 || up < 0 || up >= 1) return;
     const DayMinute there{date_of(now.date.year, static_cast<int>(across * days)),
                           static_cast<int>(up * 1440)};
-    ImGui::SetTooltip("%s, %02d:%02d", day_label(there.date).c_str(), there.minute / 60,
-                      there.minute % 60);
+    const std::vector<light::LightDay>& lit = year_.chart->days;
+    const auto day = std::ranges::find(lit, there.date, &light::LightDay::date);
+    ImGui::SetTooltip("%s, %02d:%02d\n%s", day_label(there.date).c_str(), there.minute / 60,
+                      there.minute % 60, day == lit.end() ? "" : lit_label(*day, zone).c_str());
     if (!ImGui::IsMouseClicked(0)) return;
     state.set_utc(there.utc(zone));
     state.step = true;

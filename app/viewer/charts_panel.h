@@ -1,11 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "gl/texture.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {
+
+/// "08:13 to 16:01": the periods of direct sun, a line each, or "no direct sun".
+std::string lit_label(const light::LightDay& day, const sun::Zone& zone);
 
 /// Panel of the chosen point's horizon and year, at the lower edge, with a height that the user can
 /// change.

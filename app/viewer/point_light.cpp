@@ -132,6 +132,7 @@ class PointWork::Worker {
         auto picture = std::make_shared<YearPicture>();
         picture->picture = chart::to_image(chart.draw(), wanted_.px_a_unit);
         picture->plot = chart.plot();
+        picture->days = carpet_->days;
         picture->lit_s = carpet_->lit_s;
         picture->level_s = carpet_->level_s;
         add_dark_days(*carpet_, *picture);

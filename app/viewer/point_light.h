@@ -11,6 +11,7 @@
 #include "chart/panorama.h"
 #include "geo/geodetic.h"
 #include "image/image.h"
+#include "light/point/direct_light.h"
 #include "scene/scene.h"
 #include "session/session.h"
 #include "sun/zone.h"
@@ -40,7 +41,8 @@ struct HorizonPicture {
 /// Chart of sunlight during a year at a point.
 struct YearPicture {
     image::Image8 picture;
-    chart::Rect plot;  ///< in chart units
+    chart::Rect plot;                   ///< in chart units
+    std::vector<light::LightDay> days;  ///< those that the zone has, in order
     double lit_s = 0, level_s = 0;
     int dark_days = 0;  ///< without direct sun, for terrain or polar night
     int dark_row = 0;   ///< most of them in succession, possibly past the year's end

@@ -11,12 +11,6 @@
 namespace relevo::viewer {
 namespace {
 
-/// Rounded to the nearest minute, as in diagrams.
-std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
-    const sun::CivilTime wall = zone.local(utc + 30.0).wall;
-    return fmt::format("{:02}:{:02}", wall.hour, wall.minute);
-}
-
 std::string duration_text(double seconds) {
     const auto minutes = static_cast<int>(std::lround(seconds / 60));
     return tr_format("{} h {:02} min", minutes / 60, minutes % 60);
@@ -26,12 +20,12 @@ std::string duration_text(double seconds) {
 std::string light_words(const PointLight& point, sun::Instant now, const sun::Zone& zone) {
     const auto next = point.next_change(now);
     if (point.is_lit(now))
-        return next ? tr_format("in the sun until {}", clock_text(*next, zone))
+        return next ? tr_format("in the sun until {}", clock_label(*next, zone))
                     : tr("in the sun until midnight");
-    if (next) return tr_format("in shade until {}", clock_text(*next, zone));
+    if (next) return tr_format("in shade until {}", clock_label(*next, zone));
     std::string text = point.lit.empty() ? tr("no sun today") : tr("no more sun today");
     if (point.tomorrow)
-        text += tr_format(", tomorrow from {}", clock_text(*point.tomorrow, zone));
+        text += tr_format(", tomorrow from {}", clock_label(*point.tomorrow, zone));
     else if (point.tomorrow_is_known)
         text += tr(", nor tomorrow");
     return text;
@@ -92,8 +86,9 @@ void light_of(State& state, const PointLight& point) {
     ImGui::TextColored(lit ? style::lit() : style::shaded(), "%s",
                        light_words(point, state.document.utc, zone).c_str());
     for (const LitSpan& span : point.lit) {
-        const std::string from = span.from_midnight ? tr("midnight") : clock_text(span.begin, zone);
-        const std::string to = span.to_midnight ? tr("midnight") : clock_text(span.end, zone);
+        const std::string from =
+            span.from_midnight ? tr("midnight") : clock_label(span.begin, zone);
+        const std::string to = span.to_midnight ? tr("midnight") : clock_label(span.end, zone);
         ImGui::TextUnformatted(
             (tr_format("{} to {}", from, to) + (point.lit.size() > 1 ? span_text(span) : ""))
                 .c_str());

@@ -81,6 +81,11 @@ std::string day_label(sun::Date date) {
     return fmt::format("{} {}", date.day, tr(kMonths[date.month - 1]));
 }
 
+std::string clock_label(sun::Instant utc, const sun::Zone& zone) {
+    const int minute = DayMinute::of(utc + 30.0, zone).minute;
+    return fmt::format("{:02}:{:02}", minute / 60, minute % 60);
+}
+
 sun::Date in_year(sun::Date date, int year) {
     return {year, date.month, std::min(date.day, days_in_month(year, date.month))};
 }

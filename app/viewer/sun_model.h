@@ -59,5 +59,7 @@ int days_in_month(int year, int month);
 std::string english_day(sun::Date date);
 /// The same in the user's language.
 std::string day_label(sun::Date date);
+/// "15:03", rounded to the nearest minute, as in diagrams.
+std::string clock_label(sun::Instant utc, const sun::Zone& zone);
 
 }  // namespace relevo::viewer

@@ -82,13 +82,16 @@ void add_noon(Drawing& drawing, const light::Carpet& carpet, const Plot& area) {
 }
 
 void add_hours(Drawing& drawing, const Plot& area) {
+    // The first of these that has room for its times.
+    constexpr double kText = 14;
+    const int step = area.height >= 8 * kText ? 3 : area.height >= 4 * kText ? 6 : 12;
     for (int hour = 0; hour <= 24; hour += 1) {
         const double y = area.y_of(hour * 3600.0);
-        if (hour % 3 == 0 && hour % 24 != 0)
+        if (hour % step == 0 && hour % 24 != 0)
             drawing.line({area.x, y}, {area.right(), y},
                          {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
-        drawing.line({area.x - (hour % 3 == 0 ? 7 : 4), y}, {area.x, y}, {.stroke = kSoft});
-        if (hour % 3 == 0)
+        drawing.line({area.x - (hour % step == 0 ? 7 : 4), y}, {area.x, y}, {.stroke = kSoft});
+        if (hour % step == 0)
             drawing.text({area.x - 11, y + 4}, fmt::format("{:02}:00", hour),
                          {.size = 12, .color = kSoft, .anchor = Anchor::End});
     }

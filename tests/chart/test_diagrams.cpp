@@ -185,7 +185,12 @@ TEST(Diagrams, APanelHasTheSizeThatIsAskedForAndNoLettersOnEachOther) {
             EXPECT_LT(least, 1e-6);
         }
         const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 1800);
-        CarpetChart chart{&c, scene.horizon.place(), "", "", PanelSize{760, 260}};
+        CarpetChart chart{&c, scene.horizon.place(), "", "", PanelSize{760, 90}};
+        for (const double height : {90, 118, 160}) {  // of low windows
+            chart.panel->height = height;
+            expect_readable(chart.draw(), 3);
+        }
+        chart.panel->height = 260;
         const Drawing year = chart.draw();
         expect_readable(year, 3);
         double lit = 0;

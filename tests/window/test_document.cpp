@@ -20,6 +20,7 @@
 #include "sun/position.h"
 #include "sun/seasons.h"
 #include "support/support.h"
+#include "viewer/charts_panel.h"
 #include "viewer/document.h"
 #include "viewer/export.h"
 #include "viewer/file_watch.h"
@@ -291,6 +292,12 @@ TEST(PointWork, KnowsWhenTheSunComesBackAndTheDaysWithoutIt) {
     EXPECT_TRUE(winter->tomorrow_is_known);
     EXPECT_EQ(winter->year->dark_row, sun::days_between(first, {2027, last.month, last.day}) + 1);
     EXPECT_EQ(winter->year->dark_days, winter->year->dark_row);
+    const light::LightDay& june = winter->year->days[171];
+    EXPECT_EQ(lit_label(june, wanted.zone),
+              fmt::format("sun {} to {}", clock_label(june.lit.front().begin.utc, wanted.zone),
+                          clock_label(june.lit.front().end.utc, wanted.zone)));
+    EXPECT_EQ(june.date, (sun::Date{2026, 6, 21}));
+    EXPECT_EQ(june.lit.size(), 1U);
     // As long before the solstice as after it.
     const int before = sun::days_between(first, {2026, 12, 21}),
               after = sun::days_between({2025, 12, 21}, last);
@@ -330,6 +337,9 @@ TEST(PointWork, PolarNightIsDaysWithoutSun) {
     EXPECT_EQ(year.dark_row, year.dark_days);
     EXPECT_EQ(year.dark.first.month, 11);
     EXPECT_EQ(year.dark.second.month, 2);
+    ASSERT_EQ(year.days.size(), 365U);
+    EXPECT_EQ(lit_label(year.days.front(), wanted.zone), "no direct sun");
+    EXPECT_EQ(lit_label(year.days[171], wanted.zone), "sun midnight to midnight");
 }
 
 TEST(PointLight, MidnightIsNoEdgeOfTheLight) {
