@@ -1,15 +1,21 @@
 // Rasters that users choose for effects: by file, over the ground, changed and mistaken.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/units.h"
 #include "dem/fixture.h"
+#include "dem/load.h"
 #include "dem/source.h"
+#include "light/point/horizon.h"
 #include "session/session.h"
+#include "sun/position.h"
 #include "support/change.h"
 #include "support/device.h"
 #include "support/support.h"
@@ -106,6 +112,57 @@ TEST_F(EffectRasters, AMistakeInAFileOfLinesLeavesThePictureAsItWas) {
                 testing::HasSubstr("/nowhere/walk.gpx"));
     session.draw();
     EXPECT_EQ(session.picture().values, before.values);
+}
+
+// Short lines on ground that the terrain horizon leaves in the sun, and on ground that it hides.
+TEST_F(EffectRasters, LinesHaveAnotherColourWithoutDirectLight) {
+    dem::Source source = dem::Source::open(jacksboro());
+    const dem::Heightfield field = dem::load(source, dem::LoadOptions{}.memory);
+    scene::Scene scene = from_above("tracks");
+    scene.time.at = "2026-12-21T14:15Z";
+    scene.width_px = 800;  // more than a pixel a post
+    scene.height_px = 640;
+    const sun::Instant utc = sun::parse_time(scene.time.at).utc;
+    /// Of the sun over the terrain [deg].
+    const auto clearance_deg = [&](int column, int row) {
+        const light::TerrainHorizon horizon(field, field.grid.place(column, row),
+                                            {.few_directions = true});
+        const sun::Position at = sun::position(utc, horizon.place());
+        return degrees(at.elevation_rad - horizon.elevation_rad(at.azimuth_rad));
+    };
+    int lit = 0, shaded = 0;
+    for (int column = 40; column < field.grid.columns() - 40; column += 6) {
+        constexpr int kRow = 200;
+        std::vector<double> around_deg;  // also of the pixels that the line's width adds
+        for (const int row : {kRow - 2, kRow, kRow + 2})
+            for (int by = -3; by <= 3; ++by)
+                around_deg.push_back(clearance_deg(column + by, row));
+        const auto [least, most] = std::ranges::minmax(around_deg);
+        const bool is_lit = least > 1;
+        if (!is_lit && most > -1) continue;
+        const std::string file = (test::folder() / "line.geojson").string();
+        const auto text_of = [&](int at) {
+            const geo::Geodetic place = field.grid.place(at, kRow);
+            return fmt::format("[{}, {}]", degrees(place.lon_rad), degrees(place.lat_rad));
+        };
+        std::ofstream(file) << R"({"type": "LineString", "coordinates": [)" << text_of(column - 1)
+                            << ", " << text_of(column + 1) << "]}";
+        scene.effects.settings = {{"tracks.file", file},        {"tracks.colours", "light"},
+                                  {"tracks.colour", "#ff0000"}, {"tracks.shade_colour", "#0000ff"},
+                                  {"tracks.casing_px", "0"},    {"tracks.width_px", "3"}};
+        const image::Image8 picture = open(scene).picture();
+        int red = 0, blue = 0;
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x) {
+                red += picture.at(x, y, 0) > 250 && picture.at(x, y, 2) < 5;
+                blue += picture.at(x, y, 2) > 250 && picture.at(x, y, 0) < 5;
+            }
+        EXPECT_GT(is_lit ? red : blue, 5) << column;
+        EXPECT_EQ(is_lit ? blue : red, 0) << column;
+        ++(is_lit ? lit : shaded);
+    }
+    EXPECT_GT(lit, 2);
+    EXPECT_GT(shaded, 2);
 }
 
 TEST_F(EffectRasters, FilesThatLieAreErrorsWithTheirName) {
