@@ -304,11 +304,11 @@ void Hand::hover(glm::vec2 mouse) {
 
 /// viewer::drawn_height_m() with a tolerance for coarse levels of detail.
 double Hand::drawn_height_m(const glm::dvec3& point_m) const {
-    constexpr double kWithin_px = 8;
     const double px_m = 2 * std::tan(picture_->camera.fov_y_rad / 2) / window_.size().y *
                         distance(picture_->camera.eye_m, point_m);
-    return viewer::drawn_height_m(point_m, state_.land,
-                                  std::max(kWithin_px * px_m, state_.spacing_m / 4));
+    return viewer::drawn_height_m(
+        point_m, state_.land,
+        height_tolerance_m(picture_->sharp, state_.is_outside, px_m, state_.spacing_m));
 }
 
 /// From central differences over one post spacing.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -50,6 +51,12 @@ double drawn_height_m(const glm::dvec3& point_m, const Land& land, double within
     const geo::Geodetic place = land.frame->to_geodetic(point_m);
     const double height_m = land.height_m(place);
     return place.height_m < height_m * land.exaggeration - within_m ? std::nan("") : height_m;
+}
+
+double height_tolerance_m(bool is_sharp, bool has_walls, double px_m, double spacing_m) {
+    constexpr double kWithin_px = 8;
+    if (!is_sharp && !has_walls) return std::numeric_limits<double>::infinity();
+    return std::max(kWithin_px * px_m, spacing_m / 4);
 }
 
 geo::Axes Land::axes(const glm::dvec3& point_m) const {

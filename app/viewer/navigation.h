@@ -68,6 +68,10 @@ Pose pan(const Pose& pose, const Land& land, const glm::dvec3& grabbed_m, glm::d
 /// filled or not, and on walls below the surface.
 /// @param within_m  tolerance below the surface, exaggerated
 double drawn_height_m(const glm::dvec3& point_m, const Land& land, double within_m);
+/// within_m of a picture: everything where it may still show coarser ground than the DEM's, unless
+/// it shows walls.
+/// @param px_m  size of a pixel at the point
+double height_tolerance_m(bool is_sharp, bool has_walls, double px_m, double spacing_m);
 /// Zooms to a point, which keeps its image position. @param factor  of the distance
 Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double factor);
 /// Factor of the distance for a wheel event. @param notches  fractional on touchpads
