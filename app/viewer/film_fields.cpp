@@ -22,6 +22,7 @@ using Time = FilmChoice::Time;
 using Camera = FilmChoice::Camera;
 
 constexpr const char* kSeconds = "seconds";
+constexpr float kColumn_em = 7.5f;  // of labels that begin a row
 
 /// Draws widgets as without effect where they have none.
 class DisabledIf {
@@ -126,20 +127,24 @@ void parameter_combo(FilmChoice& choice, const State& state) {
 
 }  // namespace
 
-void WidgetRows::next(float width_px) {
+bool WidgetRows::next(float width_px) {
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     const float end = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width_px;
-    if (!is_first_ && end <= right) ImGui::SameLine();
-    is_first_ = false;
+    const bool begins_row = std::exchange(is_first_, false) || end > right;
+    if (!begins_row) ImGui::SameLine();
+    return begins_row;
 }
 
 void WidgetRows::next(const char* label, float width_em) {
     const float inner = ImGui::GetStyle().ItemInnerSpacing.x;
     const float width = width_em * ImGui::GetFontSize();
-    next(ImGui::CalcTextSize(label).x + inner + width);
+    const float label_px = ImGui::CalcTextSize(label).x;
+    const bool begins_row = next(label_px + inner + width);
+    // The first widgets of rows are below each other.
+    const float column = begins_row ? kColumn_em * ImGui::GetFontSize() : 0;
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
-    ImGui::SameLine(0, inner);
+    ImGui::SameLine(0, std::max(inner, column - label_px));
     ImGui::SetNextItemWidth(width);
 }
 

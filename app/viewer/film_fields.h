@@ -8,8 +8,8 @@ namespace relevo::viewer {
 /// Places widgets in rows, as many in each as have room.
 class WidgetRows {
   public:
-    /// Before a widget of a width [px].
-    void next(float width_px);
+    /// Before a widget of a width [px]. @returns whether it begins a row
+    bool next(float width_px);
     /// Before a widget with its label on its left. @param width_em  of the widget, in text heights
     void next(const char* label, float width_em);
     /// The next widget begins a row.

@@ -1,4 +1,5 @@
 // The film of the window without a window: what is asked for, its frames, its job and its command.
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <imgui.h>
 
 #include "base/text.h"
 #include "base/units.h"
@@ -16,6 +18,7 @@
 #include "viewer/export.h"
 #include "viewer/film_clock.h"
 #include "viewer/film_export.h"
+#include "viewer/film_fields.h"
 #include "viewer/film_plan.h"
 #include "viewer/film_preview.h"
 
@@ -326,6 +329,34 @@ TEST_F(Film, CancelledLeavesNothing) {
     EXPECT_EQ(result_of(drawing), "jacksboro_film.mp4: cancelled, there is no film");
     EXPECT_LT(drawing.drawn(), 1800u);
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST(WidgetRows, FieldsThatBeginARowAreBelowEachOther) {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {800, 600};
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+    ImGui::NewFrame();
+    ImGui::SetNextWindowSize({330, 400});
+    ImGui::Begin("rows");
+    std::vector<float> first;
+    WidgetRows rows;
+    float y = -1;
+    for (const char* label : {"Film", "Time", "Length", "Above ground", "Camera", "Look ahead"}) {
+        rows.next(label, 8);
+        const ImVec2 at = ImGui::GetCursorPos();
+        if (at.y > y) first.push_back(at.x);
+        y = at.y;
+        ImGui::Button(label, {ImGui::CalcItemWidth(), 0});
+    }
+    ImGui::End();
+    ImGui::EndFrame();
+    ImGui::DestroyContext();
+    EXPECT_GE(first.size(), 3U);
+    EXPECT_EQ(std::ranges::count(first, first.front()), static_cast<int>(first.size()));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ class FilmWindow : public Viewer {
 
     // Places of the panel in a window of 1280 x 800.
     static constexpr int kButtons = 676, kTimeLine = 706, kPlay = 414, kBack = 494;
-    static constexpr int kSaveFilm = 423, kSaveJob = 520, kLength = 712, kLengthRow = 598;
+    static constexpr int kSaveFilm = 423, kSaveJob = 520, kLength = 755, kLengthRow = 598;
 };
 
 TEST_F(FilmWindow, APreviewedFrameIsThatOfTheFilm) {
