@@ -70,9 +70,11 @@ std::vector<std::string> codes_in(const std::string& name) {
 }
 
 /// Projected CRSs whose area has a place: UTM on WGS 84 and ETRS89, then the smallest areas.
+/// Rasters have eastings first: variants with another order of axes are the same and are skipped.
 std::vector<geo::KnownCrs> used_at(const geo::Geodetic& place) {
     std::vector<geo::KnownCrs> used = geo::search_crs(
         fmt::format("{},{}", degrees(place.lat_rad), degrees(place.lon_rad)), kMostUsed);
+    std::erase_if(used, [](const geo::KnownCrs& crs) { return crs.name.ends_with("(N-E)"); });
     std::ranges::stable_partition(used, [](const geo::KnownCrs& crs) {
         return crs.name.starts_with("WGS 84 / UTM") || crs.name.starts_with("ETRS89 / UTM");
     });

@@ -132,6 +132,13 @@ TEST(CrsSuggestions, AreThoseThatTheCoordinatesCanBeIn) {
                 testing::AllOf(testing::Contains("EPSG:32616"), testing::SizeIs(testing::Gt(3)),
                                testing::Not(testing::Contains("EPSG:4326"))));
     EXPECT_THAT(codes("grid.asc", kUtm, "/missing.tif"), testing::IsEmpty());
+    // Not ETRS89 / UTM zone 32N (N-E), which differs by the order of axes alone.
+    constexpr const char* kTyrol = "xllcorner 680000\nyllcorner 5235000\n";
+    const std::string tyrol = test::scratch_dir("tyrol") / "N47E011.hgt";
+    std::ofstream(tyrol, std::ios::binary) << std::string(2 * 1201 * 1201, '\1');
+    EXPECT_THAT(codes("tyrol.asc", kTyrol, tyrol),
+                testing::AllOf(testing::Contains("EPSG:25832"),
+                               testing::Not(testing::Contains("EPSG:3044"))));
     // A code in the name, if the coordinates can be in it.
     EXPECT_THAT(codes("dgm_32632.asc", kUtm, "/missing.tif"), testing::ElementsAre("EPSG:32632"));
     EXPECT_THAT(codes("dgm_2056.asc", kUtm, "/missing.tif"), testing::IsEmpty());
