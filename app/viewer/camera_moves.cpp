@@ -30,7 +30,7 @@ void CameraMoves::move(Command command) {
     else if (command == Command::StandHere || command == Command::LookThere)
         move_to_point(command);
     else if (command == Command::LookToMoon)
-        look_to_moon();
+        look_to_moon(/*is_up=*/false);
     else if (!parts_.hand.move(command, [this] { return whole_views(); })) {
         if (command == Command::Walk)
             parts_.messages.note(tr("no ground to walk on here; click a point, then press G"));
@@ -56,29 +56,38 @@ void CameraMoves::move_to_point(Command command) {
         parts_.state.document.pose = facing(parts_.state.document.pose, parts_.state.land, point_m);
 }
 
-void CameraMoves::look_to_moon() {
+void CameraMoves::look_to_moon(bool is_up) {
     Pose& pose = parts_.state.document.pose;
     geo::Geodetic eye = view_of(pose, parts_.state.land).eye->place;
     // The heights that sun::moon_position() takes. 100 km turn the moon by 0.015 degrees at most.
     eye.height_m = std::clamp(eye.height_m, 0.0, 100e3);
     const sun::MoonPosition moon = sun::moon_position(parts_.state.document.utc, eye);
     const double elevation_rad = parts_.state.air.apparent_rad(moon.elevation_rad);
-    if (elevation_rad < 0)
+    if (elevation_rad < 0 && !is_up)
         return parts_.messages.note(
-            tr("the moon is below the horizon; the line above the day says when it is up"));
-    pose.heading_deg = degrees(moon.azimuth_rad);
-    pose.pitch_deg = degrees(elevation_rad);
+            tr("the moon is below the horizon; Sun, Next moonrise goes to a time when it rises"));
+    // In the middle of what the panels leave free: so far to the right and up [tangents].
+    const glm::vec2 window = parts_.window.size();
+    const scene::Insets insets = parts_.state.layout.insets(window);
+    const double tan_y = std::tan(pose.fov_y_rad / 2);
+    const double x = tan_y * window.x / window.y * (insets.left - insets.right);
+    const double y = tan_y * (insets.bottom - insets.top);
+    const double sine = std::sin(elevation_rad) * std::sqrt(1 + x * x / (1 + y * y));
+    const double pitch_rad = std::asin(std::min(sine, 1.0)) - std::atan(y);
+    pose.pitch_deg = degrees(pitch_rad);
+    pose.heading_deg =
+        degrees(moon.azimuth_rad - std::atan2(x, std::cos(pitch_rad) - y * std::sin(pitch_rad)));
 }
 
-void CameraMoves::ask_over_point(sun::Body body) {
+void CameraMoves::ask_over_point(sun::Body body, const std::optional<geo::Geodetic>& point) {
     const geo::Geodetic eye = view_of(parts_.state.document.pose, parts_.state.land).eye->place;
-    if (!parts_.state.chosen || parts_.opening.is_preview()) return;
+    if (parts_.opening.is_preview()) return;
     if (std::isnan(parts_.state.land.height_m(eye)))
         return parts_.messages.note(
             tr("the eye is outside the DEM: right click, Stand here, then ask"));
     const Opened& opened = *parts_.opening.opened();
-    if (!sun_over_.ask({opened.dem, opened.scene, eye, *parts_.state.chosen,
-                        parts_.state.document.utc, parts_.state.document.zone, body}))
+    if (!sun_over_.ask({opened.dem, opened.scene, eye, point, parts_.state.document.utc,
+                        parts_.state.document.zone, body}))
         parts_.messages.note(tr("still looking for the time that was asked for before"));
 }
 
@@ -90,6 +99,10 @@ void CameraMoves::poll_sun_over() {
         if (answer->utc) {
             parts_.state.set_utc(*answer->utc);
             parts_.state.step = true;
+        }
+        if (answer->looks_to_moon) {
+            look_to_moon(/*is_up=*/true);
+            parts_.pacing.moved();
         }
         parts_.messages.note(answer->words);
         parts_.pacing.need_frames(3);

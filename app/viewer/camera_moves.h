@@ -35,14 +35,17 @@ class CameraMoves {
     void look_down_at(const geo::Geodetic& place);
     /// Looks at the middle of what a file holds on the DEM, unless some of it is in view.
     void show(const FilePlace& place);
-    /// When the sun next stands over the chosen point: goes there once it is known.
-    void ask_over_point(sun::Body body);
+    /// When the body next stands over the point, or the moon rises: goes there once it is known.
+    /// @param point  none: asks for the moon's next rise by night
+    void ask_over_point(sun::Body body, const std::optional<geo::Geodetic>& point);
     void poll_sun_over();
+    bool looks_for_time() const { return sun_over_.is_looking(); }
 
   private:
     /// Stands on the chosen point, or looks at it.
     void move_to_point(Command command);
-    void look_to_moon();
+    /// @param is_up  it stands over the terrain horizon
+    void look_to_moon(bool is_up);
     /// A place on the drawn ground; NaN in voids.
     glm::dvec3 drawn_m(geo::Geodetic place) const;
     bool is_in_view(const glm::dvec3& point_m) const;

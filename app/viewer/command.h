@@ -32,6 +32,7 @@ enum class Command {
     LookToMoon,
     SunOverPoint,  ///< when it next stands over the chosen point, seen from here
     MoonOverPoint,
+    NextMoonrise,  ///< by night, over the ground around
     SaveView,
     Measure,  ///< begins or ends a line
     EndMeasuring,

@@ -135,9 +135,12 @@ void MainWindow::run_scene_command(Command command) {
         case Command::SaveJob:
             return saver_->save_job();
         case Command::SunOverPoint:
-            return moves_->ask_over_point(sun::Body::Sun);
         case Command::MoonOverPoint:
-            return moves_->ask_over_point(sun::Body::Moon);
+            if (!state_.chosen) return;
+            return moves_->ask_over_point(
+                command == Command::SunOverPoint ? sun::Body::Sun : sun::Body::Moon, state_.chosen);
+        case Command::NextMoonrise:
+            return moves_->ask_over_point(sun::Body::Moon, std::nullopt);
         case Command::SaveView:
             return save_view();
         case Command::Measure:

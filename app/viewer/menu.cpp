@@ -191,6 +191,7 @@ void sun_menu(State& state) {
     item(state, state.playing ? tr_label("Pause") : tr_label("Play"), tr("Space"), Command::Play);
     ImGui::Separator();
     item(state, tr_label("Look to the moon"), "L", Command::LookToMoon);
+    item(state, tr_label("Next moonrise"), nullptr, Command::NextMoonrise);
     item(state, tr_label("When the sun stands over the point"), nullptr, Command::SunOverPoint,
          false, state.chosen.has_value());
     item(state, tr_label("When the moon stands over the point"), nullptr, Command::MoonOverPoint,

@@ -164,13 +164,32 @@ TEST(SunOver, IsTheNextPassageInSight) {
     ASSERT_TRUE(second.utc);
     EXPECT_LT(std::abs(*second.utc - sun::parse_time("2026-10-31T13:32:48.283Z").utc), 1);
     // The ridge itself is hidden by ground nearer by, and the sun never stands in the north.
-    question.target.height_m = 986;
+    question.target->height_m = 986;
     EXPECT_FALSE(next().utc);
     question.target = geo::geodetic_deg(36.40, -84.28, 3000);
     EXPECT_FALSE(next().utc);
     // Not within the DEM.
     question.eye = geo::geodetic_deg(40, -84.28, 457);
     EXPECT_THROW(next(), Error);
+}
+
+// As `relevo moon day DEM --at 36.25,-84.28 --eye-height 2` has it. On the 27th the moon is up 20
+// minutes after sunset, before civil dusk.
+TEST(SunOver, IsTheMoonsNextRiseOverTheGroundByNight) {
+    SunOverQuestion question{.dem = jacksboro(),
+                             .scene = {},
+                             .eye = geo::geodetic_deg(36.25, -84.28, 457),
+                             .target = {},
+                             .after = sun::parse_time("2026-06-21T12:00:00Z").utc,
+                             .zone = sun::Zone::named("America/New_York"),
+                             .body = sun::Body::Moon};
+    const SunOverAnswer first = sun_over(question);
+    ASSERT_TRUE(first.utc) << first.words;
+    EXPECT_TRUE(first.looks_to_moon);
+    EXPECT_LT(std::abs(*first.utc - sun::parse_time("2026-06-29T01:46:30Z").utc), 1);
+    EXPECT_EQ(first.words, "the moon rises on 28 Jun at 21:47, in the SE");
+    question.after = *first.utc;
+    EXPECT_LT(std::abs(*sun_over(question).utc - sun::parse_time("2026-06-30T02:31:54Z").utc), 1);
 }
 
 TEST(PointWork, KnowsTheGroundBehindWhichTheSunRises) {
