@@ -25,7 +25,7 @@ struct FilePlace {
 /// @throws Error (BadInput) as the reader of such a file
 FilePlace place_of_file(FileKind kind, const std::string& path, const dem::Grid& dem);
 
-/// "9 of 12 places are on the DEM, around 3.4 km SSW of the middle", "outside the DEM".
+/// "9 of 12 places are on the DEM, around 3.4 km SSW of the DEM's middle", "outside the DEM".
 std::string words_of(const FilePlace& place, FileKind kind, const dem::Grid& dem);
 
 /// Files of layers on a DEM.

@@ -72,7 +72,7 @@ std::string way_text(const geo::Geodetic& place, const dem::Grid& grid) {
     const geo::Geodesic way = geo::geodesic(grid.center(), place);
     const std::string length = length_text(way.distance_m);
     const char* const point = compass_text(degrees(way.azimuth_rad));
-    return names::is_on(grid, place) ? tr_format("{} {} of the middle", length, point)
+    return names::is_on(grid, place) ? tr_format("{} {} of the DEM's middle", length, point)
                                      : tr_format("{} {}, outside the DEM", length, point);
 }
 

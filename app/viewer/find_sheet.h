@@ -18,7 +18,7 @@ struct FoundPlace {
     std::string name;  ///< or coordinates
     geo::Geodetic place;
     const names::Entry* summit = nullptr;  ///< of a summit that Relevo brings
-    std::string details{};                 ///< "AT, 12.3 km NNW of the middle"
+    std::string details{};                 ///< "AT, 12.3 km NNW of the DEM's middle"
 };
 
 /// Places whose names have a text, whatever its case, of the files that active effects show as
@@ -27,7 +27,7 @@ struct FoundPlace {
 std::vector<FoundPlace> find_names(const std::string& text, const EffectsModel& effects,
                                    std::size_t most);
 
-/// "12.3 km NNW of the middle" of a DEM, or "834.0 km N, outside the DEM".
+/// "12.3 km NNW of the DEM's middle" of a DEM, or "834.0 km N, outside the DEM".
 std::string way_text(const geo::Geodetic& place, const dem::Grid& grid);
 
 /// Asks for coordinates or a name, and goes there. Finds names of files that are shown, and those

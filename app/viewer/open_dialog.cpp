@@ -63,7 +63,7 @@ std::optional<std::future<std::vector<std::string>>> ask_desktop() {
     if (is_installed("zenity"))
         command = fmt::format(
             "zenity --file-selection --multiple --separator='\n' --title={} 2>/dev/null",
-            quoted(tr("Open a DEM")));
+            quoted(tr("Open a file")));
     else if (is_installed("kdialog"))
         command = "kdialog --getopenfilename . --multiple --separate-output 2>/dev/null";
     if (command.empty()) return std::nullopt;
@@ -133,7 +133,7 @@ void OpenDialog::draw(glm::vec2 size_px) {
     ImGui::SetNextWindowSize(
         {std::min(size_px.x - 20, 26 * line), std::min(size_px.y - 20, 20 * line)},
         ImGuiCond_Appearing);
-    if (ImGui::Begin(tr_label("Open a DEM"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(tr_label("Open a file"), &is_open_, ImGuiWindowFlags_NoCollapse)) {
         if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-4 * line);
         ImGui::PushID(visits_);

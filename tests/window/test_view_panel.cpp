@@ -38,7 +38,8 @@ TEST(FindNames, AreThoseOfTheFilesThatAreShown) {
 TEST(FindSheet, SaysWhereAPlaceIs) {
     const dem::Grid grid(101, 101, {179.5, 0.01, 0, 0.5, 0, -0.01},
                          geo::Crs::parse("EPSG:4326", "test"));
-    EXPECT_EQ(viewer::way_text(geo::geodetic_deg(0, -179.8), grid), "22.3 km E of the middle");
+    EXPECT_EQ(viewer::way_text(geo::geodetic_deg(0, -179.8), grid),
+              "22.3 km E of the DEM's middle");
     EXPECT_EQ(viewer::way_text(geo::geodetic_deg(-1, 180), grid), "110.6 km S, outside the DEM");
 }
 
