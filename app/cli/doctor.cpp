@@ -19,6 +19,7 @@
 #include "effect/registry.h"
 #include "film/film.h"
 #include "gl/context.h"
+#include "image/image.h"
 #include "render/renderer.h"
 #include "session/active_effects.h"
 
@@ -209,6 +210,7 @@ Json to_json(const Findings& found) {
     json["floor_mib"] = found.floor_mib ? Json(std::round(*found.floor_mib)) : Json();
     json["gdal"] = dem::gdal_version();
     json["proj"] = dem::proj_version();
+    json["pictures"] = image::installed_text();
     json["films"] = film::installed_text();
     json["share_dir"] = share_dir().string();
     json["share_found"] = found.has_share;
@@ -248,6 +250,7 @@ void print(const Findings& found) {
         line("memory", fmt::format("{:.0f} MiB for a picture of 2 x 2 posts; --memory, {} MiB by "
                                    "default, is on top of that",
                                    *found.floor_mib, MemoryBudget::kDefault_mib));
+    line("pictures", image::installed_text());
     line("films", film::installed_text());
     line("data", fmt::format("{}{}", share_dir().string(),
                              found.has_share ? "" : " (not there; RELEVO_SHARE names another)"));

@@ -55,26 +55,38 @@ const Format* format_of(const std::filesystem::path& path) {
     return found == kFormats.end() ? nullptr : found;
 }
 
-const FormatsModule& formats_module(const std::filesystem::path& subject) {
+std::filesystem::path module_path() {
+    return module_dir() / "image_formats.so";
+}
+
+/// The module, or null with the reason for there being none.
+const FormatsModule* load_module(std::string& reason) {
     static const FormatsModule* module = nullptr;
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
-    if (module) return *module;
-    const auto unusable = [&](const std::filesystem::path& path) {
-        const char* reason = dlerror();
-        failed(
-            fmt::format("image: {}: the module for pictures other than PNG cannot be loaded, "
-                        "{}; install OpenImageIO (libopenimageio2.4), or name a .png",
-                        printable(subject.string()), reason ? reason : path.string()));
-    };
-    const std::filesystem::path path = module_dir() / "image_formats.so";
-    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library) unusable(path);
+    if (module) return module;
+    void* library = dlopen(module_path().c_str(), RTLD_NOW | RTLD_LOCAL);
     using Entry = const FormatsModule* (*)();
-    const auto entry = reinterpret_cast<Entry>(dlsym(library, "relevo_image_formats"));
-    if (!entry) unusable(path);
+    const auto entry =
+        library ? reinterpret_cast<Entry>(dlsym(library, "relevo_image_formats")) : nullptr;
+    if (!entry) {
+        const char* error = dlerror();
+        reason = error ? error : module_path().string();
+        return nullptr;
+    }
     module = entry();
-    return *module;
+    return module;
+}
+
+const FormatsModule& formats_module(const std::filesystem::path& subject) {
+    std::string reason;
+    if (const FormatsModule* const module = load_module(reason)) return *module;
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(module_path(), ignored);
+    failed(fmt::format(
+        "image: {}: the module for pictures other than PNG cannot be loaded, {}; {}name a .png",
+        printable(subject.string()), reason,
+        is_there ? "install OpenImageIO (libopenimageio2.4), or " : "this package has none: "));
 }
 
 bool is_png(const Format& format) {
@@ -168,6 +180,11 @@ std::string bytes_of(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::string installed_text() {
+    std::string reason;
+    return load_module(reason) ? "png, jpg, webp, avif, tif, exr" : "png alone, " + reason;
+}
 
 bool is_picture_name(const std::filesystem::path& path) {
     return format_of(path) != nullptr;

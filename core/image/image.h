@@ -172,6 +172,9 @@ std::vector<Channel> read_layers(const std::filesystem::path& path);
 /// @throws Error (BadInput) as read()
 Metadata read_metadata(const std::filesystem::path& path);
 
+/// Formats of pictures that this installation has, for people.
+std::string installed_text();
+
 /// How far two pictures are apart.
 struct Difference {
     double worst = 0;         ///< largest difference of a value [1/255]

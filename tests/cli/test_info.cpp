@@ -498,6 +498,7 @@ TEST(DoctorVerb, NamesTheDeviceAndWhy) {
         EXPECT_NE(other["renderer"].is_null(), other["reason"].is_null());
     }
     EXPECT_GE(device["limits"]["texture_size_px"], 4096);
+    EXPECT_EQ(json["pictures"], "png, jpg, webp, avif, tif, exr");
     EXPECT_NE(json["films"].get<std::string>().find("mp4 libx264"), std::string::npos);
     EXPECT_EQ(json["share_found"], true);
     EXPECT_TRUE(json["broken_plugins"].empty()) << json["broken_plugins"];

@@ -146,8 +146,12 @@ TEST_F(Output, WithoutTheModuleOfFormatsOnlyPngIsWritten) {
     EXPECT_EQ(jpg.status, 1);
     EXPECT_EQ(jpg.err, "relevo: error: image: " + path("a.jpg") +
                            ": the module for pictures other than PNG cannot be loaded, " + module +
-                           ": cannot open shared object file: No such file or directory; install "
-                           "OpenImageIO (libopenimageio2.4), or name a .png\n");
+                           ": cannot open shared object file: No such file or directory; this "
+                           "package has none: name a .png\n");
+    const Result doctor = run(dir_ / "bin/relevo", {"doctor"}, share);
+    EXPECT_NE(doctor.out.find("\npictures   png alone, " + module + ": cannot open"),
+              std::string::npos)
+        << doctor.out;
     EXPECT_EQ(run(dir_ / "bin/relevo", capture(path("a.png")), share).status, 0);
     EXPECT_EQ(names(), (std::vector<std::string>{"a.png", "bin", "lib"}));
 }
