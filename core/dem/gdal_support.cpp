@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <mutex>
 
 #include <fmt/format.h>
 
 #include "base/host_program.h"
 #include "base/log.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "dem/gdal.h"
 #include "dem/gdal_module.h"
@@ -34,6 +36,11 @@ void prepare_gdal() {
         if (!CPLGetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", nullptr))
             CPLSetConfigOption("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
         if (is_hosted()) return;
+        // A wheel has the tables of its own GDAL. Those that GDAL_DATA names may be another's.
+        const std::filesystem::path tables = share_dir() / "gdal";
+        std::error_code ignored;
+        if (std::filesystem::exists(tables, ignored))
+            CPLSetConfigOption("GDAL_DATA", tables.c_str());
         CPLSetErrorHandler(to_debug_log);
         disarm_gdal();
         open_regular_files_only();
