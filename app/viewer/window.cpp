@@ -4,7 +4,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <deque>
 #include <optional>
 #include <set>
 #include <span>
@@ -148,14 +147,9 @@ struct Window::Impl {
     std::set<char32_t> letters;  // additional characters of panels
     std::vector<KeyPress> keys;
     std::set<int> held;  // pressed without Ctrl, even if Ctrl is released first
-    /// Keys and letters that ImGui has not had, in order. It polls keys once a frame: it would miss
-    /// those already released, and take Ctrl+A and Backspace for Ctrl+Backspace.
-    struct Tap {
-        int key = 0;
-        bool control = false;
-        unsigned letter = 0;  ///< instead of a key
-    };
-    std::deque<Tap> taps;
+    /// Keys since the last frame. ImGui polls keys once a frame and would miss those already
+    /// released.
+    std::vector<int> tapped;
     std::vector<std::string> dropped;
     bool has_input = false;  // clicks, keys or wheel events
     bool closes_popup = false;
@@ -209,29 +203,25 @@ struct Window::Impl {
         context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(handle, this);
-        glfwSetKeyCallback(handle, [](GLFWwindow* window, int code, int scancode, int action,
-                                      int mods) {
-            Impl& self = of(window);
-            self.has_input = true;
-            const bool control = (mods & GLFW_MOD_CONTROL) != 0;
-            if (action == GLFW_PRESS && !control) self.held.insert(code);
-            if (action == GLFW_RELEASE) self.held.erase(code);
-            const bool is_modifier = code >= GLFW_KEY_LEFT_SHIFT && code <= GLFW_KEY_RIGHT_SUPER;
-            if (action == GLFW_PRESS && code >= 0 && !is_modifier)
-                self.taps.push_back({code, control});
-            const int key = letter_of(code, scancode);
-            if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
-                self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
-        });
+        glfwSetKeyCallback(
+            handle, [](GLFWwindow* window, int code, int scancode, int action, int mods) {
+                Impl& self = of(window);
+                self.has_input = true;
+                const bool control = (mods & GLFW_MOD_CONTROL) != 0;
+                if (action == GLFW_PRESS && !control) self.held.insert(code);
+                if (action == GLFW_RELEASE) self.held.erase(code);
+                if (action == GLFW_PRESS) self.tapped.push_back(code);
+                const int key = letter_of(code, scancode);
+                if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
+                    self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
+            });
         // ImGui's callbacks chain to these.
         glfwSetMouseButtonCallback(
             handle, [](GLFWwindow* window, int, int, int) { of(window).has_input = true; });
         glfwSetScrollCallback(
             handle, [](GLFWwindow* window, double, double) { of(window).has_input = true; });
-        glfwSetCharCallback(handle, [](GLFWwindow* window, unsigned letter) {
-            of(window).has_input = true;
-            of(window).taps.push_back({.letter = letter});
-        });
+        glfwSetCharCallback(handle,
+                            [](GLFWwindow* window, unsigned) { of(window).has_input = true; });
         glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
             Impl& self = of(window);
             self.dropped.assign(names, names + count);
@@ -384,33 +374,13 @@ void Window::draw(const std::function<void()>& panels) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGuiIO& io = ImGui::GetIO();
-    const auto is_down = [&](int key) { return glfwGetKey(impl_->handle, key) == GLFW_PRESS; };
-    // Of this frame: all with Ctrl or all without, and letters before other keys, as ImGui takes
-    // them. The others are for the next ones.
-    std::deque<Impl::Tap>& later = impl_->taps;
-    std::vector<int> tapped;
-    io.ClearInputCharacters();
-    if (!later.empty()) io.KeyCtrl = later.front().control;
-    for (bool ends = false; !later.empty() && later.front().control == io.KeyCtrl &&
-                            !(ends && later.front().letter != 0);
-         later.pop_front()) {
-        const Impl::Tap& tap = later.front();
-        if (tap.letter != 0)
-            io.AddInputCharacter(tap.letter);
-        else
-            tapped.push_back(tap.key);
-        ends = ends || tap.key >= GLFW_KEY_ESCAPE;  // no letter's
-    }
-    for (const Impl::Tap& tap : later)
-        io.KeysDown[tap.key] = false;
+    const std::vector<int> tapped = std::exchange(impl_->tapped, {});
     for (const int key : tapped)
-        io.KeysDown[key] = true;
+        if (key >= 0) io.KeysDown[key] = true;
     ImGui::NewFrame();
     for (const int key : tapped)
-        io.KeysDown[key] = is_down(key);
+        if (key >= 0) io.KeysDown[key] = glfwGetKey(impl_->handle, key) == GLFW_PRESS;
     panels();
-    io.KeyCtrl = is_down(GLFW_KEY_LEFT_CONTROL) || is_down(GLFW_KEY_RIGHT_CONTROL);
-    impl_->has_input |= !later.empty();
     // After the panels: the same Esc must not also close the sheet that gets the focus back.
     if (std::exchange(impl_->closes_popup, false)) close_popup();
     const glm::ivec2 size = size_px();
