@@ -192,8 +192,9 @@ void CameraMoves::note_home() {
 
 void CameraMoves::fit_home() {
     if (home_size_ == parts_.window.size()) return;
+    const bool is_home = home_ == parts_.state.document.pose;
     home_size_ = parts_.window.size();
-    if (!is_home()) return;
+    if (!is_home) return;
     parts_.state.document.pose = pose_in(parts_.opening.home_view());
     note_home();
     parts_.pacing.moved();

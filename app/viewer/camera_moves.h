@@ -21,7 +21,6 @@ class CameraMoves {
     /// Notes that the camera shows the whole DEM in this window.
     void note_home();
     void forget_home() { home_.reset(); }
-    bool is_home() const { return home_ == parts_.state.document.pose; }
     /// After the window was resized: the whole DEM stays in view if the camera shows that.
     void fit_home();
 

@@ -249,23 +249,14 @@ void MainWindow::show_true_heights() {
     if (!state_.chooses_exaggeration || state_.document.utc == first_utc_) return;
     state_.chooses_exaggeration = false;
     if (std::exchange(times, 1) == 1) return;
-    // What changed the time may have said something.
-    const std::string& before = state_.message;
-    messages_.note(
-        (before.empty() ? "" : before + "\n") +
-        tr("heights are drawn 1:1 now, so that shadows are true; Camera, Heights sets another"));
+    messages_.note(tr("heights are true now, as shadows of another time need: Camera, Heights"));
 }
 
 void MainWindow::take_shape() {
     const double before = state_.land.exaggeration;
     use_dem();
     Document& document = state_.document;
-    if (moves_->is_home()) {  // it still shows the whole DEM
-        document.pose = moves_->pose_in(opening_->home_view());
-        moves_->note_home();
-    } else {
-        document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
-    }
+    document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
     state_.set_utc(document.utc);
     history_.amend(document);
     state_.measurement = {};  // its ends lie on the ground as it was drawn

@@ -153,19 +153,6 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     EXPECT_EQ(scene()["camera"]["pitch"], 0);
 }
 
-TEST_F(Viewer, TheWholeDemStaysInViewAsItsHeightsBecomeTrue) {
-    open({dem_});
-    const nlohmann::json first = resting_scene();
-    ASSERT_GT(first["exaggeration"].get<double>(), 1);
-    act({"key", "bracketright"});
-    ASSERT_TRUE(settles());
-    const nlohmann::json then = resting_scene();
-    EXPECT_EQ(then.value("exaggeration", 1.0), 1);
-    EXPECT_NE(then["camera"], first["camera"]);
-    act({"key", "Home", "sleep", "0.5"});
-    EXPECT_EQ(resting_scene()["camera"], then["camera"]);
-}
-
 TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {
     open({dem_, "--time", "2026-06-21T20:00:00Z"});
     // Whether the picture of a hand that holds still for so many looks is that of one that let go.
