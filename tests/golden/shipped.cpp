@@ -56,8 +56,11 @@ std::map<std::string, effect::Switches> Shipped::selections() const {
 }
 
 bool Shipped::too_many_textures(const Ids& ids, const std::string& id) {
-    return (id == "clouds" && contains(ids, std::string("drape"))) ||
-           (id == "drape" && contains(ids, std::string("clouds")));
+    const Ids maps{"drape", "ridges", "softlight", "swiss",
+                   "vsm"};  // beside the five textures of clouds
+    return (id == "clouds" &&
+            std::ranges::any_of(maps, [&](const auto& map) { return contains(ids, map); })) ||
+           (contains(maps, id) && contains(ids, std::string("clouds")));
 }
 
 std::set<Ids> Shipped::everything() const {

@@ -29,7 +29,8 @@ class Shipped {
     std::set<Ids> everything() const;
 
   private:
-    /// With all others on, both need more than the 32 textures of a device: an error says so.
+    /// With all others on, clouds and one of some effects of maps need more than the 32 textures of
+    /// a device: an error says so.
     static bool too_many_textures(const Ids& ids, const std::string& id);
 };
 
