@@ -28,7 +28,7 @@ std::set<char32_t> unusual_letters(std::string_view utf8);
 /// What no font has is left out.
 std::vector<FontFile> fonts_with(const std::set<char32_t>& letters);
 
-/// Loads the fonts: the default size first, then those of style::Size.
+/// Loads the font in its default size and then in each of style::Size.
 /// @param text_px  height of the usual size, in pixels of the display
 /// @param letters  additional characters
 void load_fonts(float text_px, const std::set<char32_t>& letters);

@@ -57,7 +57,7 @@ double within_a_turn_deg(double angle_deg);
 /// height at the picture's edges, as good as parallel rays.
 inline constexpr double kMapFov_deg = 1;
 
-/// Whether a view is that of `top`: all of the ground from straight above, north up.
+/// Whether a view is `top`, which shows all of the ground from straight above with north up.
 bool is_from_above(const View& view);
 
 /// Reads `az=210,el=30,zoom=1`, or with a word in the place of the azimuth `north-east,el=45`: the

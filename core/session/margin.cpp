@@ -39,7 +39,7 @@ Place place_of(const chart::Margins& margins, const glm::ivec2& whole, const Sha
     return {corner + (room - size) / 2, size};
 }
 
-/// The largest size within a room whose sides are to each other as those of a grid.
+/// The largest size that fits into a room and has the proportions of a grid.
 glm::ivec2 ground_size(const dem::Grid& grid, const glm::ivec2& room) {
     const glm::dvec2 sides_m = grid.sides_m();
     const double px_per_m = std::min(room.x / sides_m.x, room.y / sides_m.y);
@@ -74,7 +74,7 @@ image::Picture Session::Impl::make_with_margin(const Session& session, render::P
                                             : from_above   ? ground_size(grid, room)
                                                            : room;
                                  });
-    struct Sized {  // the scene is that of the whole picture before and after
+    struct Sized {  // puts back size and view of the whole picture
         Impl& impl;
         glm::ivec2 whole;
         scene::View view;

@@ -6,8 +6,8 @@
 
 uniform float agx_exposure = 0.5; //@ range(-10, 10) unit(EV) label("Exposure") description("In stops. 0.5 leaves middle tones as bright as they are without AgX")
 uniform float agx_day = 0.5; //@ range(-10, 10) unit(EV) label("Exposure by day") description("In stops, while the sun is high and tones are neutral")
-uniform float agx_day_contrast = 0.22; //@ range(0, 1) label("Contrast by day") description("How much darker shade and how much brighter light is drawn; 0: tones stay")
-uniform float agx_day_saturation = 0.55; //@ range(0, 2) label("Saturation by day") description("How much more of their colour tones get that are neither pale nor full; 0: none")
+uniform float agx_day_contrast = 0.22; //@ range(0, 1) label("Contrast by day") description("Darkens shade and brightens what is in light; 0: none")
+uniform float agx_day_saturation = 0.55; //@ range(0, 2) label("Saturation by day") description("More colour for tones that are neither pale nor saturated; 0: none")
 uniform float agx_contrast = 1.2; //@ range(0.2, 4) label("Contrast") description("Exponent of the tones; 1 is AgX's base, 1.35 its punchy look")
 uniform float agx_saturation = 1.3; //@ range(0, 4) label("Saturation") description("1 is AgX's base, 1.4 its punchy look")
 
@@ -54,8 +54,8 @@ vec3 agx_tones(in vec3 colour) {
     return pow(clamp(tone, 0.0, 1.0), vec3(agx_display));
 }
 
-/// Darker shade by a power of its luminance, brighter middle tones; snow and white stay. Then more of their colour to tones
-/// that are neither pale nor full, but for blue ones: air would turn violet.
+/// Darkens shade by a power of its luminance and brightens middle tones; snow and white stay. Then saturates tones that are
+/// neither pale nor saturated already. Blue ones stay, because air would turn violet.
 /// @param colour  linear, 0 to 1
 vec3 agx_print(in vec3 colour) {
     const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
