@@ -1,9 +1,13 @@
 #include "render/eye_post.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 #include "base/units.h"
 
@@ -25,8 +29,35 @@ glm::dmat2 metres_per_post(const dem::Grid& grid, const glm::dvec2& post) {
     return metres;
 }
 
+namespace {
+
+/// Half of the second derivatives of a place's column and row, by metres east and north: columns of
+/// xx, xy and yy, and of rows. Exact `reach_m` away in eight directions; 0 where the grid ends.
+std::array<glm::dvec3, 2> bends_at(const dem::Grid& grid, const geo::Geodetic& place,
+                                   const glm::dvec2& post, double reach_m) {
+    const auto sum = [&](double azimuth_rad) {  // of a step there and one back, less what is linear
+        return grid.post(geo::destination(place, azimuth_rad, reach_m)) +
+               grid.post(geo::destination(place, azimuth_rad, -reach_m)) - 2.0 * post;
+    };
+    const glm::dvec2 east = sum(kPi / 2), north = sum(0);
+    const glm::dvec2 across = 0.5 * (sum(kPi / 4) - sum(-kPi / 4));
+    std::array<glm::dvec3, 2> bends;
+    for (int i = 0; i < 2; ++i) {
+        bends[static_cast<std::size_t>(i)] =
+            glm::dvec3(east[i], 2 * across[i], north[i]) / (2 * reach_m * reach_m);
+        const double most = 0.2 * std::max(grid.columns(), grid.rows());
+        const double bent = glm::length(glm::dvec3(east[i], across[i], north[i]));
+        // As at the date line, beyond which columns begin again.
+        if (!(bent < most)) return {glm::dvec3(0), glm::dvec3(0)};
+    }
+    return bends;
+}
+
+}  // namespace
+
 void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, EyeBlock& block) {
     block.eye_post = block.eye_axes = glm::vec4(0);
+    block.eye_bends.fill(glm::vec4(0));
     const glm::dvec2 post = grid.post(eye);
     // Elsewhere floats of posts are as good.
     constexpr double kFar = 1e6;
@@ -38,6 +69,11 @@ void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, EyeBlock& b
     const glm::dmat2 axes = inverse(metres);
     block.eye_post = glm::vec4(whole, post - whole);
     block.eye_axes = glm::vec4(axes[0], axes[1]);
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    const double side_m = std::max(grid.columns() * spacing_m.x, grid.rows() * spacing_m.y);
+    const auto bends = bends_at(grid, eye, post, std::clamp(0.5 * side_m, 1e3, 2e5));
+    for (std::size_t i = 0; i < 2; ++i)
+        block.eye_bends[i] = glm::vec4(bends[i], 0);
 }
 
 }  // namespace relevo::render

@@ -13,7 +13,7 @@ namespace relevo::render {
 /// column (second one), at a post. NaN where the grid has no place.
 glm::dmat2 metres_per_post(const dem::Grid& grid, const glm::dvec2& post);
 
-/// Writes the eye's place on the DEM's grid: eye_post and eye_axes.
+/// Writes the eye's place on the DEM's grid: eye_post, eye_axes and eye_bends.
 void write_eye_post(const dem::Grid& grid, const geo::Geodetic& eye, EyeBlock& block);
 
 }  // namespace relevo::render

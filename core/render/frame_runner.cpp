@@ -93,7 +93,7 @@ const gl::Texture& FrameRunner::texture(std::string_view resource) {
 }
 
 FrameRunner::Inputs FrameRunner::inputs_of(const Pass& pass, const PassContext& frame) const {
-    Inputs inputs{.ground = frame.terrain.serial()};
+    Inputs inputs{.ground = frame.terrain.serial(), .exaggeration = frame.inputs.exaggeration};
     if (pass.when == When::Sun) inputs.sun = frame.inputs.sun.direction;
     if (pass.when == When::Parameters)
         for (const std::string& address : pass.parameters)

@@ -64,6 +64,7 @@ class FrameRunner {
     /// Inputs of a pass that runs only when they change.
     struct Inputs {
         std::uint64_t ground = 0;
+        double exaggeration = 1;
         glm::dvec3 sun{0};
         std::vector<shader::ParamValue> values;
         bool operator==(const Inputs&) const = default;

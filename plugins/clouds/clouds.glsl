@@ -6,6 +6,7 @@
 
 //@ include lib/air_pixel.glsl
 //@ include lib/ground.glsl
+//@ include lib/pixel_half.glsl
 
 uniform float clouds_visibility = 180.0; //@ range(0.1, 1000) unit(km) label("Visibility") description("How far the air before the clouds lets one see, at sea level: 3.912 / extinction")
 
@@ -115,27 +116,6 @@ vec3 clouds_laid(in vec4 seen, in vec3 direction, in vec3 air, in vec3 behind) {
     return seen.z * behind + mix(light, (1.0 - seen.z) * air, clouds_hazed(sine, distance_m));
 }
 
-/// The clouds of this pixel, from the neighbours that show sky or ground as it does.
-/// @param near  1 / distance of its ground [1/m]; 0 in the sky
-vec4 clouds_of_pixel(in float near) {
-    vec2 at = 0.5 * (gl_FragCoord.xy - 0.5);
-    ivec2 first = ivec2(floor(at)), most = textureSize(clouds_view, 0) - 1;
-    vec2 part = at - vec2(first);
-    vec4 sum = vec4(0.0);
-    float all = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 step_px = ivec2(i & 1, i >> 1);
-        ivec2 texel = clamp(first + step_px, ivec2(0), most);
-        float apart = abs(texelFetch(clouds_near, texel, 0).r - near) / max(near, 1e-9);
-        float alike = 1.0 / (1.0 + 100.0 * min(apart * apart, 1e4));
-        vec2 w = mix(1.0 - part, part, vec2(step_px));
-        float weight = alike * (w.x * w.y + 1e-3);
-        sum += weight * texelFetch(clouds_view, texel, 0);
-        all += weight;
-    }
-    return sum / all;
-}
-
 vec4 clouds_around(in vec3 direction) {
     vec3 up = frame.eye_up.xyz, east = east_at(up);
     float azimuth = atan(dot(direction, east), dot(direction, cross(up, east)));
@@ -159,7 +139,7 @@ vec3 clouds_air(in vec3 clear) {
 
 void clouds_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance) {
 #if !HAS_outside
-    vec4 seen = clouds_is_ground ? clouds_around(direction) : clouds_of_pixel(0.0);
+    vec4 seen = clouds_is_ground ? clouds_around(direction) : pixel_of_half(clouds_view, clouds_near, false, 0.0);
     vec3 air = clouds_air(radiance);
     // The sky beyond the decks keeps its light. Below the horizon is plain ground, which is lit as the air is.
     float sine = dot(direction, frame.eye_up.xyz);
@@ -178,7 +158,7 @@ void clouds_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     // Haze has put the light of a clear sky before the ground: below the decks there is less.
     radiance += clouds_air(air_scattered) - air_scattered;
-    vec4 seen = clouds_of_pixel(1.0 / s.distance_m);
+    vec4 seen = pixel_of_half(clouds_view, clouds_near, false, 1.0 / s.distance_m);
     if (seen.z < 1.0) radiance = clouds_laid(seen, view, background_radiance(view, false), radiance);
 #endif
 }

@@ -7,6 +7,7 @@
 
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
+//@ include lib/air_sun.glsl
 //@ include lib/eye_light.glsl
 //@ include lib/ground.glsl
 //@ include lib/noise.glsl
@@ -60,8 +61,9 @@ float fog_above(in float height_m, in float top_m) {
     return -fog_extinction() * fog_below(height_m, top_m) / frame.height_range.z;
 }
 
-/// Light of the fog towards the eye. @param over  optical depth above the part that is seen, @param under  below it
-vec3 fog_light(in vec3 view, in float over, in float under) {
+/// Light of the fog towards the eye.
+/// @param over  optical depth above the part that is seen  @param under  below it  @param sun  share of the sun there
+vec3 fog_light(in vec3 view, in float over, in float under, in float sun) {
     vec3 to_sun = light_at_eye_direction();
     float mu = max(dot(to_sun, frame.eye_up.xyz), 0.0), sine = dot(view, frame.eye_up.xyz);
     float x = fog_gamma * over, y = fog_gamma * under;
@@ -70,7 +72,7 @@ vec3 fog_light(in vec3 view, in float over, in float under) {
     // From above one sees light that was scattered once at all depths: S. Chandrasekhar, Radiative Transfer (1950).
     float from_above = mu / (mu + max(-sine, 1e-4)), inside = fog_density(frame.eye_m.w, fog_top_m * frame.height_range.z);
     float once = pi * air_aerosol_phase(dot(view, to_sun)) * mix(from_above, exp(-over / max(mu, 0.08)), inside);
-    return air_lit * ((mu * all + 0.5 * once) * light_at_eye() + all * frame.sky_irradiance.rgb);
+    return air_lit * (sun * (mu * all + 0.5 * once) * light_at_eye() + all * frame.sky_irradiance.rgb);
 }
 
 bool fog_is_ground = false;  // set by the hooks of the ground: haze then asks for the sky
@@ -93,11 +95,11 @@ void fog_on_ambient(in Surface s, inout vec3 irradiance) {
 #endif
 }
 
-/// Where the eye's ray passes the mean top of the fog on its way to the ground; else the ground's place.
-vec2 fog_entry(in Surface s, in float drawn_m) {
+/// How far on the eye's way to the ground it passes the mean top of the fog, 0 to 1; else 1.
+float fog_entry(in float drawn_m) {
     float top_m = fog_top_m * frame.height_range.z;
     float share = clamp((frame.eye_m.w - top_m) / max(frame.eye_m.w - drawn_m, 1.0), 0.0, 1.0);
-    return frame.eye_m.w > top_m && drawn_m < top_m ? mix(frame.eye_m.xy, s.ground_m.xy, share) : s.ground_m.xy;
+    return frame.eye_m.w > top_m && drawn_m < top_m ? share : 1.0;
 }
 
 /// How much more light a slope of the fog's top gets than level fog. @param top_m  fog_top_at(place)
@@ -113,7 +115,8 @@ float fog_relief(in vec2 place, in float top_m) {
 void fog_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
 #if !HAS_outside
     float drawn_m = s.height_m * frame.height_range.z;
-    vec2 place = fog_entry(s, drawn_m);
+    float entry = fog_entry(drawn_m);
+    vec2 place = mix(frame.eye_m.xy, s.ground_m.xy, entry);
     float top_m = fog_top_at(place);
     float depth = fog_depth(frame.eye_m.w, drawn_m, s.distance_m, top_m);
     // From above, the visible part of thick fog lies at an optical depth of 1 from the eye.
@@ -121,7 +124,7 @@ void fog_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     float over = mix(min(above, 1.0), above, inside);
     float under = max(fog_above(drawn_m, top_m) - over, 0.0) + 2.0;
     float relief = mix(fog_relief(place, top_m), 1.0, inside);
-    radiance = mix(relief * fog_light(view, over, under), radiance, exp(-depth));
+    radiance = mix(relief * fog_light(view, over, under, air_sun_at(entry * s.distance_m)), radiance, exp(-depth));
 #endif
 }
 
@@ -135,7 +138,7 @@ void fog_on_sky(in vec3 direction, inout vec3 radiance, inout vec3 transmittance
     float below = frame.eye_m.w > top_m ? 8.0 - 8.0 * smoothstep(-0.012, -0.002, sine - frame.eye_up.w) : 50.0;
     float depth = sine > 0.0 ? up : max(below, up);
     float passes = exp(-depth);
-    radiance = mix(fog_light(direction, sine > 0.0 ? 0.5 * min(up, 8.0) : 1.0, 4.0), radiance, passes);
+    radiance = mix(fog_light(direction, sine > 0.0 ? 0.5 * min(up, 8.0) : 1.0, 4.0, 1.0), radiance, passes);
     transmittance *= passes;
 #endif
 }

@@ -7,8 +7,8 @@
 
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
+//@ include lib/air_sun.glsl
 //@ include lib/beyond.glsl
-//@ include lib/sun_share.glsl
 
 uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
 uniform float haze_density = 0.0; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0. Air that is clearer than the atmosphere's own is drawn as the atmosphere")
@@ -28,11 +28,7 @@ float haze_extinction() {
 /// the straight line between them, times its length.
 float haze_depth(in float eye_height_m, in float height_m, in float distance_m) {
     // No air lies below the sea: its floor is seen as it would be from the surface.
-    float a = max(eye_height_m, 0.0) / haze_scale_height, b = max(height_m, 0.0) / haze_scale_height;
-    float rise = b - a;
-    float middle = exp(-0.5 * (a + b));
-    float mean = abs(rise) < 0.1 ? middle * (1.0 + rise * rise / 24.0) : (exp(-a) - exp(-b)) / rise;
-    return haze_extinction() * distance_m * mean;
+    return haze_extinction() * distance_m * air_mean_density(eye_height_m / haze_scale_height, height_m / haze_scale_height);
 }
 
 /// Red and blue against green. Pure air scatters with the fourth power of the wavelength, 610, 550
@@ -56,32 +52,22 @@ void haze_on_vertex(in VertexFrame v) {
     haze_strength = haze_air ? depth * haze_colour() : haze_strength_of(depth);
 }
 
-/// Sunlight that air and haze scatter once on the way to a point, without what the shadow of the terrain keeps off. Along
-/// the way, heights above the shadow are taken as linear.
-/// @param unshaded    all of it
-/// @param strength    optical depth of the haze
-/// @param scale       on the air up to the point
-/// @param distance_m  to the point, for the air
-vec3 haze_sunlight(in Surface s, in vec3 view, in vec3 unshaded, in vec3 strength, in float scale, in float distance_m) {
-#if HAS_shadow
-    float eye_m = sun_shadow_clearance(frame.eye_post.xy + frame.eye_post.zw) + frame.eye_above_ground;
-    float point_m = sun_shadow_clearance(s.post);
-    if (eye_m >= 0.0 && point_m >= 0.0) return unshaded;
-    vec3 lit = vec3(0.0);
-    if (eye_m > 0.0 || point_m > 0.0) {
-        float edge = eye_m / (eye_m - point_m);  // share of the way up to the edge of the shadow
-        AirBetween air = air_between_eye_and(view, edge * distance_m);
-        // At the point itself the two scales agree, or the edge of its shadow would be one of the air's.
-        float nearer = scale * air_scale_at(edge * distance_m) / max(air_scale_at(distance_m), 1e-6);
-        vec3 before = air.once * (1.0 - exp(-nearer * (air.depth + edge * strength)));
-        lit = eye_m > 0.0 ? before : max(unshaded - before, 0.0);
+#if HAS_shafts
+
+/// Share of the sunlight scattered once before the ground that is left where terrain keeps the sun off.
+/// @param depth  of the air up to the ground; `strength` is the haze's
+vec3 haze_lit(in Surface s, in vec3 view, in vec3 depth, in vec3 strength) {
+    float eye_m = frame.eye_m.w, ground_m = s.height_m * frame.height_range.z;
+    float all = max(haze_depth(eye_m, ground_m, s.distance_m), 1e-12);
+    vec4 parts;
+    for (int i = 0; i < 4; ++i) {
+        float way_m = air_sun_part_m(i);
+        parts[i] = haze_depth(eye_m, mix(eye_m, ground_m, way_m / s.distance_m), way_m) / all;
     }
-    // At the horizon the shadow is the Earth's, which the tables have.
-    return mix(unshaded, lit, smoothstep(-0.005, 0.01, frame.sun_apparent.w));
-#else
-    return unshaded;
-#endif
+    return air_sun_lit(view, s.distance_m, depth, strength, parts);
 }
+
+#endif
 
 /// How far away ground is for the air. At the rim of a DEM that is seen from the air as far as the country around it in the
 /// same direction: ground that lies higher or lower than that would stand out of its haze along the DEM's edge.
@@ -101,7 +87,10 @@ void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
         float scale = air_scale_before(rim, distance_m);
         vec3 passed = exp(-scale * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
-        air_scattered = (air.radiance - air.once) * (1.0 - passed) + haze_sunlight(s, view, once, haze_strength, scale, distance_m);
+#if HAS_shafts
+        once *= haze_lit(s, view, scale * air.depth, scale * haze_strength);
+#endif
+        air_scattered = (air.radiance - air.once) * (1.0 - passed) + once;
         radiance = radiance * passed + air_scattered;
     } else {
         radiance = mix(radiance, background_radiance(view, false), haze_strength);

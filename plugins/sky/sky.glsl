@@ -7,6 +7,7 @@
 //!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
 //@ include lib/air.glsl
+//@ include lib/air_pixel.glsl
 //@ include lib/beyond.glsl
 //@ include lib/filtered.glsl
 //@ include lib/ground.glsl
@@ -292,6 +293,7 @@ vec3 sky_moon_glow(in vec3 direction) {
 vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 radiance;
     if (sky_colours == 0) {
+        air_in_sky = true;
         // What fades into the sky, and mirrors, see no ground.
         radiance = with_disc && sky_earth ? air_radiance(direction) + sky_beyond() * air_ground(direction)
                                           : air_radiance_of_sky(direction);

@@ -48,6 +48,12 @@ float air_aerosol_phase(in float cosine) {
     return 0.0795774715 * (1.0 - g * g) * root * root * root;
 }
 
+/// Mean of exp(-height) along a straight line between two heights, not below 0.
+float air_mean_density(in float from, in float to) {
+    float a = max(from, 0.0), rise = max(to, 0.0) - a, middle = exp(-0.5 * (a + max(to, 0.0)));
+    return abs(rise) < 0.1 ? middle * (1.0 + rise * rise / 24.0) : (exp(-a) - exp(-a - rise)) / rise;
+}
+
 /// Place of a direction among the azimuths, 0 towards the sun and 1 away from it.
 float air_azimuth(in vec3 direction) {
     vec3 up = frame.eye_up.xyz, to_sun = frame.eye_sun.xyz;

@@ -18,6 +18,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 polar_axis;          // xyz: unit vector along the Earth's axis, northwards
     vec4 eye_post;            // below the eye, column and row of the DEM; xy: whole parts, zw: fractions
     vec4 eye_axes;            // xy: columns and rows to a metre east, zw: north, there; 0 where that is unknown
+    vec4 eye_bends[2];        // how that changes with the way: xyz of columns, [0], and of rows, [1], to a square metre east,
+                              // east by north, and north; 0 where that is unknown
     float eye_above_ground;   // height of the eye above the posts below it, as drawn [m]; 1e9 where there are none
     /// Sun: the light on the ground, its shadows, and the sky's
     vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, or the moon that lights a night (eye_moon_light),

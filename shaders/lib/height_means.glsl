@@ -5,6 +5,13 @@
 
 uniform sampler2D height_means;  // r: height [m]; level k has means of 2^k x 2^k texels of level 0, and is on its right
 
+/// Height of the texel of level 0 that a post is in [m].
+float height_of_texel(in vec2 post) {
+    ivec2 size = textureSize(height_means, 0);
+    size.x -= size.x / 3;  // of level 0
+    return texelFetch(height_means, clamp(ivec2(floor((post + 0.5) * frame.light_grid.z)), ivec2(0), size - 1), 0).r;
+}
+
 /// Heights of a level, smoothed by a cubic B-spline: about a Gaussian whose standard deviation is 0.65 texels.
 /// @param post  column and row of the DEM
 /// @returns x: height [m], yz: its change a column and a row [m]

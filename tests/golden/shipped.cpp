@@ -56,11 +56,11 @@ std::map<std::string, effect::Switches> Shipped::selections() const {
 }
 
 bool Shipped::too_many_textures(const Ids& ids, const std::string& id) {
-    const Ids maps{"drape", "ridges", "softlight", "swiss",
-                   "vsm"};  // beside the five textures of clouds
+    const Ids others{"drape", "ridges", "softlight",
+                     "swiss", "tracks", "vsm"};  // beside the five textures of clouds
     return (id == "clouds" &&
-            std::ranges::any_of(maps, [&](const auto& map) { return contains(ids, map); })) ||
-           (contains(maps, id) && contains(ids, std::string("clouds")));
+            std::ranges::any_of(others, [&](const auto& other) { return contains(ids, other); })) ||
+           (contains(others, id) && contains(ids, std::string("clouds")));
 }
 
 std::set<Ids> Shipped::everything() const {
