@@ -190,14 +190,17 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
                                         size_t count, double* elevation_deg, double* distance_m);
 
 /* A figure of a place, as the program says it with --json. Since 0.2.
- * @param dem      null for figures without terrain; "sun carpet" and "sun when" need one
+ * @param dem      null for figures without terrain; the carpet, "when" and "along" need one
  * @param figure   "sun position", "moon position": {"positions": [...]} of "times" (a list)
  *     "sun day", "moon day", "sun eclipses": of "date", or "from" and "to", or "year"; of days
  *     always as {"days": [...]}
  *     "sun carpet": of a "year"; "step" [s] (180)
- *     "sun when": of days; "over" ("LAT,LON", "LAT,LON,H"), "summit_radius" [m] (100),
+ *     "sun when", "moon when": of days; "over" ("LAT,LON", "LAT,LON,H"), "summit_radius" [m] (100),
  *     "tolerance" [degrees] (0.5)
- * @param options  all: "lat", "lon" [degrees], "height" [m above sea level]; "refraction"
+ *     "sun along": of a "walk", not of a place: [[lat, lon], ...] with "times" (a list) or without,
+ *     or a file (GPX, GeoJSON, CSV) with "track" (from 1) and "points_crs"; "start", "speed" [km/h]
+ *     (the walk's own times), "name"; "zone", "eye_height", "terrestrial_refraction", "highest"
+ * @param options  others: "lat", "lon" [degrees], "height" [m above sea level]; all: "refraction"
  *     with days: "zone", "eye_height" [m above the ground], "terrestrial_refraction", "highest";
  *     of risings and light: "limb" ("upper", "center", "lower"), "dip" [degrees] (not the carpet)
  * @param answer   receives JSON */

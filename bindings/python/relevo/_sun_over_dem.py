@@ -5,20 +5,21 @@ from __future__ import annotations
 import datetime
 import json
 import os
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-from ._answers import Carpet, Estimate, Tiles, When, answer
+from ._answers import Along, Carpet, Estimate, Tiles, When, answer, library_answer
 from ._clip import Clip, part_of
 from ._errors import BadInput, messages, number, numbers
-from ._inputs import Crs
+from ._inputs import Crs, crs_text
 from ._options import library_options, options_text
 from ._places import OfMoon, OfSun
 from ._raster import Raster, band_list, empty
-from ._times import Date, Time, Zone, time_text
+from ._times import Date, Time, Times, Zone, seconds, time_text
 
 if TYPE_CHECKING:
     import pandas
@@ -51,6 +52,7 @@ class _OverDem:
     """What figures of sun and moon have in common."""
 
     _dem: Dem
+    _body: str
 
     def horizon(
         self, lat: float, lon: float, *, eye_height: float = 0.0, step: float = 1.0,
@@ -76,6 +78,28 @@ class _OverDem:
         with messages():
             self._dem._handle.horizon(number("lat", lat), number("lon", lon), options, azimuths, elevation, distance)
         return Horizon(azimuths, elevation, distance)
+
+    def when(
+        self, lat: float, lon: float, over: Union[tuple[float, float], tuple[float, float, float]],
+        date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
+        year: Optional[int] = None, tz: Optional[Zone] = None, summit_radius: Optional[float] = None,
+        tolerance: Optional[float] = None, height: Optional[float] = None, eye_height: Optional[float] = None,
+        refraction: Optional[str] = None, terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None,
+    ) -> When:
+        """When sun or moon stand over a summit, seen from a place. Other arguments are those of `day()`.
+
+        over: (lat, lon) for the highest post nearby, or (lat, lon, height) for that point
+        summit_radius: in which that post is searched [m] (100)
+        tolerance: largest distance of its centre [degrees] (0.5)
+        """
+        options = library_options(locals())
+        try:
+            options["over"] = ",".join(repr(float(number)) for number in over)
+        except (TypeError, ValueError):
+            raise BadInput(f"over: expected (lat, lon) or (lat, lon, height) but got {over!r}") from None
+        found: When = answer(self._dem, f"{self._body} when", options)
+        return found
 
 
 class MoonOverDem(OfMoon, _OverDem):
@@ -185,26 +209,44 @@ class SunOverDem(OfSun, _OverDem):
         found: Carpet = answer(self._dem, "sun carpet", locals())
         return found
 
-    def when(
-        self, lat: float, lon: float, over: Union[tuple[float, float], tuple[float, float, float]],
-        date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
-        year: Optional[int] = None, tz: Optional[Zone] = None, summit_radius: Optional[float] = None,
-        tolerance: Optional[float] = None, height: Optional[float] = None, eye_height: Optional[float] = None,
-        refraction: Optional[str] = None, terrestrial_refraction: Optional[float] = None,
-        highest: Optional[float] = None,
-    ) -> When:
-        """When the sun stands over a summit, seen from a place. Other arguments are those of `day()`.
+    def along(
+        self, walk: Union[str, os.PathLike[str], ArrayLike], *, times: Optional[Times] = None,
+        start: Optional[Time] = None, speed: Optional[float] = None, tz: Optional[Zone] = None,
+        track: Optional[int] = None, points_crs: Optional[Crs] = None, name: Optional[str] = None,
+        eye_height: Optional[float] = None, refraction: Optional[str] = None,
+        terrestrial_refraction: Optional[float] = None, highest: Optional[float] = None,
+    ) -> Along:
+        """Where a walk is in the sun. Other arguments are those of `day()`.
 
-        over: (lat, lon) for the highest post nearby, or (lat, lon, height) for that point
-        summit_radius: in which that post is searched [m] (100)
-        tolerance: largest distance of the sun's centre [degrees] (0.5)
+        walk: (points, 2) of (lat, lon), or a GPX, GeoJSON or CSV
+        times: of an array's points, in order, as in `relevo.sun.position`
+        start: when it begins, instead of its own times: as `time` of `Dem.view()`; events at its first point with
+            their date, "2026-02-10 sunrise"
+        speed: on the map [km/h]. None: by its own times, which start alone shifts.
+        tz: of texts and datetimes without a zone. None: that of the first point.
+        track: number of the track in a file, from 1
+        points_crs: of columns x and y in a CSV
         """
-        options = library_options(locals())
+        options = library_options({**locals(), "start": None, "times": None})
+        if isinstance(walk, (str, os.PathLike)):
+            options["walk"] = os.fspath(walk)
+        else:
+            places = numbers("walk", walk)
+            if places.ndim != 2 or places.shape[1] != 2:
+                raise BadInput(f"walk: expected an array of (points, 2) or a file but got {places.shape}")
+            options["walk"] = places
+        if times is not None:
+            options["times"] = numpy.atleast_1d(seconds(times, tz))
+        if start is not None:
+            options["start"] = time_text(start, tz, "start")
+        if points_crs is not None:
+            options["points_crs"] = crs_text(points_crs, "points_crs")
         try:
-            options["over"] = ",".join(repr(float(number)) for number in over)
-        except (TypeError, ValueError):
-            raise BadInput(f"over: expected (lat, lon) or (lat, lon, height) but got {over!r}") from None
-        found: When = answer(self._dem, "sun when", options)
+            found: Along = library_answer(self._dem, "sun along", options)
+        except BadInput as error:
+            if start is None:
+                raise
+            raise BadInput(re.sub("^time:", "start:", str(error)).replace(" or pass date=", "")) from None
         return found
 
     def estimate(
