@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "dem.h"
 #include "dem/places.h"
+#include "figure/far_ground.h"
 #include "options.h"
 #include "report/along.h"
 #include "report/carpet.h"
@@ -33,8 +34,9 @@ class AnswerCall {
     json::ObjectReader& reader() { return reader_; }
     /// Null without a DEM.
     const dem::Posts* ground() { return dem_ ? &dem_->posts() : nullptr; }
-    /// @throws BadCall
-    const dem::Posts& posts() { return need(dem_, "dem").posts(); }
+    /// @throws BadCall, here and below
+    Dem& dem() { return need(dem_, "dem"); }
+    const dem::Posts& posts() { return dem().posts(); }
 
     geo::PlaceText place() {
         std::string at = fmt::format("{},{}", degrees("lat", 90), degrees("lon", 360));
@@ -201,6 +203,16 @@ std::string along_answer(AnswerCall& call) {
     return json_of(result);
 }
 
+std::string halo_answer(AnswerCall& call) {
+    call.reader().need("halo");
+    const double halo_m = 1000 * number(call.reader(), figure::kHalo_km);
+    call.reader().finish();
+    const glm::ivec2 width = figure::FarGround::width_of(call.dem().grid(), halo_m);
+    return fmt::format(
+        R"({{"columns": {}, "rows": {}, "means": {}}})", width.x, width.y,
+        figure::FarGround::means_for(call.posts(), halo_m, call.dem().named().dem.memory));
+}
+
 template <sun::Body body>
 std::string positions_answer(AnswerCall& call) {
     const geo::PlaceText at = call.place();
@@ -235,6 +247,7 @@ constexpr std::array kAnswers{
     Answer{"moon position", positions_answer<sun::Body::Moon>},
     Answer{"moon day", days_answer<sun::Body::Moon, report::moon_days>},
     Answer{"moon when", when_answer<sun::Body::Moon>},
+    Answer{"halo", halo_answer},
 };
 
 /// @throws Error (BadInput) for an unknown figure

@@ -25,6 +25,16 @@ const dem::Posts& Dem::posts() {
     return *posts_;
 }
 
+std::shared_ptr<Dem> Dem::around() {
+    const std::lock_guard lock(mutex_);
+    return around_;
+}
+
+void Dem::set_around(std::shared_ptr<Dem> around) {
+    const std::lock_guard lock(mutex_);
+    around_ = std::move(around);
+}
+
 std::shared_ptr<const session::LoadedDem> Dem::loaded(const scene::Scene& scene) {
     const std::lock_guard lock(mutex_);
     if (!loaded_ || loaded_holes_ != scene.holes) {
@@ -121,6 +131,14 @@ relevo_result relevo_dem_from_heights(const relevo_raster* heights, relevo_dem**
 
 void relevo_dem_close(relevo_dem* dem) {
     c::dems().remove(dem);
+}
+
+relevo_result relevo_dem_around(relevo_dem* dem, relevo_dem* around) {
+    return c::guarded("relevo_dem_around", [&] {
+        const auto of = c::dems().get(dem, "dem");
+        if (dem == around) throw c::BadCall{"around: expected another DEM"};
+        of->set_around(around ? c::dems().get(around, "around") : nullptr);
+    });
 }
 
 relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid) {

@@ -77,11 +77,13 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
 }
 
 PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
-                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done) {
+                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done,
+                  const dem::Posts* around) {
     double share = 1;  // of a call
     const PartMaker make = figure.maker({.posts = posts,
+                                         .around = around,
                                          .window = all,
-                                         .middle = posts.grid().center(),
+                                         .middle = (around ? *around : posts).grid().center(),
                                          .put = std::move(put),
                                          .done = [&](double of_call) {
                                              if (done) done(share * of_call);

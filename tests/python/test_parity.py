@@ -28,7 +28,7 @@ OTHERWISE = {
 }  # fmt: skip
 OF_COMMAND = {
     "sun position": {"time", "date"},  # times, and no events
-    "sun shadow": {"sun", "times", "at"},  # one time
+    "sun shadow": {"at"},
     # Of the panorama alone.
     "sun horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},
     "moon horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from ._dem import Dem, open
 from ._errors import BadInput
 from ._raster import Raster
+from ._sun_over_dem import shadow_options, time_names
 
 if TYPE_CHECKING:
     import xarray
@@ -47,10 +48,13 @@ def again(
 
 
 def _made(dem: Dem, figure: str, options: dict[str, Any], alone: bool) -> Raster:
-    if figure != "horizons":
+    if figure != "horizons" and "times" not in options:
         return dem.sun._raster(figure, options.get("bands", [figure]), alone, options, None)
     band = options.pop("bands", [])
-    every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
+    if figure == "horizons":
+        every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
+    else:
+        every = dem.sun._raster(figure, time_names(shadow_options(options)["times"]), False, options, None)
     if band and band[0] not in every.bands:
         raise BadInput(f"options: bands: expected one of {', '.join(every.bands)} but got {band[0]}")
     return every[band[0]] if band else every

@@ -19,7 +19,7 @@ from ._inputs import Crs, crs_text
 from ._options import library_options, options_text
 from ._places import OfMoon, OfSun
 from ._raster import Raster, band_list, empty
-from ._times import Date, Time, Times, Zone, seconds, time_text
+from ._times import Date, Time, Times, Zone, seconds, time_text, utc
 
 if TYPE_CHECKING:
     import pandas
@@ -46,6 +46,28 @@ class Horizon(NamedTuple):
 
         index = pandas.Index(self.azimuth, name="horizon_azimuth")
         return pandas.Series(self.elevation, index, name="horizon_elevation")
+
+
+def shadow_options(options: dict[str, Any]) -> dict[str, Any]:
+    """Options of the library by arguments or options, with the library's times and sun."""
+    options = library_options(options)
+    zone = options.get("zone")
+    if "time" in options:
+        options["time"] = time_text(options["time"], zone)
+    if "times" in options:
+        options["times"] = numpy.atleast_1d(seconds(options["times"], zone)).ravel().tolist()
+    if "sun" in options and not isinstance(options["sun"], str):
+        try:
+            azimuth, elevation = options["sun"]
+            options["sun"] = f"{float(azimuth)!r},{float(elevation)!r}"
+        except (TypeError, ValueError):
+            raise BadInput(f"sun: expected (azimuth, elevation) but got {options['sun']!r}") from None
+    return options
+
+
+def time_names(times: list[float]) -> list[str]:
+    """Of bands: "2026-12-21T14:00:00Z"."""
+    return [f"{utc(round(one)).isoformat()[:19]}Z" for one in times]
 
 
 class _OverDem:
@@ -156,18 +178,24 @@ class SunOverDem(OfSun, _OverDem):
         return self._raster("sun_hours", options["bands"], alone, options, progress)
 
     def shadow(
-        self, time: Time, *, date: Optional[Date] = None, tz: Optional[Zone] = None, soft: bool = False,
-        terrestrial_refraction: Optional[float] = None, refraction: Optional[str] = None,
+        self, time: Optional[Time] = None, *, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, tz: Optional[Zone] = None,
+        soft: bool = False, terrestrial_refraction: Optional[float] = None, refraction: Optional[str] = None,
         highest: Optional[float] = None, clip: Optional[Clip] = None, clip_crs: Optional[Crs] = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
-        """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
+        """Light and shade: 1 in light, 0 in the shadow of the ground. One of these:
 
         time, date, tz: as in `Dem.view()`
+        times: a list, as in `relevo.sun.position`: values of (times, rows, columns), a band for each, named by its
+            time in `tz`
+        sun: (azimuth, elevation) as the sun is seen [degrees], or "grid:AZ,EL" from the north of the grid
+
         soft: the visible fraction of the solar disc instead
         """
-        options = {**library_options(locals()), "time": time_text(time, tz)}
-        return self._raster("shadow", ["shadow"], True, options, progress)
+        options = shadow_options(locals())
+        names = ["shadow"] if times is None else time_names(options["times"])
+        return self._raster("shadow", names, times is None, options, progress)
 
     def sky_view(
         self, directions: Optional[int] = None, *, level: bool = False, terrestrial_refraction: Optional[float] = None,
@@ -250,7 +278,8 @@ class SunOverDem(OfSun, _OverDem):
         return found
 
     def estimate(
-        self, figure: str, *, time: Optional[Time] = None, date: Optional[Date] = None, start: Optional[Date] = None,
+        self, figure: str, *, time: Optional[Time] = None, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None,
         end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
         linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
@@ -267,8 +296,8 @@ class SunOverDem(OfSun, _OverDem):
 
     def tiles(
         self, figure: str, folder: Union[str, os.PathLike[str]], *, tiles: int = 512, halo: Optional[float] = None,
-        resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, date: Optional[Date] = None,
-        start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
+        resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
         linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
         directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
@@ -299,8 +328,7 @@ class SunOverDem(OfSun, _OverDem):
         del options["figure"]
         if "bands" in options:
             options["bands"], _ = band_list(options["bands"])
-        if "time" in options:
-            options["time"] = time_text(options["time"], options.get("zone"))
+        options = shadow_options(options)
         part = part_of(self._dem, options.pop("clip", None), options.pop("clip_crs", None))
         name = figure if figure != "hours" else "sun_hours"
         with messages():
