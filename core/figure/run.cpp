@@ -15,6 +15,7 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
     output::RasterMetadata about{
         {"TIFFTAG_SOFTWARE", "Relevo " + version},
         {"DEFINITION", made.definition},
+        {"ACCURACY", std::string(figure.accuracy()) + "; errors of the heights come on top"},
         {"DEM", posts.about().path},
         {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", figure.terrestrial_refraction)},
         {"HOLES", fmt::format("{}", made.holes)}};

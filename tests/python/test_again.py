@@ -9,6 +9,7 @@ import pytest
 import rasterio
 
 import relevo
+from conftest import SOURCE
 
 MADE = {
     "hours of a day": lambda sun: sun.hours("2026-06-21"),
@@ -136,6 +137,15 @@ def test_rasters_carry_what_the_program_writes(small, program, tmp_path):
     for key, text in tags.items():
         assert str(raster.about[key.lower().removeprefix("tifftag_")]) == text, key
     assert json.loads(raster.about["dem_files"]) == [small.name]
+
+
+@pytest.mark.parametrize("what", ["hours of a day", "shadow", "horizons", "sky view", "ten days"])
+def test_the_accuracy_is_that_of_the_docs(small, what):
+    made = MADE.get(what, lambda sun: sun.hours(start="2026-03-01", end="2026-03-10"))
+    said, heights = str(made(small.sun).about["accuracy"]).split("; ")
+    assert heights == "errors of the heights come on top"
+    page = " ".join((SOURCE / "docs/accuracy-sun-rasters.md").read_text(encoding="utf-8").split())
+    assert f": {said} " in page
 
 
 def test_words_of_cf(dem):
