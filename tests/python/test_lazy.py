@@ -234,4 +234,4 @@ def test_again_of_many_times(dem):
     for raster in (stack, stack[stack.bands[1]]):
         made = relevo.again(raster)
         numpy.testing.assert_array_equal(made.values, raster.values)
-        assert made.bands == raster.bands and made.about == raster.about
+        assert made.bands == raster.bands and made.about["options"] == raster.about["options"]

@@ -48,13 +48,11 @@ def again(
 
 
 def _made(dem: Dem, figure: str, options: dict[str, Any], alone: bool) -> Raster:
-    if figure != "horizons" and "times" not in options:
-        return dem.sun._raster(figure, options.get("bands", [figure]), alone, options, None)
+    if figure != "horizons":
+        names = time_names(shadow_options(options)["times"]) if "times" in options else options.get("bands", [figure])
+        return dem.sun._raster(figure, names, alone, options, None)
     band = options.pop("bands", [])
-    if figure == "horizons":
-        every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
-    else:
-        every = dem.sun._raster(figure, time_names(shadow_options(options)["times"]), False, options, None)
+    every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
     if band and band[0] not in every.bands:
         raise BadInput(f"options: bands: expected one of {', '.join(every.bands)} but got {band[0]}")
     return every[band[0]] if band else every

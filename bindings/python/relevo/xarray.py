@@ -59,8 +59,12 @@ def _add_bands(coords: dict[str, Any], raster: Raster) -> tuple[str, ...]:
     options = json.loads(str(raster.about.get("options", "{}")))
     if "times" in options:
         times = numpy.round(numpy.array(options["times"]) * 1e6).astype("datetime64[us]").astype("datetime64[ns]")
-        coords["time"] = ("time", times, {"standard_name": "time", "long_name": "time"}) if raster.values.ndim == 3 else times[0]
-        return ("time",) if raster.values.ndim == 3 else ()
+        dims = ("time",) if raster.values.ndim == 3 else ()
+        coords["time"] = xarray.Variable(
+            dims, times if dims else times[0], {"standard_name": "time", "long_name": "time"},
+            {"units": "seconds since 1970-01-01", "calendar": "standard", "dtype": "float64", "_FillValue": None},
+        )
+        return dims
     if raster.values.ndim == 3:
         coords["band"] = list(raster.bands)
         return ("band",)
@@ -91,10 +95,11 @@ def _described(array: Any, raster: Raster) -> Any:
         name, title = "shadow", "visible fraction of the solar disc" if options.get("soft") else "direct sun"
     array.attrs.update(raster.about)
     if "band" in array.dims:
-        name = "sun"
+        name, title = "sun", "horizon" if raster.about.get("figure") == "horizons" else ", ".join(raster.names)
         array.coords["unit"] = ("band", list(raster.units))
-    else:
-        array.attrs.update(long_name=title, units=_UDUNITS.get(raster.unit, raster.unit))
+    array.attrs["long_name"] = title
+    if len(set(raster.units)) == 1:
+        array.attrs["units"] = _UDUNITS.get(raster.unit, raster.unit)
     array.name = name if name.isidentifier() else raster.about["figure"]
     array.encoding["grid_mapping"] = "spatial_ref"
     return array
