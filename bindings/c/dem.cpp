@@ -63,7 +63,7 @@ geo::Geodetic place_of(const relevo_place* given) {
 namespace {
 
 /// Takes the members of the options that say how numbers in memory become heights.
-dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
+dem::Stored take_stored(json::Value& options) {
     json::Value own;
     own.kind = json::Value::Kind::Object;
     const auto is_own = [](const auto& member) {
@@ -75,7 +75,7 @@ dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
     constexpr double kMost = 1e7;
     dem::Stored stored{.scale = reader.number("scale", 1, -kMost, kMost, false),
                        .offset = reader.number("offset", 0, -kMost, kMost, false),
-                       .unit = crs.vertical() ? "" : "m",
+                       .unit = {},  // as files without one
                        .voids_declared = reader.boolean("voids_known", false)};
     if (stored.scale == 0) reader.fail(reader.line_of("scale"), "scale", "expected another than 0");
     return stored;
@@ -91,7 +91,7 @@ std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
                 static_cast<std::size_t>(heights.columns) * static_cast<std::size_t>(heights.rows));
     const geo::Crs crs = geo::Crs::parse(&need(heights.crs, "heights.crs"), "crs");
     json::Value options = parse_dem(heights.options);
-    const dem::Stored stored = take_stored(options, crs);
+    const dem::Stored stored = take_stored(options);
     dem::MemoryRaster held(heights.heights_m, heights.columns, heights.rows,
                            dem::Affine::of_geotransform(heights.transform), stored);
     scene::Scene named = read_dem({held.name()}, std::move(options));
