@@ -12,7 +12,7 @@ void add_sun(Verb app) {
     add_horizon(verb, sun::Body::Sun);
     add_sun_eclipses(verb);
     add_sun_carpet(verb);
-    add_sun_when(verb);
+    add_when(verb, sun::Body::Sun);
     add_sun_shadow(verb);
     add_sun_hours(verb);
     add_sun_plane(verb);
@@ -27,6 +27,7 @@ void add_moon(Verb app) {
     add_position(verb, sun::Body::Moon);
     add_moon_day(verb);
     add_horizon(verb, sun::Body::Moon);
+    add_when(verb, sun::Body::Moon);
 }
 
 }  // namespace relevo::cli

@@ -9,13 +9,13 @@ namespace relevo::cli {
 /// Verbs that `sun` and `moon` both have.
 void add_position(Verb parent, sun::Body body);
 void add_horizon(Verb parent, sun::Body body);
+void add_when(Verb parent, sun::Body body);
 
 void add_moon_day(Verb moon_verb);
 
 void add_sun_day(Verb sun_verb);
 void add_sun_eclipses(Verb sun_verb);
 void add_sun_carpet(Verb sun_verb);
-void add_sun_when(Verb sun_verb);
 void add_sun_shadow(Verb sun_verb);
 void add_sun_along(Verb sun_verb);
 void add_sun_hours(Verb sun_verb);

@@ -10,12 +10,12 @@
 #include "cli/sun_options.h"
 #include "dem/places.h"
 #include "light/point/light_along.h"
+#include "report/along.h"
 
 namespace relevo::cli {
 namespace {
 
 using light::WalkLight;
-using nlohmann::ordered_json;
 
 struct AlongArguments {
     TerrainArguments terrain;
@@ -24,16 +24,6 @@ struct AlongArguments {
     std::optional<double> speed_kmh, eye_height_m;
     RefractionArguments refraction;
     OutputArguments output;
-};
-
-/// Everything that the verb says, before it is text.
-struct AlongResult {
-    std::string name;
-    std::size_t points = 0;
-    sun::Zone zone;
-    std::string assumption;
-    std::string air;
-    light::LightAlong found;
 };
 
 constexpr std::array kLights = {WalkLight::Sun, WalkLight::Terrain, WalkLight::Night,
@@ -53,51 +43,11 @@ const char* words_of(WalkLight light) {
     return "not known: a void of the DEM";
 }
 
-const light::WalkSum& sum_of(const AlongResult& result, WalkLight light) {
-    return result.found.sums[static_cast<std::size_t>(light)];
-}
-
 double share(double part, double whole) {
     return whole > 0 ? part / whole : 0;
 }
 
-ordered_json moment_json(const light::WalkMoment& moment, const sun::Zone& zone) {
-    return {{"utc", report::utc_json<ordered_json>(moment.utc)},
-            {"local", sun::to_iso(moment.utc, zone)},
-            {"distance_m", moment.distance_m},
-            {"lat_deg", angle_deg(moment.place.lat_rad)},
-            {"lon_deg", angle_deg(moment.place.lon_rad)}};
-}
-
-ordered_json json_of(const AlongResult& result) {
-    const light::LightAlong& found = result.found;
-    ordered_json json;
-    json["name"] = result.name;
-    json["zone"] = result.zone.name();
-    report::add_assumption(json, result.assumption);
-    json["definition"] = found.definition;
-    json["refraction"] = result.air;
-    json["spacing_m"] = found.spacing_m;
-    json["step_s"] = found.step_s;
-    json["length_m"] = found.length_m;
-    json["duration_h"] = found.duration_s / 3600;
-    for (const WalkLight light : kLights) {
-        const light::WalkSum& sum = sum_of(result, light);
-        json[std::string(light::name_of(light))] = {
-            {"duration_h", sum.time_s / 3600},
-            {"length_m", sum.length_m},
-            {"time_share", share(sum.time_s, found.duration_s)},
-            {"length_share", share(sum.length_m, found.length_m)}};
-    }
-    ordered_json& stretches = json["stretches"] = ordered_json::array();
-    for (const light::WalkStretch& stretch : found.stretches)
-        stretches.push_back({{"light", light::name_of(stretch.light)},
-                             {"from", moment_json(stretch.from, result.zone)},
-                             {"to", moment_json(stretch.to, result.zone)}});
-    return json;
-}
-
-std::string csv_of(const AlongResult& result) {
+std::string csv_of(const report::Along& result) {
     std::string text =
         csv_remarks({result.found.definition, "refraction of the sun: " + result.air});
     text +=
@@ -112,7 +62,7 @@ std::string csv_of(const AlongResult& result) {
     return text;
 }
 
-void print_text(const AlongResult& result) {
+void print_text(const report::Along& result) {
     const light::LightAlong& found = result.found;
     fmt::print("track               {}{:.2f} km, {} points\n",
                result.name.empty() ? "" : result.name + ", ", found.length_m / 1000, result.points);
@@ -121,7 +71,7 @@ void print_text(const AlongResult& result) {
                sun::to_iso(found.stretches.back().to.utc, result.zone),
                hours_text(found.duration_s), result.zone.name());
     for (const WalkLight light : kLights) {
-        const light::WalkSum& sum = sum_of(result, light);
+        const light::WalkSum& sum = result.sum(light);
         if (light != WalkLight::Sun && sum.time_s <= 0 && sum.length_m <= 0) continue;
         fmt::print("{:<18}{:>9}{:6.1f} %{:10.2f} km{:6.1f} %\n",
                    light == WalkLight::NotKnown ? "not known" : words_of(light),
@@ -143,94 +93,6 @@ void print_text(const AlongResult& result) {
     fmt::print("\n{}\nrefraction of the sun: {}\n", found.definition, result.air);
 }
 
-bool has_time(const dem::NamedPlace& place) {
-    return !place.time.empty();
-}
-
-/// What a track without times of its own needs, before any work is done. @throws Error (Usage)
-void check_times(const AlongArguments& arguments, const dem::NamedLine& line,
-                 const std::string& path) {
-    if (std::ranges::any_of(line.places, has_time)) return;
-    if (arguments.start.empty())
-        bad_usage(
-            fmt::format("--start: missing, as {} has no times; pass --start "
-                        "2026-06-21T09:00 --speed 4",
-                        path));
-    if (!arguments.speed_kmh)
-        bad_usage(
-            fmt::format("--speed: missing, as {} has no times; pass --speed 4, in km/h", path));
-}
-
-/// The times of a track's points: an offset of their own counts, whatever the walk's zone is.
-/// @throws Error (BadInput) where one has none, and where one is no time
-std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string& path,
-                                   const sun::Zone& zone) {
-    // Loggers mix up fractions of a second: such points have one time.
-    constexpr double kLoggersSecond_s = 1;
-    std::vector<sun::Instant> times;
-    std::optional<sun::Instant> earliest;
-    for (const dem::NamedPlace& place : line.places) {
-        if (!has_time(place))
-            bad_input(
-                fmt::format("sun along: {}: line {}: a point without a time, where others have "
-                            "one; pass --start and --speed",
-                            path, place.line));
-        try {
-            times.push_back(sun::is_wall_time(place.time) ? sun::parse_time(place.time, zone).utc
-                                                          : sun::parse_time(place.time).utc);
-        } catch (const Error& error) {
-            bad_input(fmt::format("sun along: {}: line {}: {}", path, place.line, error.what()));
-        }
-        if (times.size() < 2) continue;
-        const sun::Instant before = times[times.size() - 2];
-        if (before - times.back() >= kLoggersSecond_s)
-            bad_input(fmt::format(
-                "sun along: {}: line {}: its time, {}, is before that of the point before, {}; "
-                "expected times in order",
-                path, place.line, sun::exact_iso(times.back()), sun::exact_iso(before)));
-        earliest = std::min(earliest.value_or(before), times.back());
-        times.back() = std::max(times.back(), before);
-    }
-    if (earliest && *earliest < times.front() && times.front() == times.back())
-        bad_input(fmt::format(
-            "sun along: {}: all points are within one second, from {} to {}; expected times that "
-            "increase",
-            path, sun::exact_iso(*earliest), sun::exact_iso(times.back())));
-    return times;
-}
-
-/// The walk that is meant, and the clocks that it goes by: what is not said of its start and its
-/// pace is the track's own.
-light::Walk walk_of(const AlongArguments& arguments, const std::string& path,
-                    const dem::NamedLine& line, const dem::Posts& posts, AlongResult& result) {
-    std::vector<geo::Geodetic> places;
-    for (const dem::NamedPlace& place : line.places)
-        places.push_back(place.at.place);
-    std::optional<sun::Instant> start;
-    if (!arguments.start.empty()) {
-        const sun::ParsedTime when =
-            session::parse({arguments.start, {}, arguments.zone},
-                           {.middle = [&] { return places.front(); },
-                            .posts = [&]() -> const dem::Posts& { return posts; }},
-                           line.places.front().at);
-        start = when.utc;
-        result.zone = when.zone;
-        result.assumption = when.assumption;
-    } else {
-        sun::ChosenZone chosen = session::zone_of(arguments.zone, places.front());
-        result.zone = std::move(chosen.zone);
-        result.assumption = std::move(chosen.assumption);
-    }
-    std::vector<sun::Instant> times;
-    if (!start || !arguments.speed_kmh) times = times_of(line, path, result.zone);
-    if (!arguments.speed_kmh) {
-        const light::Walk walk = light::Walk::timed(std::move(places), std::move(times));
-        return start ? walk.starting_at(*start) : walk;
-    }
-    return light::Walk::at_speed(std::move(places), start ? *start : times.front(),
-                                 *arguments.speed_kmh / 3.6);
-}
-
 void run_along(AlongArguments arguments) {
     std::vector<std::string>& dems = arguments.terrain.dem.paths;
     if (dems.size() < 2)
@@ -244,26 +106,31 @@ void run_along(AlongArguments arguments) {
     files.add_input(path, "the track");
     // Before the DEM: one from the net opens the net to all that GDAL reads.
     const dem::NamedLine line = dem::read_line(path, "sun along", arguments.crs, arguments.track);
-    check_times(arguments, line, path);
+    report::WalkWords words{.start = arguments.start,
+                            .zone = arguments.zone,
+                            .speed_kmh = arguments.speed_kmh,
+                            .parse_start = {},
+                            .choose = session::zone_of};
+    words.check(line, path);
     const dem::Posts posts = arguments.terrain.load();
-    AlongResult result;
-    result.name = arguments.name.empty() ? line.name : arguments.name;
-    result.points = line.places.size();
-    const light::Walk walk = walk_of(arguments, path, line, posts, result);
-    light::WalkOptions options;
-    options.horizon = arguments.terrain.view(arguments.eye_height_m).horizon({});
-    options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-    options.highest_m = arguments.terrain.highest_m;
-    result.air = arguments.refraction.name() == "standard"
-                     ? "integrated ICAO standard atmosphere over the ground there"
-                     : arguments.refraction.at(walk.places().front()).description();
-    result.found = light::light_along(posts, walk, options);
+    words.parse_start = [&](const geo::PlaceText& first) {
+        return session::parse({words.start, {}, words.zone},
+                              {.middle = [&] { return first.place; },
+                               .posts = [&]() -> const dem::Posts& { return posts; }},
+                              first);
+    };
+    report::View view;
+    view.refraction = arguments.refraction.name();
+    report::Along result = report::along(arguments.terrain.view(arguments.eye_height_m, view),
+                                         words, line, path, posts);
+    if (!arguments.name.empty()) result.name = arguments.name;
     report::warn_of(result.found.doubt);
-    arguments.output.deliver({.drawing = {},
-                              .csv = [&] { return csv_of(result); },
-                              .json = [&] { return json_of(result); },
-                              .print = [&] { print_text(result); }},
-                             file);
+    arguments.output.deliver(
+        {.drawing = {},
+         .csv = [&] { return csv_of(result); },
+         .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
+         .print = [&] { print_text(result); }},
+        file);
 }
 
 }  // namespace

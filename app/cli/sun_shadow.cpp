@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <set>
 
@@ -41,29 +40,6 @@ struct Counts {
     std::int64_t lit = 0, shaded = 0;
 };
 
-/// "AZ,EL" or "grid:AZ,EL". @throws Error (Usage)
-light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
-    constexpr std::string_view kGrid = "grid:";
-    const bool on_grid = text.starts_with(kGrid);
-    const std::vector<std::string> parts =
-        split(std::string_view(text).substr(on_grid ? kGrid.size() : 0), ',');
-    const auto azimuth_deg = parts.size() == 2 ? parse_number(parts[0]) : std::nullopt;
-    const auto elevation_deg = parts.size() == 2 ? parse_number(parts[1]) : std::nullopt;
-    if (!azimuth_deg || !elevation_deg || std::abs(*elevation_deg) > 90)
-        bad_usage(
-            fmt::format("--sun: {}: expected AZ,EL in degrees, clockwise from true north and -90 "
-                        "to 90 above the horizon, or grid:AZ,EL from the north of the DEM's map",
-                        text));
-    light::SunOverDem sun;
-    // Whole turns leave no trace: 360 and -720 are 0, without a sign.
-    const double within_deg = std::fmod(*azimuth_deg, 360) + 0.0;
-    const double turned_rad = radians(within_deg < 0 ? within_deg + 360 : within_deg);
-    sun.azimuth_rad = on_grid ? light::true_azimuth_rad(grid, turned_rad) : turned_rad;
-    sun.elevation_rad = radians(*elevation_deg);
-    sun.semidiameter_rad = sun::semidiameter_rad(1);
-    return sun;
-}
-
 /// The sun at a time.
 Asked at_time(const ShadowArguments& arguments, const dem::Posts& posts,
               const sun::ParsedTime& when) {
@@ -101,10 +77,7 @@ std::vector<Asked> at_times(const ShadowArguments& arguments,
 std::vector<Asked> all_suns(const ShadowArguments& arguments,
                             const std::vector<dem::NamedTime>& times, const dem::Posts& posts) {
     if (!times.empty()) return at_times(arguments, times, posts);
-    if (!arguments.sun.empty()) {
-        const light::SunOverDem sun = parse_sun(arguments.sun, posts.grid());
-        return {{{sun, sun.elevation_rad, {}}, {}, {}}};
-    }
+    if (!arguments.sun.empty()) return {{figure::sun_as_seen(arguments.sun, posts.grid()), {}, {}}};
     const geo::Geodetic middle = posts.grid().center();
     return {at_time(arguments, posts,
                     session::parse(arguments.time.spec(),

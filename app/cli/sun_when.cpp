@@ -21,20 +21,27 @@ struct WhenArguments {
     DaysArguments days;
     RefractionArguments refraction;
     OutputArguments output;
+    sun::Body body = sun::Body::Sun;
 
     report::View view() const {
         report::View light;
+        light.body = body;
         light.refraction = refraction.name();
         return terrain.view(place.eye_height_m, light);
     }
 };
 
-constexpr const char* kWhenColumns =
-    "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible";
+std::string columns_of(sun::Body body) {
+    return "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg," +
+           report::visible_key(body);
+}
 
-constexpr const char* kDirections =
-    "right_deg and above_deg: of the sun's centre from the summit; --json has the summit, the line "
-    "of sight and the definition of each point";
+std::string directions_of(sun::Body body) {
+    return fmt::format(
+        "right_deg and above_deg: of the {}'s centre from the summit; --json has the summit, the "
+        "line of sight and the definition of each point",
+        name_of(body));
+}
 
 std::string target_text(const light::Alignments& found) {
     return fmt::format("target {}, {:.1f} m", geo::degrees_text(found.target),
@@ -51,15 +58,18 @@ std::vector<std::string> rows_of(const light::Alignments& found, const sun::Zone
     return rows;
 }
 
-std::string csv_of(const light::Alignments& found, const sun::Zone& zone) {
-    std::string text = csv_remarks({target_text(found), found.definition}) + kWhenColumns + "\n";
-    for (const std::string& row : rows_of(found, zone))
+std::string csv_of(const report::When& result) {
+    const light::Alignments& found = result.found;
+    std::string text =
+        csv_remarks({target_text(found), found.definition}) + columns_of(result.body) + "\n";
+    for (const std::string& row : rows_of(found, result.asked.zone))
         text += row + "\n";
     return text;
 }
 
-void print_text(const light::Alignments& found, const light::TerrainHorizon& horizon,
-                const sun::Zone& zone) {
+void print_text(const report::When& result) {
+    const light::Alignments& found = result.found;
+    const light::TerrainHorizon& horizon = *result.horizon;
     const double azimuth_deg = degrees(found.sight.azimuth_rad);
     fmt::print("place               {}, {:.1f} m, eye at {:.1f} m\n",
                geo::degrees_text(horizon.place()), horizon.place().height_m, horizon.eye_m());
@@ -75,13 +85,13 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
     if (found.sight.hole)
         fmt::print("not known           whether it is visible, through a void of the DEM\n");
     if (found.passages.empty())
-        fmt::print("\nthe sun does not come that near on these days\n");
+        fmt::print("\nthe {} does not come that near on these days\n", name_of(result.body));
     else
         fmt::print("\n{:<27}{:>10}{:>19}{:>19}\n", "time", "apart", "along the horizon",
                    "in elevation");
     for (const light::Alignment& p : found.passages)
         fmt::print("{:<27}{:6.3f} deg  {:6.3f} deg {:<6}  {:6.3f} deg {:<6}{}\n",
-                   sun::to_iso(p.utc, zone), degrees(p.separation_rad),
+                   sun::to_iso(p.utc, result.asked.zone), degrees(p.separation_rad),
                    std::abs(degrees(p.right_rad)), p.right_rad < 0 ? "left" : "right",
                    std::abs(degrees(p.above_rad)), p.above_rad < 0 ? "below" : "above",
                    !p.sun_visible ? "  behind terrain"
@@ -105,8 +115,9 @@ void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* f
                           .json = [=] { return nlohmann::ordered_json::parse(json_of(*result)); },
                           .doubt = doubt};
     };
-    deliver_points(arguments.points, points, {kWhenColumns, {kDirections}, forms}, arguments.output,
-                   file, sun::is_zone_by_place(arguments.days.zone));
+    deliver_points(arguments.points, points,
+                   {columns_of(arguments.body), {directions_of(arguments.body)}, forms},
+                   arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
 }
 
 void run_when(const WhenArguments& arguments) {
@@ -124,18 +135,20 @@ void run_when(const WhenArguments& arguments) {
                                              arguments.options.target(posts));
     report::warn_of(result);
     output.deliver({.drawing = {},
-                    .csv = [&] { return csv_of(result.found, asked.zone); },
+                    .csv = [&] { return csv_of(result); },
                     .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
-                    .print = [&] { print_text(result.found, *result.horizon, asked.zone); }},
+                    .print = [&] { print_text(result); }},
                    file);
 }
 
 }  // namespace
 
-void add_sun_when(Verb sun_verb) {
+void add_when(Verb parent, sun::Body body) {
     const auto arguments = std::make_shared<WhenArguments>();
-    const Verb verb =
-        sun_verb.add_verb("when", "Times when the sun stands over a summit, seen from a place");
+    arguments->body = body;
+    const Verb verb = parent.add_verb(
+        "when",
+        fmt::format("Times when the {} stands over a summit, seen from a place", name_of(body)));
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
@@ -145,11 +158,12 @@ void add_sun_when(Verb sun_verb) {
     verb.add_option("--summit-radius", arguments->options.summit_radius_m,
                     "Search radius of the summit, m (100)")
         .check(in_range(0.0, 10000.0));
-    verb.add_option("--tolerance", arguments->options.tolerance_deg,
-                    "Largest distance of the sun's centre, degrees (0.5)")
+    verb.add_option(
+            "--tolerance", arguments->options.tolerance_deg,
+            fmt::format("Largest distance of the {}'s centre, degrees (0.5)", name_of(body)))
         .check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);
-    arguments->refraction.add_to(verb);
+    arguments->refraction.add_to(verb, body);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run_when(*arguments); });
 }

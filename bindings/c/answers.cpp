@@ -10,7 +10,10 @@
 
 #include "base/error.h"
 #include "dem.h"
+#include "dem/places.h"
+#include "figure/far_ground.h"
 #include "options.h"
+#include "report/along.h"
 #include "report/carpet.h"
 #include "report/days.h"
 #include "report/doubts.h"
@@ -31,8 +34,9 @@ class AnswerCall {
     json::ObjectReader& reader() { return reader_; }
     /// Null without a DEM.
     const dem::Posts* ground() { return dem_ ? &dem_->posts() : nullptr; }
-    /// @throws BadCall
-    const dem::Posts& posts() { return need(dem_, "dem").posts(); }
+    /// @throws BadCall, here and below
+    Dem& dem() { return need(dem_, "dem"); }
+    const dem::Posts& posts() { return dem().posts(); }
 
     geo::PlaceText place() {
         std::string at = fmt::format("{},{}", degrees("lat", 90), degrees("lon", 360));
@@ -124,9 +128,10 @@ std::string carpet_answer(AnswerCall& call) {
     return json_of(result);
 }
 
+template <sun::Body body>
 std::string when_answer(AnswerCall& call) {
     const geo::PlaceText at = call.place();
-    report::View view = call.view(sun::Body::Sun);
+    report::View view = call.view(body);
     report::WhenOptions options;
     options.over = call.reader().string("over");
     options.summit_radius_m =
@@ -139,6 +144,73 @@ std::string when_answer(AnswerCall& call) {
         report::when(view, options, days, at, call.posts(), options.target(call.posts()));
     report::warn_of(result);
     return json_of(result);
+}
+
+/// A walk as a list of places, with times or without.
+dem::NamedLine line_of(json::ObjectReader& reader, const json::Value& walk) {
+    using Kind = json::Value::Kind;
+    const json::Value* const times = reader.take("times");
+    if (walk.items.size() < 2 || walk.items.size() > dem::kMostPlaces)
+        reader.fail(walk.line, "walk", "expected a file, or 2 to a million places");
+    if (times && times->items.size() != walk.items.size())
+        reader.fail(times->line, "times", "expected one for each place of the walk");
+    dem::NamedLine line;
+    for (std::size_t i = 0; i < walk.items.size(); ++i) {
+        const std::vector<json::Value>& place = walk.items[i].items;
+        if (place.size() != 2 || place[0].kind != Kind::Number || place[1].kind != Kind::Number)
+            reader.fail(walk.line, "walk", "expected [latitude, longitude] of each place");
+        dem::NamedPlace& to = line.places.emplace_back();
+        to.at = geo::parse_place(fmt::format("{},{}", place[0].number, place[1].number), "walk");
+        to.line = i + 1;
+        if (!times) continue;
+        if (times->items[i].kind != Kind::Number)
+            reader.fail(times->line, "times", "expected numbers");
+        to.time = sun::exact_iso(instant_of(times->items[i].number));
+    }
+    return line;
+}
+
+std::string along_answer(AnswerCall& call) {
+    json::ObjectReader& reader = call.reader();
+    const json::Value& walk = reader.need("walk");
+    const bool is_file = walk.kind == json::Value::Kind::String;
+    const std::string crs = is_file ? reader.string("points_crs", "") : "",
+                      name = reader.string("name", "");
+    const auto track =
+        is_file ? static_cast<int>(reader.number("track", 0, 1, 1'000'000, true)) : 0;
+    report::WalkWords words{.start = reader.string("start", ""),
+                            .zone = reader.string("zone", ""),
+                            .speed_kmh = call.optional("speed", {0, 0.01, 1000}),
+                            .parse_start = {},
+                            .choose = session::zone_of};
+    const report::View view = call.view(sun::Body::Sun);
+    dem::NamedLine line;
+    if (!is_file) line = line_of(reader, walk);
+    reader.finish();
+    if (is_file) line = dem::read_line(walk.text, "walk", crs, track);
+    const std::string path = is_file ? walk.text : "the walk";
+    words.check(line, path);
+    const dem::Posts& posts = call.posts();
+    words.parse_start = [&](const geo::PlaceText& first) {
+        return session::parse({words.start, {}, words.zone},
+                              {.middle = [&] { return first.place; },
+                               .posts = [&]() -> const dem::Posts& { return posts; }},
+                              first);
+    };
+    report::Along result = report::along(view, words, line, path, posts);
+    if (!name.empty()) result.name = name;
+    report::warn_of(result.found.doubt);
+    return json_of(result);
+}
+
+std::string halo_answer(AnswerCall& call) {
+    call.reader().need("halo");
+    const double halo_m = 1000 * number(call.reader(), figure::kHalo_km);
+    call.reader().finish();
+    const glm::ivec2 width = figure::FarGround::width_of(call.dem().grid(), halo_m);
+    return fmt::format(
+        R"({{"columns": {}, "rows": {}, "means": {}}})", width.x, width.y,
+        figure::FarGround::means_for(call.posts(), halo_m, call.dem().named().dem.memory));
 }
 
 template <sun::Body body>
@@ -170,9 +242,12 @@ constexpr std::array kAnswers{
     Answer{"sun day", days_answer<sun::Body::Sun, report::sun_days>},
     Answer{"sun eclipses", days_answer<sun::Body::Sun, shared_eclipses>},
     Answer{"sun carpet", carpet_answer},
-    Answer{"sun when", when_answer},
+    Answer{"sun when", when_answer<sun::Body::Sun>},
+    Answer{"sun along", along_answer},
     Answer{"moon position", positions_answer<sun::Body::Moon>},
     Answer{"moon day", days_answer<sun::Body::Moon, report::moon_days>},
+    Answer{"moon when", when_answer<sun::Body::Moon>},
+    Answer{"halo", halo_answer},
 };
 
 /// @throws Error (BadInput) for an unknown figure

@@ -25,6 +25,16 @@ const dem::Posts& Dem::posts() {
     return *posts_;
 }
 
+std::shared_ptr<Dem> Dem::around() {
+    const std::lock_guard lock(mutex_);
+    return around_;
+}
+
+void Dem::set_around(std::shared_ptr<Dem> around) {
+    const std::lock_guard lock(mutex_);
+    around_ = std::move(around);
+}
+
 std::shared_ptr<const session::LoadedDem> Dem::loaded(const scene::Scene& scene) {
     const std::lock_guard lock(mutex_);
     if (!loaded_ || loaded_holes_ != scene.holes) {
@@ -53,7 +63,7 @@ geo::Geodetic place_of(const relevo_place* given) {
 namespace {
 
 /// Takes the members of the options that say how numbers in memory become heights.
-dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
+dem::Stored take_stored(json::Value& options) {
     json::Value own;
     own.kind = json::Value::Kind::Object;
     const auto is_own = [](const auto& member) {
@@ -65,7 +75,7 @@ dem::Stored take_stored(json::Value& options, const geo::Crs& crs) {
     constexpr double kMost = 1e7;
     dem::Stored stored{.scale = reader.number("scale", 1, -kMost, kMost, false),
                        .offset = reader.number("offset", 0, -kMost, kMost, false),
-                       .unit = crs.vertical() ? "" : "m",
+                       .unit = {},  // as files without one
                        .voids_declared = reader.boolean("voids_known", false)};
     if (stored.scale == 0) reader.fail(reader.line_of("scale"), "scale", "expected another than 0");
     return stored;
@@ -81,7 +91,7 @@ std::shared_ptr<Dem> dem_of(const relevo_raster* given) {
                 static_cast<std::size_t>(heights.columns) * static_cast<std::size_t>(heights.rows));
     const geo::Crs crs = geo::Crs::parse(&need(heights.crs, "heights.crs"), "crs");
     json::Value options = parse_dem(heights.options);
-    const dem::Stored stored = take_stored(options, crs);
+    const dem::Stored stored = take_stored(options);
     dem::MemoryRaster held(heights.heights_m, heights.columns, heights.rows,
                            dem::Affine::of_geotransform(heights.transform), stored);
     scene::Scene named = read_dem({held.name()}, std::move(options));
@@ -121,6 +131,14 @@ relevo_result relevo_dem_from_heights(const relevo_raster* heights, relevo_dem**
 
 void relevo_dem_close(relevo_dem* dem) {
     c::dems().remove(dem);
+}
+
+relevo_result relevo_dem_around(relevo_dem* dem, relevo_dem* around) {
+    return c::guarded("relevo_dem_around", [&] {
+        const auto of = c::dems().get(dem, "dem");
+        if (dem == around) throw c::BadCall{"around: expected another DEM"};
+        of->set_around(around ? c::dems().get(around, "around") : nullptr);
+    });
 }
 
 relevo_result relevo_dem_grid(relevo_dem* dem, relevo_grid* grid) {

@@ -27,6 +27,9 @@ class Dem {
     const dem::Source& source() const { return *source_; }
     /// All posts, for figures. @throws Error as dem::Posts::load()
     const dem::Posts& posts();
+    /// A wider and coarser DEM that shades its rasters, too; null: none.
+    std::shared_ptr<Dem> around();
+    void set_around(std::shared_ptr<Dem> around);
     /// Heights as sessions draw them. @throws Error as session::load_dem()
     std::shared_ptr<const session::LoadedDem> loaded(const scene::Scene& scene);
 
@@ -36,6 +39,7 @@ class Dem {
     std::shared_ptr<const dem::Source> source_;
     std::mutex mutex_;
     std::optional<dem::Posts> posts_;
+    std::shared_ptr<Dem> around_;
     std::shared_ptr<const session::LoadedDem> loaded_;
     dem::Holes loaded_holes_ = dem::Holes::Fill;
 };

@@ -37,7 +37,7 @@ void take(scene::Scene& scene, const json::Value& value, const std::filesystem::
 }  // namespace
 
 Options::Options(const char* text, const std::string& who)
-    : value_(json::parse(who, "options", text ? text : "{}")),
+    : value_(json::parse(who, "options", text ? text : "{}", kMaxBytes)),
       reader_(who, "options", "", value_) {}
 
 void change_scene(scene::Scene& scene, const char* text, const std::filesystem::path& folder) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ class Options {
     Options& operator=(const Options&) = delete;
 
     json::ObjectReader& reader() { return reader_; }
+    /// A walk of a million points has room [bytes].
+    static constexpr std::size_t kMaxBytes = std::size_t{128} << 20;
 
   private:
     json::Value value_;

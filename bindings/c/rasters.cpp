@@ -22,6 +22,7 @@
 #include "figure/raster_run.h"
 #include "figure/run.h"
 #include "figure/shadow.h"
+#include "light/raster/sun_terrain.h"
 #include "options.h"
 #include "session/words.h"
 
@@ -37,7 +38,10 @@ class FigureCall {
   public:
     /// @throws BadCall
     FigureCall(relevo_dem* dem, const relevo_progress* progress, const char** about)
-        : dem_(dems().get(dem, "dem")), progress_(progress), about_(about) {
+        : dem_(dems().get(dem, "dem")),
+          around_(dem_->around()),
+          progress_(progress),
+          about_(about) {
         if (about_) *about_ = nullptr;
     }
     virtual ~FigureCall() = default;
@@ -56,9 +60,11 @@ class FigureCall {
     }
 
     const dem::Posts& posts() { return dem_->posts(); }
+    /// The DEM, or the wider one around it.
+    Dem& whole() { return around_ ? *around_ : *dem_; }
     light::TerrainAccess terrain() {
-        return {.middle = [this] { return dem_->grid().center(); },
-                .posts = [this]() -> const dem::Posts& { return posts(); }};
+        return {.middle = [this] { return whole().grid().center(); },
+                .posts = [this]() -> const dem::Posts& { return whole().posts(); }};
     }
 
     /// Does it, and says what came of it. @throws BadCall
@@ -70,7 +76,7 @@ class FigureCall {
                      : figure::whole_window(dem_->grid());
     }
 
-    std::shared_ptr<Dem> dem_;
+    std::shared_ptr<Dem> dem_, around_;
     Progress progress_;
     const char** about_;
     std::optional<dem::Clip> clip_;
@@ -89,14 +95,17 @@ class RasterCall : public FigureCall {
         check_count("count", count_, band_size() * bands.size());
         const dem::Window window = this->window();
         if (clip_) std::fill_n(values_, count_, std::nanf(""));
-        const std::optional<light::Beyond> beyond = figure.beyond(posts(), window);
+        const dem::Posts* const around = around_ ? &around_->posts() : nullptr;
+        const std::optional<light::Beyond> beyond = figure.beyond(
+            whole().posts(),
+            around ? light::window_over(around->grid(), dem_->grid(), window) : window);
         if (beyond) log::warning(beyond->advice());
         const figure::PartMade made = figure::make_all(
             figure, posts(), window, dem_->named().dem.memory,
             [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
                 put(band, part, values);
             },
-            [this](double share) { progress_.add(share); });
+            [this](double share) { progress_.add(share); }, around);
         if (!about_) return;
         nlohmann::ordered_json json{{"definition", made.definition}, {"holes", made.holes}};
         for (const output::RasterBand& band : bands)
@@ -192,18 +201,48 @@ class TilesCall : public FigureCall {
     figure::RasterRunOptions options_;
 };
 
+/// Suns of "times", each named by its time.
+void take_suns(const json::Value& times, const std::string& zone, FigureCall& call,
+               json::ObjectReader& reader, figure::Shadow& figure) {
+    if (times.items.empty()) reader.fail(times.line, "times", "expected a list of one or more");
+    const sun::Zone of = session::zone_of(zone, call.terrain().middle()).zone;
+    for (const json::Value& time : times.items) {
+        if (time.kind != json::Value::Kind::Number)
+            reader.fail(times.line, "times", "expected numbers");
+        const sun::Instant utc = instant_of(time.number);
+        figure.suns.push_back(
+            figure::sun_over_middle(call.whole().posts(), utc, figure.refraction));
+        figure.names.push_back(sun::to_iso(utc, of));
+    }
+}
+
 void shadow(FigureCall& call, json::ObjectReader& reader) {
+    const json::Value* const times = reader.take("times");
     scene::TimeSpec spec;
-    spec.at = reader.string("time");
+    spec.at = reader.string("time", "");
     spec.date = reader.string("date", "");
     spec.zone = reader.string("zone", "");
+    const std::string sun = reader.string("sun", "");
+    if ((times != nullptr) + !spec.at.empty() + !sun.empty() != 1)
+        reader.fail(reader.line(), "", "expected one of time, times and sun");
+    if (spec.at.empty() && !spec.date.empty())
+        reader.fail(reader.line_of("date"), "date", "needs an event in time");
+    if (!sun.empty() && (!spec.zone.empty() || reader.has("refraction")))
+        reader.fail(reader.line_of("sun"), "sun",
+                    "is a direction as seen, without zone and refraction");
     figure::Shadow figure;
     figure.soft = reader.boolean("soft", false);
     call.take_common(reader, figure);
-    figure.refraction = refraction_of(reader);
+    figure.refraction = sun.empty() ? refraction_of(reader) : "";
     reader.finish();
-    const sun::ParsedTime when = session::parse(spec, call.terrain());
-    figure.suns = {figure::sun_over_middle(call.posts(), when.utc, figure.refraction)};
+    if (times) {
+        take_suns(*times, spec.zone, call, reader, figure);
+    } else if (!sun.empty()) {
+        figure.suns = {figure::sun_as_seen(sun, call.whole().grid())};
+    } else {
+        const sun::ParsedTime when = session::parse(spec, call.terrain());
+        figure.suns = {figure::sun_over_middle(call.whole().posts(), when.utc, figure.refraction)};
+    }
     call.run(figure);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "base/error.h"
 #include "base/held_notices.h"
@@ -73,13 +74,15 @@ void FarGround::write(const std::filesystem::path& folder) const {
         fmt::format("means of {0} x {0} posts of the DEM; for the tasks of this folder", means_));
 }
 
+glm::ivec2 FarGround::width_of(const dem::Grid& grid, double halo_m) {
+    return {glm::ceil(halo_m / grid.post_spacing_m())};
+}
+
 dem::Window FarGround::halo_of(const dem::Grid& grid, double halo_m, const dem::Window& tile) {
-    const glm::dvec2 spacing_m = grid.post_spacing_m();
-    const int columns = static_cast<int>(std::ceil(halo_m / spacing_m.x)),
-              rows = static_cast<int>(std::ceil(halo_m / spacing_m.y));
-    return common(
-        {tile.column - columns, tile.row - rows, tile.columns + 2 * columns, tile.rows + 2 * rows},
-        {0, 0, grid.columns(), grid.rows()});
+    const glm::ivec2 width = width_of(grid, halo_m);
+    return common({tile.column - width.x, tile.row - width.y, tile.columns + 2 * width.x,
+                   tile.rows + 2 * width.y},
+                  {0, 0, grid.columns(), grid.rows()});
 }
 
 void FarGround::require_room(const dem::Grid& grid, double halo_m, const dem::Window& tile,

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "dem/load.h"
 #include "dem/posts.h"
 
@@ -23,6 +25,8 @@ class FarGround {
     /// @throws Error (Usage) that says what to do
     static void require_room(const dem::Grid& grid, double halo_m, const dem::Window& tile,
                              const MemoryBudget& memory);
+    /// Columns and rows of a halo on either side of a tile.
+    static glm::ivec2 width_of(const dem::Grid& grid, double halo_m);
     /// A tile with its halo, as far as the DEM reaches.
     static dem::Window halo_of(const dem::Grid& grid, double halo_m, const dem::Window& tile);
     static constexpr std::int64_t kShareOfOthers = 4;  ///< the fourth part

@@ -58,6 +58,8 @@ class Figure {
     virtual std::vector<output::RasterBand> bands() const = 0;
     /// What a file says of its options. @param posts  of the whole DEM, here and below
     virtual output::RasterMetadata metadata(const dem::Posts& posts) const = 0;
+    /// A part of a sentence, of heights that are true.
+    virtual const char* accuracy() const = 0;
     /// Calls of core's functions that each part takes, as Work::done counts them.
     virtual std::size_t calls() const { return 1; }
     /// Of memory while computing, besides the DEM's heights (measured).

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "figure/accuracy.h"
 #include "figure/figure.h"
 #include "light/raster/horizons.h"
 
@@ -36,6 +37,7 @@ struct SkyView : Directions {
 
     std::vector<output::RasterBand> bands() const override { return {{"sky-view factor", "1"}}; }
     output::RasterMetadata metadata(const dem::Posts& posts) const override;
+    const char* accuracy() const override { return kSkyViewAccuracy; }
     int bytes_a_post() const override { return 22; }
     PartMaker maker(Work work) const override;
 };
@@ -47,6 +49,7 @@ struct Horizons : Directions {
     std::vector<output::RasterBand> bands() const override;
     output::RasterMetadata metadata(const dem::Posts&) const override { return {}; }
     std::size_t calls() const override { return static_cast<std::size_t>(directions); }
+    const char* accuracy() const override { return kHorizonAccuracy; }
     int bytes_a_post() const override { return 12; }
     PartMaker maker(Work work) const override;
 };

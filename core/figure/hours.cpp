@@ -114,6 +114,11 @@ output::RasterMetadata Hours::metadata(const dem::Posts& posts) const {
             {"REFRACTION", air_of_posts(refraction, posts)}};
 }
 
+const char* Hours::accuracy() const {
+    const bool few = time.end - time.begin <= light::SunHoursOptions::kMostDays * 86400.0;
+    return few ? kDaysAccuracy : kManyDaysAccuracy;
+}
+
 int Hours::bytes_a_post() const {
     return (has_spells() ? 44 : 22) + (has_irradiation() ? 32 : 0);
 }

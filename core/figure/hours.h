@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figure/accuracy.h"
 #include "figure/figure.h"
 #include "light/raster/sun_hours.h"
 #include "sun/zone.h"
@@ -20,6 +21,7 @@ struct Hours : Figure {
 
     std::vector<output::RasterBand> bands() const override;
     output::RasterMetadata metadata(const dem::Posts& posts) const override;
+    const char* accuracy() const override;
     int bytes_a_post() const override;
     double halo_m(const dem::Posts& posts) const override;
     std::optional<light::Beyond> beyond(const dem::Posts& posts,

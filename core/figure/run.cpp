@@ -15,6 +15,7 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
     output::RasterMetadata about{
         {"TIFFTAG_SOFTWARE", "Relevo " + version},
         {"DEFINITION", made.definition},
+        {"ACCURACY", std::string(figure.accuracy()) + "; errors of the heights come on top"},
         {"DEM", posts.about().path},
         {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", figure.terrestrial_refraction)},
         {"HOLES", fmt::format("{}", made.holes)}};
@@ -77,11 +78,13 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
 }
 
 PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
-                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done) {
+                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done,
+                  const dem::Posts* around) {
     double share = 1;  // of a call
     const PartMaker make = figure.maker({.posts = posts,
+                                         .around = around,
                                          .window = all,
-                                         .middle = posts.grid().center(),
+                                         .middle = (around ? *around : posts).grid().center(),
                                          .put = std::move(put),
                                          .done = [&](double of_call) {
                                              if (done) done(share * of_call);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figure/accuracy.h"
 #include "figure/figure.h"
 #include "figure/sun_over_middle.h"
 
@@ -21,6 +22,7 @@ struct Shadow : Figure {
     }
     std::vector<output::RasterBand> bands() const override;
     output::RasterMetadata metadata(const dem::Posts& posts) const override;
+    const char* accuracy() const override { return kShadowAccuracy; }
     std::size_t calls() const override { return suns.size(); }
     int bytes_a_post() const override { return 8; }
     /// The lowest sun casts the longest shadows.

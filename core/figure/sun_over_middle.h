@@ -25,6 +25,9 @@ struct SunOverMiddle {
 SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
                               const std::string& refraction);
 
+/// The sun by "AZ,EL" or "grid:AZ,EL" in degrees, as it is seen. @throws Error (Usage)
+SunOverMiddle sun_as_seen(const std::string& text, const dem::Grid& grid);
+
 /// Direction and time of the sun.
 output::RasterMetadata metadata_of(const SunOverMiddle& sun);
 

@@ -140,16 +140,16 @@ std::string describe(const Value& value) {
     }
 }
 
-Value parse(std::string_view who, std::string_view file, std::string_view text) {
+Value parse(std::string_view who, std::string_view file, std::string_view text, std::size_t most) {
     // A syntax error in a file of another kind, for example a DEM, would not help.
     std::string_view begin = text.substr(0, 512);
     if (begin.starts_with("\xef\xbb\xbf")) begin.remove_prefix(3);
     begin = trimmed(begin);
     if (!begin.empty() && std::string_view("{[\"-0123456789tfn").find(begin[0]) == begin.npos)
         bad_input(fmt::format("{}: {}: not JSON, expected a file that begins with {{", who, file));
-    if (text.size() > kMaxBytes)
-        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", who, file,
-                              kMaxBytes >> 10, (text.size() + 1023) >> 10));
+    if (text.size() > most)
+        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", who, file, most >> 10,
+                              (text.size() + 1023) >> 10));
     int line = 1;
     Builder builder(who, file, line);
     nlohmann::json::sax_parse(LineCountingIterator(text.data(), &line),

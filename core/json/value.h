@@ -36,8 +36,10 @@ inline constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
 /// @param who   begins messages: "scene"
 /// @param file  its name for messages
+/// @param most  bytes of a text
 /// @throws Error (BadInput) `who: file:line: ...` for a syntax error, bytes that are not UTF-8, a
-///         duplicate key, and a text of more than kMaxBytes
-Value parse(std::string_view who, std::string_view file, std::string_view text);
+///         duplicate key, and a longer text
+Value parse(std::string_view who, std::string_view file, std::string_view text,
+            std::size_t most = kMaxBytes);
 
 }  // namespace relevo::json

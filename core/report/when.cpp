@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
@@ -34,13 +35,19 @@ When when(const View& view, const WhenOptions& options, const Days& asked, const
     When result;
     result.asked = asked;
     result.horizon = std::make_unique<light::TerrainHorizon>(posts, at.place, view.horizon(at));
+    result.body = view.body;
     light::AlignmentOptions wanted;
+    wanted.body = view.body;
     wanted.tolerance_rad = radians(options.tolerance_deg);
     wanted.refraction = view.air(result.horizon->place());
     result.found =
         light::alignments(*result.horizon, target, asked.first, asked.last, asked.zone, wanted);
     result.doubt = light::doubt_of(*result.horizon, result.found, view.highest_m);
     return result;
+}
+
+std::string visible_key(sun::Body body) {
+    return fmt::format("{}_visible", sun::name_of(body));
 }
 
 std::string json_of(const When& result) {
@@ -70,7 +77,7 @@ std::string json_of(const When& result) {
                             {"above_deg", angle_deg(p.above_rad)},
                             {"azimuth_deg", angle_deg(p.azimuth_rad)},
                             {"apparent_elevation_deg", angle_deg(p.elevation_rad)},
-                            {"sun_visible", p.sun_visible}});
+                            {visible_key(result.body), p.sun_visible}});
         if (p.hole) passages.back()["hole"] = true;
     }
     return json.dump();
@@ -79,8 +86,9 @@ std::string json_of(const When& result) {
 void warn_of(const When& result) {
     if (result.through_hole())
         log::warning(
-            "the DEM has voids in the way: ground in them could hide the summit or the sun over "
-            "it; use a DEM without voids");
+            fmt::format("the DEM has voids in the way: ground in them could hide the summit or the "
+                        "{} over it; use a DEM without voids",
+                        sun::name_of(result.body)));
     warn_of(result.doubt);
 }
 

@@ -9,7 +9,7 @@
 
 namespace relevo::report {
 
-/// When the sun stands over a summit.
+/// When sun or moon stand over a summit.
 struct WhenOptions {
     std::string over;  ///< LAT,LON for the highest post nearby, or LAT,LON,H for that point
     double summit_radius_m = 100, tolerance_deg = 0.5;
@@ -23,15 +23,18 @@ struct When {
     light::Alignments found;
     Days asked;
     light::Doubt doubt;  ///< of terrain beyond the DEM
+    sun::Body body = sun::Body::Sun;
 
     /// Whether a void of the DEM is in the way.
     bool through_hole() const;
 };
 
-/// @param target  as WhenOptions::target()
+/// Of View::body. @param target  as WhenOptions::target()
 When when(const View& view, const WhenOptions& options, const Days& asked, const geo::PlaceText& at,
           const dem::Posts& posts, const geo::Geodetic& target);
 std::string json_of(const When& result);
+/// Of a passage: "sun_visible", "moon_visible".
+std::string visible_key(sun::Body body);
 /// Warns of voids and of terrain beyond the DEM.
 void warn_of(const When& result);
 

@@ -118,6 +118,11 @@ RELEVO_API relevo_result relevo_dem_from_heights(const relevo_raster* heights, r
 /* Sessions and calls under way keep what they need. */
 RELEVO_API void relevo_dem_close(relevo_dem* dem);
 
+/* From now on rasters of a DEM are shaded also by the ground of a wider and coarser one around it.
+ * Times and zones of the middle are those of the wider one. Since 0.2.
+ * @param around  null: none */
+RELEVO_API relevo_result relevo_dem_around(relevo_dem* dem, relevo_dem* around);
+
 typedef struct relevo_grid {
     size_t size;
     int32_t columns, rows;
@@ -190,14 +195,19 @@ RELEVO_API relevo_result relevo_horizon(relevo_dem* dem, const relevo_place* pla
                                         size_t count, double* elevation_deg, double* distance_m);
 
 /* A figure of a place, as the program says it with --json. Since 0.2.
- * @param dem      null for figures without terrain; "sun carpet" and "sun when" need one
+ * @param dem      null for figures without terrain; the carpet, "when" and "along" need one
  * @param figure   "sun position", "moon position": {"positions": [...]} of "times" (a list)
  *     "sun day", "moon day", "sun eclipses": of "date", or "from" and "to", or "year"; of days
  *     always as {"days": [...]}
  *     "sun carpet": of a "year"; "step" [s] (180)
- *     "sun when": of days; "over" ("LAT,LON", "LAT,LON,H"), "summit_radius" [m] (100),
+ *     "sun when", "moon when": of days; "over" ("LAT,LON", "LAT,LON,H"), "summit_radius" [m] (100),
  *     "tolerance" [degrees] (0.5)
- * @param options  all: "lat", "lon" [degrees], "height" [m above sea level]; "refraction"
+ *     "sun along": of a "walk", not of a place: [[lat, lon], ...] with "times" (a list) or without,
+ *     or a file (GPX, GeoJSON, CSV) with "track" (from 1) and "points_crs"; "start", "speed" [km/h]
+ *     (the walk's own times), "name"; "zone", "eye_height", "terrestrial_refraction", "highest"
+ *     "halo": how many "columns" and "rows" a halo of so many km has around a tile, and of how many
+ *     posts a side the "means" of ground beyond may be, for relevo_dem_around(); without others
+ * @param options  others: "lat", "lon" [degrees], "height" [m above sea level]; all: "refraction"
  *     with days: "zone", "eye_height" [m above the ground], "terrestrial_refraction", "highest";
  *     of risings and light: "limb" ("upper", "center", "lower"), "dip" [degrees] (not the carpet)
  * @param answer   receives JSON */
@@ -219,7 +229,10 @@ RELEVO_API relevo_result relevo_answer(relevo_dem* dem, const char* figure, cons
 
 /* Light and shade at a time: 1 lit, 0 in the shadow of the ground.
  * @param options  "time" ("2026-06-21T18:30+02:00", "sunset-30min at 47.2,11.4"), "date", "zone" as
- *     `time` of a scene; "soft" (false): the visible fraction of the sun's disc */
+ *     `time` of a scene; or "times", a list of seconds since 1970, a band for each; or "sun", as it
+ *     is seen ("AZ,EL", "grid:AZ,EL") (both since 0.2); "soft" (false): the visible fraction of
+ *     the sun's disc
+ * @param count    columns * rows * number of times */
 RELEVO_API relevo_result relevo_shadow(relevo_dem* dem, const char* options, float* lit,
                                        size_t count, const relevo_progress* progress,
                                        const char** about);

@@ -39,6 +39,7 @@ TEST(BadCalls, NullIsAnError) {
         relevo_sun_events(nullptr, nullptr, nullptr, nullptr, 1, nullptr),
         relevo_horizon(nullptr, nullptr, nullptr, nullptr, 1, nullptr, nullptr),
         relevo_answer(nullptr, nullptr, nullptr, nullptr),
+        relevo_dem_around(nullptr, nullptr),
         relevo_shadow(nullptr, nullptr, nullptr, 0, nullptr, nullptr),
         relevo_sun_hours(nullptr, R"({"date": "2026-06-21"})", nullptr, 0, nullptr, nullptr),
         relevo_sky_view(nullptr, nullptr, nullptr, 0, nullptr, nullptr),

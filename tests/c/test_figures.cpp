@@ -315,7 +315,7 @@ TEST_F(Figures, AnswersAreThoseOfTheProgram) {
     EXPECT_EQ(nlohmann::json::parse(answer)["days"].size(), 1U);
     expect_error(relevo_answer(nullptr, "sun dial", nullptr, &answer), RELEVO_RESULT_BAD_INPUT,
                  "figure: expected one of sun position, sun day, sun eclipses, sun carpet, sun "
-                 "when, moon position, moon day but got sun dial");
+                 "when, sun along, moon position, moon day, moon when, halo but got sun dial");
     EXPECT_EQ(answer, nullptr);
     expect_error(relevo_answer(nullptr, "sun carpet",
                                R"({"lat": 47, "lon": 8, "year": 2026, "zone": "UTC"})", &answer),

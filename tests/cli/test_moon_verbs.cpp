@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -120,6 +122,42 @@ TEST(MoonHorizonVerb, DrawsThePathOfItsDay) {
               "relevo: time zone America/New_York of the place; --tz sets another\n"
               "relevo: error: --from, --to and --year: a panorama shows one day of the moon; pass "
               "--date\n");
+}
+
+TEST(MoonWhenVerb, FindsTheMoonOverASummit) {
+    std::vector<std::string> arguments{"moon",
+                                       "when",
+                                       dem(),
+                                       "--at",
+                                       "36.2,-84.15",
+                                       "--over",
+                                       "36.1983,-84.2306",
+                                       "--tolerance",
+                                       "2",
+                                       "--tz",
+                                       "UTC",
+                                       "--from",
+                                       "2026-03-01",
+                                       "--to",
+                                       "2026-04-30",
+                                       "--summit-radius",
+                                       "500",
+                                       "-q"};
+    const json found = json_of(arguments);
+    ASSERT_GE(found["passages"].size(), 2U);
+    for (const json& p : found["passages"]) {
+        EXPECT_LE(p["separation_deg"].get<double>(), 2);
+        EXPECT_TRUE(p["moon_visible"].is_boolean() && !p.contains("sun_visible"));
+        const json there = json_of(
+            {"moon", "position", "--at", "36.2,-84.15,300", "--time", p["utc"].get<std::string>()});
+        EXPECT_NEAR(there["azimuth_deg"].get<double>(), p["azimuth_deg"].get<double>(), 0.002);
+    }
+    EXPECT_NE(found["definition"].get<std::string>().find("of the moon's centre"),
+              std::string::npos);
+    const Result text = relevo(arguments);
+    EXPECT_EQ(text.out.find("sun"), std::string::npos) << text.out;
+    arguments.emplace_back("--csv");
+    EXPECT_NE(relevo(arguments).out.find(",moon_visible\n"), std::string::npos);
 }
 
 TEST(SunEclipsesVerb, HasContactsAndWhatIsSeen) {

@@ -42,6 +42,8 @@ std::vector<std::vector<std::string>> verbs() {
             {"sun", "day", bundled_dem(), "--from", "2026-02-10", "--to", "2026-02-11"},
             {"sun", "horizon", bundled_dem(), "--step", "10"},
             {"sun", "when", bundled_dem(), "--over", "36.38,-84.27", "--tolerance", "2", "--from",
+             "2026-05-01", "--to", "2026-05-31"},
+            {"moon", "when", bundled_dem(), "--over", "36.38,-84.27", "--tolerance", "2", "--from",
              "2026-05-01", "--to", "2026-05-31"}};
 }
 

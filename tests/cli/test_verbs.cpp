@@ -27,7 +27,8 @@ TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
                                                {"sun", "horizon"},
                                                {"sun", "carpet"},
                                                {"sun", "when"},
-                                               {"sun", "along"}}) {
+                                               {"sun", "along"},
+                                               {"moon", "when"}}) {
         std::vector<std::string> arguments = verb;
         arguments.emplace_back("--help");
         std::string name = verb.front();

@@ -9,6 +9,7 @@ import pytest
 import rasterio
 
 import relevo
+from conftest import SOURCE
 
 MADE = {
     "hours of a day": lambda sun: sun.hours("2026-06-21"),
@@ -138,6 +139,15 @@ def test_rasters_carry_what_the_program_writes(small, program, tmp_path):
     assert json.loads(raster.about["dem_files"]) == [small.name]
 
 
+@pytest.mark.parametrize("what", ["hours of a day", "shadow", "horizons", "sky view", "ten days"])
+def test_the_accuracy_is_that_of_the_docs(small, what):
+    made = MADE.get(what, lambda sun: sun.hours(start="2026-03-01", end="2026-03-10"))
+    said, heights = str(made(small.sun).about["accuracy"]).split("; ")
+    assert heights == "errors of the heights come on top"
+    page = " ".join((SOURCE / "docs/accuracy-sun-rasters.md").read_text(encoding="utf-8").split())
+    assert f": {said} " in page
+
+
 def test_words_of_cf(dem):
     pytest.importorskip("pyproj", reason="needs python3-pyproj")
     light = dem.sun.hours("2026-06-21", bands="global").to_xarray()
@@ -146,9 +156,16 @@ def test_words_of_cf(dem):
     assert light.spatial_ref.attrs["grid_mapping_name"] == "latitude_longitude"
     assert light.encoding["grid_mapping"] == "spatial_ref"
     assert all(isinstance(value, (str, int, float)) for value in light.attrs.values())
+    for made in (dem.sun.hours("2026-06-21", bands=["hours", "global"]), dem.sun.horizons(4), dem.sun.sky_view(4)):
+        assert made.to_xarray().attrs["long_name"]
+    assert dem.sun.horizons(4).to_xarray().attrs["units"] == "degree"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         hill = relevo.open(numpy.eye(9) * 99, transform=(30, 0, 600000, 0, -30, 5200000), crs="EPSG:32632")
         lit = hill.sun.shadow("2026-06-21T12:00Z").to_xarray()
     assert lit.x.attrs["standard_name"] == "projection_x_coordinate" and lit.x.attrs["units"] == "metre"
     assert lit.spatial_ref.attrs["grid_mapping_name"] == "transverse_mercator"
+    stack = hill.sun.shadow(times=["2026-06-21T12:00Z", "2026-06-21T13:00:30Z"])
+    for time in (stack.to_xarray().time, stack[stack.bands[1]].to_xarray().time):
+        assert time.attrs["standard_name"] == "time" and time.encoding["dtype"] == "float64"  # CF has no int64
+        assert str(time.values.ravel()[-1])[:19] == "2026-06-21T13:00:30"

@@ -17,9 +17,9 @@ FUNCTIONS = {
     "sun eclipses": relevo.SunOverDem.eclipses, "sun carpet": relevo.SunOverDem.carpet, "sun when": relevo.SunOverDem.when,
     "sun shadow": relevo.SunOverDem.shadow, "sun hours": relevo.SunOverDem.hours, "sun sky-view": relevo.SunOverDem.sky_view,
     "sun horizons": relevo.SunOverDem.horizons, "moon position": relevo.moon.position, "moon day": relevo.MoonOverDem.day,
-    "moon horizon": relevo.MoonOverDem.horizon,
+    "moon horizon": relevo.MoonOverDem.horizon, "moon when": relevo.MoonOverDem.when, "sun along": relevo.SunOverDem.along,
 }  # fmt: skip
-STAY_COMMANDS = {"sun plane", "sun along"}
+STAY_COMMANDS = {"sun plane"}
 # Options of other names, and those that are no argument: files, tables, drawings, and what Python has otherwise.
 NAMES = {"from": ["start"], "to": ["end"], "at": ["lat", "lon"]}
 OTHERWISE = {
@@ -28,13 +28,13 @@ OTHERWISE = {
 }  # fmt: skip
 OF_COMMAND = {
     "sun position": {"time", "date"},  # times, and no events
-    "sun shadow": {"sun", "times", "at"},  # one time
+    "sun shadow": {"at"},
     # Of the panorama alone.
     "sun horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},
     "moon horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},
     "moon position": {"time", "date"},
 }
-ONLY_PYTHON = {"self", "progress", "times", "azimuth", "height", "lat", "lon"}
+ONLY_PYTHON = {"self", "progress", "times", "azimuth", "height", "lat", "lon", "walk"}
 OF_OPEN = {"source", "transform", "memory_mib", "holes"}
 
 

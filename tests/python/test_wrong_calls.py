@@ -23,7 +23,9 @@ CALLS = {
     "Dem.sun.carpet": (lambda dem: dem.sun.carpet, {**PLACE, "year": 2026, "step": 3600}),
     "Dem.sun.when": (lambda dem: dem.sun.when, {**PLACE, **DAY, "over": (47.0002, 9.0002)}),
     "Dem.sun.horizon": (lambda dem: dem.sun.horizon, {**PLACE, "step": 90.0}),
+    "Dem.sun.along": (lambda dem: dem.sun.along, {"walk": [[47.0, 9.0], [47.0002, 9.0002]], "start": "2026-06-21T12:00Z", "speed": 4}),
     "Dem.moon.day": (lambda dem: dem.moon.day, {**PLACE, **DAY}),
+    "Dem.moon.when": (lambda dem: dem.moon.when, {**PLACE, **DAY, "over": (47.0002, 9.0002)}),
     "Dem.moon.horizon": (lambda dem: dem.moon.horizon, {**PLACE, "step": 90.0}),
     "Dem.sun.hours": (lambda dem: dem.sun.hours, {**DAY, "bands": ["hours", "global"]}),
     "Dem.sun.shadow": (lambda dem: dem.sun.shadow, {"time": "2026-06-21T12:00Z"}),
@@ -38,7 +40,7 @@ ALSO = {"times": "time", "azimuth": "azimuth_deg"}
 def wrong_values(name, annotation):
     """Values that an argument of this type never takes."""
     yield object()
-    if name in ("progress", "bands"):
+    if name in ("progress", "bands", "name"):
         return
     if re.search(r"\bfloat\b|ArrayLike", annotation):
         yield from ("x", float("nan"), *([1e300] if name != "azimuth" else []))

@@ -80,7 +80,8 @@ def test_chunked_arrays_are_lazy(heights, monkeypatch):
     pytest.importorskip("dask.array", reason="needs python3-dask")
     opened = []
     opens = relevo.xarray.open
-    monkeypatch.setattr(relevo.xarray, "open", lambda source: opened.append(source.shape) or opens(source))
+    for module in (relevo.xarray, relevo._lazy):
+        monkeypatch.setattr(module, "open", lambda source: opened.append(source.shape) or opens(source))
     chunked = heights.chunk({"y": 100, "x": 150})
     days = {"start": "2026-03-20", "end": "2026-03-22", "bands": ["hours", "global"]}
     lazy = chunked.relevo.hours(**days)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from ._dem import Dem, open
 from ._errors import BadInput
 from ._raster import Raster
+from ._sun_over_dem import shadow_options, time_names
 
 if TYPE_CHECKING:
     import xarray
@@ -48,7 +49,8 @@ def again(
 
 def _made(dem: Dem, figure: str, options: dict[str, Any], alone: bool) -> Raster:
     if figure != "horizons":
-        return dem.sun._raster(figure, options.get("bands", [figure]), alone, options, None)
+        names = time_names(shadow_options(options)["times"]) if "times" in options else options.get("bands", [figure])
+        return dem.sun._raster(figure, names, alone, options, None)
     band = options.pop("bands", [])
     every = dem.sun.horizons(**_keywords(options, "directions", "terrestrial_refraction", "highest", "clip", "clip_crs"))
     if band and band[0] not in every.bands:

@@ -53,11 +53,11 @@ Eclipse = TypedDict("Eclipse", {
     "second_contact": Moment, "greatest": Moment, "third_contact": Moment, "last_contact": Moment,
     "greatest_seen": Optional[Moment], "direct_sun": list[Span], "not_known": list[Span], "not_known_h": float,
 }, total=False)
-# The sun at its closest to a summit. right_deg, above_deg: of its centre, from the summit.
+# Sun or moon at its closest to a summit. right_deg, above_deg: of its centre, from the summit. Of the moon moon_visible.
 Passage = TypedDict("Passage", {
     "utc": _Time, "local": str, "date": str, "separation_deg": float, "right_deg": float, "above_deg": float,
-    "azimuth_deg": float, "apparent_elevation_deg": float, "sun_visible": bool,
-})
+    "azimuth_deg": float, "apparent_elevation_deg": float, "sun_visible": bool, "moon_visible": bool,
+}, total=False)
 SunDays = TypedDict("SunDays", {
     "place": Place, "zone": str, "definition": str, "days": list[SunDay], "seasons": list[_Some],
 })
@@ -72,6 +72,17 @@ Carpet = TypedDict("Carpet", {
 When = TypedDict("When", {
     "place": Place, "zone": str, "eye_m": float, "target": Place, "sight": _Numbers, "definition": str,
     "passages": list[Passage],
+})
+WalkEnd = TypedDict("WalkEnd", {
+    "utc": _Time, "local": str, "distance_m": float, "lat_deg": float, "lon_deg": float,
+})
+# light: "sun", "terrain", "night", "not_known".
+Stretch = TypedDict("Stretch", {"light": str, "from": WalkEnd, "to": WalkEnd})
+# Under each light duration_h, length_m, time_share and length_share. spacing_m, step_s: largest, between samples.
+Along = TypedDict("Along", {
+    "name": str, "zone": str, "definition": str, "refraction": str, "spacing_m": float, "step_s": float,
+    "length_m": float, "duration_h": float, "sun": _Numbers, "terrain": _Numbers, "night": _Numbers,
+    "not_known": _Numbers, "stretches": list[Stretch],
 })
 
 # Of a raster: memory_mib of the process, computing_s on `threads`, of which sampled_share was done to tell.
@@ -89,9 +100,13 @@ def _with_times(found: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def answer(dem: Optional[Dem], figure: str, options: dict[str, Any]) -> Any:
+def answer(dem: Optional[Dem], figure: str, arguments: dict[str, Any]) -> Any:
     """A figure of the library by arguments of Python."""
+    return library_answer(dem, figure, library_options(arguments))
+
+
+def library_answer(dem: Optional[Dem], figure: str, options: dict[str, Any]) -> Any:
+    """A figure of the library by its own options."""
     handle = None if dem is None else dem._handle
-    text = options_text(library_options(options))
     with messages():
-        return json.loads(_relevo.answer(handle, figure, text), object_hook=_with_times)
+        return json.loads(_relevo.answer(handle, figure, options_text(options)), object_hook=_with_times)

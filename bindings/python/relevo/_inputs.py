@@ -149,7 +149,7 @@ def of_dataarray(array: Any, transform: Any, crs: Any, nodata: Nodata, unit: Opt
         raise BadInput(f"heights: expected rows before columns but got {array.dims}; array.T has them so")
     if unit is None and isinstance(array.attrs.get("units"), str):
         unit = _unit_of(array.attrs["units"])
-    void = _void_of(nodata, _declared_void(array))
+    void = _void_of(nodata, declared_void(array))
     if transform is None:
         transform = _transform_of(array)
     if crs is None:
@@ -173,7 +173,7 @@ def _unit_of(text: str) -> Optional[str]:
     return None if text in ("", "1") else text
 
 
-def _declared_void(array: Any) -> Optional[float]:
+def declared_void(array: Any) -> Optional[float]:
     """What the attributes say, or what xarray and rioxarray have made NaN of."""
     for value in (array.attrs.get("_FillValue"), array.attrs.get("nodata")):
         try:

@@ -84,7 +84,9 @@ class Raster:
         one = slice(i, i + 1)
         about = dict(self.about)
         if self.values.ndim == 3:
-            about["options"] = json.dumps({**json.loads(str(about["options"])), "bands": [band]})
+            options = json.loads(str(about["options"]))
+            own = {"times": [options["times"][i]]} if "times" in options else {"bands": [band]}
+            about["options"] = json.dumps({**options, **own})
         return Raster(
             values, self.transform, self.crs, self.wkt, self.bands[one], self.names[one], self.units[one], about
         )

@@ -56,6 +56,7 @@ _SAID = POINTER(c_char_p)
 _dem_open = function("relevo_dem_open", POINTER(c_char_p), c_size_t, _TEXT, _RECEIVED)
 _dem_from_heights = function("relevo_dem_from_heights", POINTER(_Raster), _RECEIVED)
 _dem_close = function("relevo_dem_close", _HANDLE, result=None)
+_dem_around = function("relevo_dem_around", _HANDLE, _HANDLE)
 _dem_grid = function("relevo_dem_grid", _HANDLE, POINTER(_Grid))
 _dem_crs = function("relevo_dem_crs", _HANDLE, _SAID)
 _dem_wkt = function("relevo_dem_wkt", _HANDLE, _SAID)
@@ -101,6 +102,10 @@ class Dem(Handle):
 
     def __init__(self, address: Address) -> None:
         super().__init__(address, _dem_close, "dem")
+
+    def set_around(self, wider: Dem) -> None:
+        """Ground of a wider and coarser DEM shades rasters, too."""
+        call(_dem_around, self.address, wider.address)
 
     def grid(
         self,

@@ -5,20 +5,21 @@ from __future__ import annotations
 import datetime
 import json
 import os
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
-from ._answers import Carpet, Estimate, Tiles, When, answer
+from ._answers import Along, Carpet, Estimate, Tiles, When, answer, library_answer
 from ._clip import Clip, part_of
 from ._errors import BadInput, messages, number, numbers
-from ._inputs import Crs
+from ._inputs import Crs, crs_text
 from ._options import library_options, options_text
 from ._places import OfMoon, OfSun
 from ._raster import Raster, band_list, empty
-from ._times import Date, Time, Zone, time_text
+from ._times import Date, Time, Times, Zone, seconds, time_text, utc
 
 if TYPE_CHECKING:
     import pandas
@@ -47,10 +48,33 @@ class Horizon(NamedTuple):
         return pandas.Series(self.elevation, index, name="horizon_elevation")
 
 
+def shadow_options(options: dict[str, Any]) -> dict[str, Any]:
+    """Options of the library by arguments or options, with the library's times and sun."""
+    options = library_options(options)
+    zone = options.get("zone")
+    if "time" in options:
+        options["time"] = time_text(options["time"], zone)
+    if "times" in options:
+        options["times"] = numpy.atleast_1d(seconds(options["times"], zone)).ravel().tolist()
+    if "sun" in options and not isinstance(options["sun"], str):
+        try:
+            azimuth, elevation = options["sun"]
+            options["sun"] = f"{float(azimuth)!r},{float(elevation)!r}"
+        except (TypeError, ValueError):
+            raise BadInput(f"sun: expected (azimuth, elevation) but got {options['sun']!r}") from None
+    return options
+
+
+def time_names(times: list[float]) -> list[str]:
+    """Of bands: "2026-12-21T14:00:00Z"."""
+    return [f"{utc(round(one)).isoformat()[:19]}Z" for one in times]
+
+
 class _OverDem:
     """What figures of sun and moon have in common."""
 
     _dem: Dem
+    _body: str
 
     def horizon(
         self, lat: float, lon: float, *, eye_height: float = 0.0, step: float = 1.0,
@@ -76,6 +100,28 @@ class _OverDem:
         with messages():
             self._dem._handle.horizon(number("lat", lat), number("lon", lon), options, azimuths, elevation, distance)
         return Horizon(azimuths, elevation, distance)
+
+    def when(
+        self, lat: float, lon: float, over: Union[tuple[float, float], tuple[float, float, float]],
+        date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
+        year: Optional[int] = None, tz: Optional[Zone] = None, summit_radius: Optional[float] = None,
+        tolerance: Optional[float] = None, height: Optional[float] = None, eye_height: Optional[float] = None,
+        refraction: Optional[str] = None, terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None,
+    ) -> When:
+        """When sun or moon stand over a summit, seen from a place. Other arguments are those of `day()`.
+
+        over: (lat, lon) for the highest post nearby, or (lat, lon, height) for that point
+        summit_radius: in which that post is searched [m] (100)
+        tolerance: largest distance of its centre [degrees] (0.5)
+        """
+        options = library_options(locals())
+        try:
+            options["over"] = ",".join(repr(float(number)) for number in over)
+        except (TypeError, ValueError):
+            raise BadInput(f"over: expected (lat, lon) or (lat, lon, height) but got {over!r}") from None
+        found: When = answer(self._dem, f"{self._body} when", options)
+        return found
 
 
 class MoonOverDem(OfMoon, _OverDem):
@@ -132,18 +178,24 @@ class SunOverDem(OfSun, _OverDem):
         return self._raster("sun_hours", options["bands"], alone, options, progress)
 
     def shadow(
-        self, time: Time, *, date: Optional[Date] = None, tz: Optional[Zone] = None, soft: bool = False,
-        terrestrial_refraction: Optional[float] = None, refraction: Optional[str] = None,
+        self, time: Optional[Time] = None, *, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, tz: Optional[Zone] = None,
+        soft: bool = False, terrestrial_refraction: Optional[float] = None, refraction: Optional[str] = None,
         highest: Optional[float] = None, clip: Optional[Clip] = None, clip_crs: Optional[Crs] = None,
         progress: Optional[Progress] = None,
     ) -> Raster:
-        """Light and shade at a time: 1 in light, 0 in the shadow of the ground.
+        """Light and shade: 1 in light, 0 in the shadow of the ground. One of these:
 
         time, date, tz: as in `Dem.view()`
+        times: a list, as in `relevo.sun.position`: values of (times, rows, columns), a band for each, named by its
+            time in `tz`
+        sun: (azimuth, elevation) as the sun is seen [degrees], or "grid:AZ,EL" from the north of the grid
+
         soft: the visible fraction of the solar disc instead
         """
-        options = {**library_options(locals()), "time": time_text(time, tz)}
-        return self._raster("shadow", ["shadow"], True, options, progress)
+        options = shadow_options(locals())
+        names = ["shadow"] if times is None else time_names(options["times"])
+        return self._raster("shadow", names, times is None, options, progress)
 
     def sky_view(
         self, directions: Optional[int] = None, *, level: bool = False, terrestrial_refraction: Optional[float] = None,
@@ -185,30 +237,49 @@ class SunOverDem(OfSun, _OverDem):
         found: Carpet = answer(self._dem, "sun carpet", locals())
         return found
 
-    def when(
-        self, lat: float, lon: float, over: Union[tuple[float, float], tuple[float, float, float]],
-        date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
-        year: Optional[int] = None, tz: Optional[Zone] = None, summit_radius: Optional[float] = None,
-        tolerance: Optional[float] = None, height: Optional[float] = None, eye_height: Optional[float] = None,
-        refraction: Optional[str] = None, terrestrial_refraction: Optional[float] = None,
-        highest: Optional[float] = None,
-    ) -> When:
-        """When the sun stands over a summit, seen from a place. Other arguments are those of `day()`.
+    def along(
+        self, walk: Union[str, os.PathLike[str], ArrayLike], *, times: Optional[Times] = None,
+        start: Optional[Time] = None, speed: Optional[float] = None, tz: Optional[Zone] = None,
+        track: Optional[int] = None, points_crs: Optional[Crs] = None, name: Optional[str] = None,
+        eye_height: Optional[float] = None, refraction: Optional[str] = None,
+        terrestrial_refraction: Optional[float] = None, highest: Optional[float] = None,
+    ) -> Along:
+        """Where a walk is in the sun. Other arguments are those of `day()`.
 
-        over: (lat, lon) for the highest post nearby, or (lat, lon, height) for that point
-        summit_radius: in which that post is searched [m] (100)
-        tolerance: largest distance of the sun's centre [degrees] (0.5)
+        walk: (points, 2) of (lat, lon), or a GPX, GeoJSON or CSV
+        times: of an array's points, in order, as in `relevo.sun.position`
+        start: when it begins, instead of its own times: as `time` of `Dem.view()`; events at its first point with
+            their date, "2026-02-10 sunrise"
+        speed: on the map [km/h]. None: by its own times, which start alone shifts.
+        tz: of texts and datetimes without a zone. None: that of the first point.
+        track: number of the track in a file, from 1
+        points_crs: of columns x and y in a CSV
         """
-        options = library_options(locals())
+        options = library_options({**locals(), "start": None, "times": None})
+        if isinstance(walk, (str, os.PathLike)):
+            options["walk"] = os.fspath(walk)
+        else:
+            places = numbers("walk", walk)
+            if places.ndim != 2 or places.shape[1] != 2:
+                raise BadInput(f"walk: expected an array of (points, 2) or a file but got {places.shape}")
+            options["walk"] = places
+        if times is not None:
+            options["times"] = numpy.atleast_1d(seconds(times, tz))
+        if start is not None:
+            options["start"] = time_text(start, tz, "start")
+        if points_crs is not None:
+            options["points_crs"] = crs_text(points_crs, "points_crs")
         try:
-            options["over"] = ",".join(repr(float(number)) for number in over)
-        except (TypeError, ValueError):
-            raise BadInput(f"over: expected (lat, lon) or (lat, lon, height) but got {over!r}") from None
-        found: When = answer(self._dem, "sun when", options)
+            found: Along = library_answer(self._dem, "sun along", options)
+        except BadInput as error:
+            if start is None:
+                raise
+            raise BadInput(re.sub("^time:", "start:", str(error)).replace(" or pass date=", "")) from None
         return found
 
     def estimate(
-        self, figure: str, *, time: Optional[Time] = None, date: Optional[Date] = None, start: Optional[Date] = None,
+        self, figure: str, *, time: Optional[Time] = None, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None,
         end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
         linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
@@ -225,8 +296,8 @@ class SunOverDem(OfSun, _OverDem):
 
     def tiles(
         self, figure: str, folder: Union[str, os.PathLike[str]], *, tiles: int = 512, halo: Optional[float] = None,
-        resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, date: Optional[Date] = None,
-        start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
+        resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
         linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
         directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
@@ -257,8 +328,7 @@ class SunOverDem(OfSun, _OverDem):
         del options["figure"]
         if "bands" in options:
             options["bands"], _ = band_list(options["bands"])
-        if "time" in options:
-            options["time"] = time_text(options["time"], options.get("zone"))
+        options = shadow_options(options)
         part = part_of(self._dem, options.pop("clip", None), options.pop("clip_crs", None))
         name = figure if figure != "hours" else "sun_hours"
         with messages():

@@ -141,11 +141,19 @@ def utc(seconds_since_1970: float) -> datetime.datetime:
         raise BadInput(f"time: expected seconds since 1970 but got {seconds_since_1970!r}") from None
 
 
-def time_text(time: Time, zone: Optional[Zone] = None) -> str:
+def time_text(time: Time, zone: Optional[Zone] = None, name: str = "time") -> str:
     """A time as scenes have it. Texts are those of the program, also events such as "sunset-30min".
 
     zone: of a datetime or text that has none. Raises BadInput where neither has one.
+    name: of the argument, for errors
     """
+    try:
+        return _time_text(time, zone)
+    except BadInput as error:
+        raise BadInput(re.sub("^time", name, str(error))) from None
+
+
+def _time_text(time: Time, zone: Optional[Zone]) -> str:
     if zone is not None:
         zone_text(zone)
     if isinstance(time, str):

@@ -7,18 +7,24 @@ does where xarray is imported already.
 
 from __future__ import annotations
 
+import datetime
 import functools
+import json
 import warnings
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 import numpy
 import xarray
 
+from . import _lazy
+from ._clip import Clip
 from ._dem import Dem, open
-from ._errors import Warning
+from ._errors import BadInput, Warning
+from ._inputs import Crs
 from ._raster import Raster
-from ._sun_over_dem import SunOverDem
+from ._sun_over_dem import Progress, SunOverDem
+from ._times import Date, Time, Times, Zone
 
 if TYPE_CHECKING:
     from typing import Concatenate, ParamSpec
@@ -26,6 +32,10 @@ if TYPE_CHECKING:
     P = ParamSpec("P")
 R = TypeVar("R")
 
+_HALO = """
+        halo: of an array with chunks of dask: posts only so many km around each chunk, ground beyond as means, exact
+            to 0.1 degrees of the horizon (all posts)
+        """
 _UDUNITS = {"deg": "degree", "kWh/m2": "kW h m-2"}
 
 
@@ -40,11 +50,25 @@ def to_dataarray(raster: Raster) -> xarray.DataArray:
         axes = {} if crs is None else {axis["axis"].lower(): axis for axis in crs.cs_to_cf()}
         coords["y"] = ("y", transform.f + transform.e * row, axes.get("y"), {"_FillValue": None})
         coords["x"] = ("x", transform.c + transform.a * column, axes.get("x"), {"_FillValue": None})
-    dims: tuple[str, ...] = ("y", "x")
-    if raster.values.ndim == 3:
-        dims = ("band", *dims)
-        coords["band"] = list(raster.bands)
+    dims = (*_add_bands(coords, raster), "y", "x")
     return _described(xarray.DataArray(raster.values, coords=coords, dims=dims), raster)
+
+
+def _add_bands(coords: dict[str, Any], raster: Raster) -> tuple[str, ...]:
+    """Adds the coordinate of bands, or of times, and returns its name; none of a raster of (rows, columns)."""
+    options = json.loads(str(raster.about.get("options", "{}")))
+    if "times" in options:
+        times = numpy.round(numpy.array(options["times"]) * 1e6).astype("datetime64[us]").astype("datetime64[ns]")
+        dims = ("time",) if raster.values.ndim == 3 else ()
+        coords["time"] = xarray.Variable(
+            dims, times if dims else times[0], {"standard_name": "time", "long_name": "time"},
+            {"units": "seconds since 1970-01-01", "calendar": "standard", "dtype": "float64", "_FillValue": None},
+        )
+        return dims
+    if raster.values.ndim == 3:
+        coords["band"] = list(raster.bands)
+        return ("band",)
+    return ()
 
 
 def _spatial_ref(raster: Raster) -> Any:
@@ -65,13 +89,18 @@ def _crs(raster: Raster) -> Any:
 
 
 def _described(array: Any, raster: Raster) -> Any:
-    band = raster.bands[0] if raster.values.ndim == 2 else "sun"
-    array.name = band if band.isidentifier() else raster.about["figure"]
+    name, title = raster.bands[0], raster.name
+    options = json.loads(str(raster.about.get("options", "{}")))
+    if "times" in options:  # bands are named by them
+        name, title = "shadow", "visible fraction of the solar disc" if options.get("soft") else "direct sun"
     array.attrs.update(raster.about)
-    if raster.values.ndim == 2:
-        array.attrs.update(long_name=raster.name, units=_UDUNITS.get(raster.unit, raster.unit))
-    else:
+    if "band" in array.dims:
+        name, title = "sun", "horizon" if raster.about.get("figure") == "horizons" else ", ".join(raster.names)
         array.coords["unit"] = ("band", list(raster.units))
+    array.attrs["long_name"] = title
+    if len(set(raster.units)) == 1:
+        array.attrs["units"] = _UDUNITS.get(raster.unit, raster.unit)
+    array.name = name if name.isidentifier() else raster.about["figure"]
     array.encoding["grid_mapping"] = "spatial_ref"
     return array
 
@@ -98,37 +127,27 @@ def _of_sun(function: Callable[Concatenate[SunOverDem, P], R]) -> Callable[Conca
     return call
 
 
-def _raster(function: Callable[Concatenate[SunOverDem, P], Raster]) -> Callable[Concatenate[Accessor, P], xarray.DataArray]:
-    """A raster of `Dem.sun`, lazy where the heights are chunked."""
+def _figure(of: Accessor, name: str, arguments: dict[str, Any]) -> Any:
+    """A raster of `Dem.sun`, lazy where the heights are chunked.
 
-    @functools.wraps(function)
-    def call(of: Accessor, /, *arguments: P.args, **options: P.kwargs) -> xarray.DataArray:
-        array = of._array.squeeze(drop=False)
-        if array.chunks is None:
-            with open(array) as dem:
-                return _aligned(array, function(dem.sun, *arguments, **options))
-        import dask
-        import dask.array
-
-        figure: Any = function
-        named: Any = options
-        with warnings.catch_warnings(), open(_level(array)) as dem:  # says bands and units, and what is wrong
-            warnings.simplefilter("ignore", Warning)
-            said = _aligned(array, figure(dem.sun, *arguments, **{**named, "clip": None, "progress": None}))
-        made = dask.delayed(_values)(array, function, arguments, options)
-        values = dask.array.from_delayed(made, said.shape, numpy.float32)
-        told = {key: said.attrs[key] for key in ("figure", "options", "long_name", "units") if key in said.attrs}
-        lazy = said.copy(data=values.rechunk((-1,) * (said.ndim - 2) + array.chunks))
-        lazy.attrs = told
-        return lazy
-
-    return call
-
-
-def _values(array: Any, function: Any, arguments: Any, options: Any) -> Any:
-    """In a process of dask."""
-    with open(array) as dem:
-        return function(dem.sun, *arguments, **options).values
+    arguments: of the accessor's method
+    """
+    options = {key: value for key, value in arguments.items() if key not in ("self", "halo")}
+    halo = arguments["halo"]
+    array = of._array.squeeze(drop=False)
+    if array.chunks is None:
+        if halo is not None:
+            raise BadInput("halo: of arrays with chunks of dask alone")
+        with open(array) as dem:
+            return _aligned(array, getattr(dem.sun, name)(**options))
+    with warnings.catch_warnings(), open(_level(array)) as dem:  # says bands and units, and what is wrong
+        warnings.simplefilter("ignore", Warning)
+        said = _aligned(array, getattr(dem.sun, name)(**{**options, "clip": None, "progress": None}))
+        values, about = _lazy.values(array, dem, name, options, halo, said.shape)
+    told = {key: said.attrs[key] for key in ("figure", "options", "long_name", "units") if key in said.attrs}
+    lazy = said.copy(data=values)
+    lazy.attrs = {**told, **about}
+    return lazy
 
 
 def _level(array: Any) -> Any:
@@ -141,17 +160,48 @@ class Accessor:
     """Relevo on a DataArray of heights, (y, x). Each call opens the DEM anew, as heights may change; `open()` keeps it.
 
     Keywords of relevo.open() that the array does not say are those of `open()`; results of the other functions are
-    DataArrays with the array's dimensions and coordinates. Of a chunked array they are lazy and have its chunks: the
-    whole DEM is one task, because ground anywhere can shade a post.
+    DataArrays with the array's dimensions and coordinates. Of a chunked array they are lazy and have its chunks, from
+    the whole DEM, because ground anywhere can shade a post; `halo=` takes all posts only around a chunk.
     """
 
     def __init__(self, array: xarray.DataArray) -> None:
         self._array = array
 
-    hours = _raster(SunOverDem.hours)
-    shadow = _raster(SunOverDem.shadow)
-    sky_view = _raster(SunOverDem.sky_view)
-    horizons = _raster(SunOverDem.horizons)
+    def hours(
+        self, date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
+        year: Optional[int] = None, tz: Optional[Zone] = None,
+        bands: Union[str, list[str], tuple[str, ...]] = "hours", step: Union[float, datetime.timedelta, None] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, terrestrial_refraction: Optional[float] = None,
+        refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Clip] = None,
+        clip_crs: Optional[Crs] = None, halo: Optional[float] = None, progress: Optional[Progress] = None,
+    ) -> xarray.DataArray:
+        return _figure(self, "hours", locals())
+
+    def shadow(
+        self, time: Optional[Time] = None, *, times: Optional[Times] = None,
+        sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, tz: Optional[Zone] = None,
+        soft: bool = False, terrestrial_refraction: Optional[float] = None, refraction: Optional[str] = None,
+        highest: Optional[float] = None, clip: Optional[Clip] = None, clip_crs: Optional[Crs] = None,
+        halo: Optional[float] = None, progress: Optional[Progress] = None,
+    ) -> xarray.DataArray:
+        return _figure(self, "shadow", locals())
+
+    def sky_view(
+        self, directions: Optional[int] = None, *, level: bool = False, terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None, clip: Optional[Clip] = None, clip_crs: Optional[Crs] = None,
+        halo: Optional[float] = None, progress: Optional[Progress] = None,
+    ) -> xarray.DataArray:
+        return _figure(self, "sky_view", locals())
+
+    def horizons(
+        self, directions: int = 36, *, terrestrial_refraction: Optional[float] = None,
+        highest: Optional[float] = None, clip: Optional[Clip] = None, clip_crs: Optional[Crs] = None,
+        halo: Optional[float] = None, progress: Optional[Progress] = None,
+    ) -> xarray.DataArray:
+        return _figure(self, "horizons", locals())
+
+    for _method in (hours, shadow, sky_view, horizons):
+        _method.__doc__ = (getattr(SunOverDem, _method.__name__).__doc__ or "") + _HALO
     horizon = _of_sun(SunOverDem.horizon)
     capture = _of_dem(Dem.capture)
 
@@ -166,8 +216,8 @@ def _aligned(array: Any, raster: Raster) -> Any:
     dims, coords = array.dims, dict(array.coords)
     if raster.values.ndim == 3:
         coords.pop("band", None)
-        dims = ("band", *dims)
-        coords["band"] = list(raster.bands)
+    coords.pop("time", None)
+    dims = (*_add_bands(coords, raster), *dims)
     if "spatial_ref" not in coords:
         coords["spatial_ref"] = _spatial_ref(raster)
     values = numpy.broadcast_to(raster.values[..., :1, :1], (*raster.values.shape[:-2], *array.shape)) if (
