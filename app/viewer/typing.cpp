@@ -43,10 +43,11 @@ void Typing::hand_over(bool in_text, const std::function<void(const Typed&)>& ta
     for (; !waiting_.empty(); waiting_.pop_front()) {
         const Typed& next = waiting_.front();
         const bool is_letter = next.kind == Typed::Kind::Letter;
+        const bool is_key = next.is_press() && !is_modifier(next.key);
         // A text field takes letters, and not their keys.
-        const bool is_command = next.is_press() && !is_modifier(next.key) &&
-                                (!in_text || next.has_control() || next.key >= GLFW_KEY_ESCAPE);
-        if (holds_ > 0 && next.kind != Typed::Kind::Button) return;
+        const bool is_command =
+            is_key && (!in_text || next.has_control() || next.key >= GLFW_KEY_ESCAPE);
+        if (holds_ > 0 && (is_letter || is_key)) return;
         if (is_full && !is_letter) return;
         if (has_letter && next.is_press() && is_control(next.key)) return;
         if (is_command && released.contains(next.key)) return;

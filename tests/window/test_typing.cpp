@@ -55,7 +55,7 @@ TEST(Typing, AKeyAfterOneWithCtrlIsWithoutIt) {
     Typing typing;
     tap_with_control(typing, GLFW_KEY_A);
     tap(typing, kErase);
-    EXPECT_EQ(frames(typing, /*in_text=*/true), "^A|||-A-^<|-<|");
+    EXPECT_EQ(frames(typing, /*in_text=*/true), "^A|-A-^||<|-<|");
 }
 
 TEST(Typing, AFieldGetsAWordAtOnceAndItsKeysOneByOne) {
@@ -66,7 +66,20 @@ TEST(Typing, AFieldGetsAWordAtOnceAndItsKeysOneByOne) {
     tap(typing, kErase);
     tap(typing, GLFW_KEY_C);
     tap_with_control(typing, GLFW_KEY_A);
-    EXPECT_EQ(frames(typing, /*in_text=*/true), "A'A-AB'B-BB'B-BA'A-A<|-<|<|-<C'C-C|^A|||-A-^|");
+    EXPECT_EQ(frames(typing, /*in_text=*/true), "A'A-AB'B-BB'B-BA'A-A<|-<|<|-<C'C-C|^A|-A-^|");
+}
+
+// The wheel that is turned meanwhile has it.
+TEST(Typing, ShiftAfterAKeyWithCtrlDoesNotWait) {
+    Typing typing;
+    tap_with_control(typing, GLFW_KEY_S);
+    typing.add(key(GLFW_KEY_LEFT_SHIFT, GLFW_PRESS));
+    int shift_at = -1;
+    for (int frame = 0; frame < 3; ++frame, typing.frame())
+        typing.hand_over(false, [&](const Typed& now) {
+            if (now.key == GLFW_KEY_LEFT_SHIFT) shift_at = frame;
+        });
+    EXPECT_EQ(shift_at, 1);
 }
 
 TEST(Typing, AShortcutIsAFramesOnly) {
