@@ -185,6 +185,11 @@ void CameraMoves::choose_point(const glm::dvec3& point_m) {
     if (parts_.point.choose(point_m)) parts_.state.measurement.start(point_m);
 }
 
+void CameraMoves::go_home() {
+    parts_.state.document.pose = pose_in(parts_.opening.home_view());
+    note_home();
+}
+
 void CameraMoves::note_home() {
     home_ = parts_.state.document.pose;
     home_size_ = parts_.window.size();
@@ -192,11 +197,9 @@ void CameraMoves::note_home() {
 
 void CameraMoves::fit_home() {
     if (home_size_ == parts_.window.size()) return;
-    const bool is_home = home_ == parts_.state.document.pose;
     home_size_ = parts_.window.size();
-    if (!is_home) return;
-    parts_.state.document.pose = pose_in(parts_.opening.home_view());
-    note_home();
+    if (!is_home()) return;
+    go_home();
     parts_.pacing.moved();
 }
 

@@ -18,9 +18,12 @@ class CameraMoves {
 
     /// The pose of a view that leaves room for the panels.
     Pose pose_in(const scene::View& view) const;
-    /// Notes that the camera shows the whole DEM in this window.
+    /// Shows the whole DEM in this window.
+    void go_home();
+    /// Notes that the camera does.
     void note_home();
     void forget_home() { home_.reset(); }
+    bool is_home() const { return home_ == parts_.state.document.pose; }
     /// After the window was resized: the whole DEM stays in view if the camera shows that.
     void fit_home();
 

@@ -1,6 +1,7 @@
 #include "viewer/charts_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "chart/carpet_chart.h"
 #include "sun/position.h"
 #include "viewer/image_texture.h"
 #include "viewer/style.h"
@@ -29,6 +31,32 @@ ImVec2 show(const gl::Texture& texture) {
 ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
     return {corner.x + static_cast<float>(units.x * px_a_unit),
             corner.y + static_cast<float>(units.y * px_a_unit)};
+}
+
+/// The colours of the year, beside the tabs if there is room. @param at  the chart's upper edge
+void year_legend(float at) {
+    using light::Light;
+    constexpr std::array<std::pair<Light, const char*>, 4> kKeys{
+        {{Light::Lit, tr_later("direct sun")},
+         {Light::Shaded, tr_later("behind ground")},
+         {Light::Twilight, tr_later("twilight")},
+         {Light::Night, tr_later("night")}}};
+    const style::Sized small(style::Size::Small);
+    const float em = ImGui::GetFontSize(), gap = em / 2;
+    float wide = 0;
+    for (const auto& [light, words] : kKeys)
+        wide += 1.5f * em + gap + ImGui::CalcTextSize(tr(words)).x;
+    constexpr float kTabs_em = 12;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (wide + kTabs_em * em > ImGui::GetWindowContentRegionMax().x) return;
+    ImVec2 next(right - wide, at - 1.75f * em);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    for (const auto& [light, words] : kKeys) {
+        list.AddRectFilled(next, {next.x + em, next.y + em},
+                           style::colour(chart::CarpetChart::color_of(light).rgb));
+        list.AddText({next.x + em + gap / 2, next.y}, ImGui::GetColorU32(ImGuiCol_Text), tr(words));
+        next.x += 1.5f * em + gap + ImGui::CalcTextSize(tr(words)).x;
+    }
 }
 
 }  // namespace
@@ -69,6 +97,7 @@ void ChartsPanel::horizon(State& state) {
 /// Marks the displayed day and time. A click sets another time.
 void ChartsPanel::year(State& state) {
     const double px_a_unit = state.point->of.px_a_unit;
+    year_legend(ImGui::GetCursorScreenPos().y);
     const ImVec2 corner = show(year_.texture);
     const bool hovered = ImGui::IsItemHovered();
     const chart::Rect& plot = year_.chart->plot;

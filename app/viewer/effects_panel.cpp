@@ -201,6 +201,8 @@ int value_rows(State& state, const effect::Effect& effect, bool first, bool draw
     return rows;
 }
 
+}  // namespace
+
 void effect_values(State& state, const effect::Effect& effect) {
     value_rows(state, effect, /*first=*/true, /*draws=*/true);
     if (value_rows(state, effect, /*first=*/false, /*draws=*/false) > 0) {
@@ -215,6 +217,8 @@ void effect_values(State& state, const effect::Effect& effect) {
         state.set_effects(without_values(state.document.scene.effects, effect.id()));
     ImGui::EndDisabled();
 }
+
+namespace {
 
 /// Of an effect that draws nothing in this view: one in which it does.
 void offer_view(State& state, const effect::Effect& effect) {

@@ -17,6 +17,9 @@
 /// Exports from the window to files.
 namespace relevo::viewer {
 
+/// Thrown to end an export that the user has cancelled.
+struct Cancelled {};
+
 /// The document as `relevo capture` reads it from any working folder.
 scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px);
 

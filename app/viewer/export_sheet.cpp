@@ -207,6 +207,16 @@ void ExportSheet::question(const ExportOrder& wanted) {
 void ExportSheet::buttons(const ExportOrder& wanted, bool is_taken, const ExportView& view) {
     const bool is_figures = wanted.kind == kFigures;
     const bool can_export = !view.is_busy && (!is_figures || view.has_figures);
+    if (view.done) {
+        ImGui::ProgressBar(static_cast<float>(*view.done),
+                           {16 * ImGui::GetFontSize(), ImGui::GetFrameHeight()},
+                           tr_format("drawing ... {:.0f} %", 100 * *view.done).c_str());
+        ImGui::SameLine();
+        ImGui::BeginDisabled(!view.cancel);
+        if (ImGui::Button(tr_label("Cancel"))) view.cancel();
+        ImGui::EndDisabled();
+        return;
+    }
     ImGui::BeginDisabled(!can_export);
     if (ImGui::Button(view.is_busy ? tr_label("drawing ...") : tr_label("Export"),
                       {8 * ImGui::GetFontSize(), 0}) ||

@@ -17,11 +17,14 @@ struct ExportView {
     const scene::Scene& scene;  ///< as it is now, with the view of the picture
     sun::Instant utc;           ///< its time, for the name
     const sun::Zone& zone;
-    bool is_busy = false;        ///< a file is being written
-    bool has_figures = false;    ///< a sun overlay is shown, which can be written
-    const std::string& message;  ///< how the last export ended
-    double map_aspect = 1;       ///< of the DEM
-    unsigned texture = 0;        ///< the displayed image; rows from the bottom
+    /// Of a file that is being written: the share that is done; none: unknown, or no file is.
+    std::optional<double> done{};
+    std::function<void()> cancel{};  ///< ends it; empty: cannot
+    bool is_busy = false;            ///< a file is being written
+    bool has_figures = false;        ///< a sun overlay is shown, which can be written
+    const std::string& message;      ///< how the last export ended
+    double map_aspect = 1;           ///< of the DEM
+    unsigned texture = 0;            ///< the displayed image; rows from the bottom
     /// Where that has an image position (-1 to 1) of the exported picture, from 0 to 1.
     std::function<std::optional<glm::vec2>(glm::dvec2)> shown_at;
 };

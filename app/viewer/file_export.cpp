@@ -19,7 +19,6 @@
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
-
 FileExport::FileExport(ExportOrder order, std::string device,
                        std::shared_ptr<const session::LoadedDem> dem,
                        std::function<void()> on_change)
@@ -41,6 +40,8 @@ std::string FileExport::result() const {
 void FileExport::run() {
     try {
         result_ = order_.is_picture() ? write_picture() : write_mesh();
+    } catch (const Cancelled&) {
+        result_ = tr_format("{}: cancelled, no file was written", printable(order_.path));
     } catch (const Error&) {
         failure_ = std::current_exception();
     } catch (const std::exception& error) {
@@ -77,8 +78,18 @@ std::string FileExport::write_picture() {
     session::SceneInputs inputs(RELEVO_VERSION);
     inputs.record(scene);
     dem::add_all(scene.dems, files);
-    session::Session session(
-        scene, {.device = device_, .dem = dem_, .radiance = linear, .format = format}, files);
+    const auto on_frame = [this](double share) {
+        if (is_cancelled_) throw Cancelled();
+        share_ = share;
+        on_change_();
+    };
+    session::Session session(scene,
+                             {.device = device_,
+                              .dem = dem_,
+                              .radiance = linear,
+                              .format = format,
+                              .on_frame = on_frame},
+                             files);
     std::optional<image::Picture> picture;
     if (!in_bands) picture = session.make_picture();
     session::write_picture(session, picture, file,
@@ -86,6 +97,7 @@ std::string FileExport::write_picture() {
                                                 session::format_text(order_.encoding, format)),
                            order_.encoding);
     if (const auto where = session::georeference_of(session)) session::write_beside(beside, *where);
+    if (is_cancelled_) throw Cancelled();
     if (sidecar) sidecar->write(session::sidecar_text(session, inputs, path.filename().string()));
     files.finish_outputs();
     std::string text = tr_format("{}: picture saved in {}, {} x {}", printable(order_.path),

@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -17,7 +18,7 @@ class FileExport {
   public:
     /// @param device     as session::Options
     /// @param dem        the scene's DEM
-    /// @param on_change  called on its thread at the end
+    /// @param on_change  called on its thread before each frame and at the end
     FileExport(ExportOrder order, std::string device, std::shared_ptr<const session::LoadedDem> dem,
                std::function<void()> on_change);
     FileExport(const FileExport&) = delete;
@@ -25,8 +26,16 @@ class FileExport {
     /// Waits for the file.
     ~FileExport();
 
+    /// The share of a picture that is drawn, 0 to 1; none of a mesh.
+    std::optional<double> share() const {
+        return order_.is_picture() ? std::optional<double>(share_) : std::nullopt;
+    }
+    /// Ends a picture without a file, after the frame in work.
+    void cancel() { is_cancelled_ = true; }
+    bool can_cancel() const { return order_.is_picture() && !is_cancelled_; }
+
     bool is_done() const { return is_done_; }
-    /// "tyrol.png: picture saved, 1920 x 1080". Requires is_done().
+    /// "tyrol.png: picture saved, 1920 x 1080", or that it was cancelled. Requires is_done().
     /// @throws Error why there is no file
     std::string result() const;
 
@@ -39,7 +48,8 @@ class FileExport {
     std::string device_;
     std::shared_ptr<const session::LoadedDem> dem_;
     std::function<void()> on_change_;
-    std::atomic<bool> is_done_ = false;
+    std::atomic<double> share_ = 0;
+    std::atomic<bool> is_cancelled_ = false, is_done_ = false;
     std::string result_;
     std::exception_ptr failure_;
     std::thread thread_;

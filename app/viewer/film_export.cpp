@@ -17,13 +17,6 @@
 #include "viewer/translation.h"
 
 namespace relevo::viewer {
-namespace {
-
-/// Thrown between two frames of a film that was cancelled.
-struct Cancelled {};
-
-}  // namespace
-
 FilmExport::FilmExport(std::shared_ptr<const FilmPlan> plan, std::string device,
                        std::function<void()> on_change)
     : plan_(std::move(plan)),

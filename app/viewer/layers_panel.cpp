@@ -105,6 +105,9 @@ void details(State& state, const Layer& layer) {
     if (has_light) light(state, layer);
     if (layer.is_overlay() && state.overlay) overlay_time(state);
     legends(state, layer);
+    if (layer.is_overlay() || !ImGui::TreeNode(tr_label("Settings"))) return;
+    effect_values(state, state.effects->registry.effect(layer.id, "layers"));
+    ImGui::TreePop();
 }
 
 void switch_layer(State& state, const Layer& layer) {

@@ -206,7 +206,7 @@ std::string MainWindow::work_in_progress() const {
     if (opening_->is_opening())
         return tr_format("opening {} ...   Esc cancels", short_name(opening_->next_scene().dems));
     if (const std::string film = film_->progress(); !film.empty()) return film;
-    if (saver_->is_exporting()) return tr("drawing the picture ...");
+    if (const std::string picture = saver_->progress(); !picture.empty()) return picture;
     if (moves_->looks_for_time()) return tr("looking for the time ...");
     return is_drawing() ? tr("drawing ...") : "";
 }

@@ -173,12 +173,14 @@ void MainWindow::run_scene_command(Command command) {
 }
 
 void MainWindow::go_through_history(Command command) {
-    if (command == Command::Undo) {
-        history_.end_step(state_.document);
-        return history_.can_undo() ? restore(history_.undo())
-                                   : messages_.note(tr("nothing to undo"));
-    }
-    history_.can_redo() ? restore(history_.redo()) : messages_.note(tr("nothing to redo"));
+    const bool is_undo = command == Command::Undo;
+    if (is_undo) history_.end_step(state_.document);
+    const std::string name = is_undo ? history_.undo_name(nullptr) : history_.redo_name();
+    if (name.empty())
+        return messages_.note(is_undo ? tr("nothing to undo") : tr("nothing to redo"));
+    restore(is_undo ? history_.undo() : history_.redo());
+    messages_.note(is_undo ? tr_format("undone: {}", name) : tr_format("redone: {}", name),
+                   Messages::kShortNote);
 }
 
 void MainWindow::close_dialogs() {

@@ -232,9 +232,13 @@ void MainWindow::complete_scene(const Opened& before) {
     const Opened& opened = *opening_->opened();
     Document& document = state_.document;
     const bool is_unchanged = !history_.can_undo() && !history_.differs(document);
+    const bool is_home = moves_->is_home();
     use_dem();
+    if (is_home) {
+        moves_->go_home();
+        history_.amend(document);
+    }
     if (is_unchanged) {
-        document.pose = moves_->pose_in(opened.scene.view);
         if (document.utc == before.utc) document.utc = opened.utc;
         history_ = {};
         history_.add(document);
@@ -249,14 +253,18 @@ void MainWindow::show_true_heights() {
     if (!state_.chooses_exaggeration || state_.document.utc == first_utc_) return;
     state_.chooses_exaggeration = false;
     if (std::exchange(times, 1) == 1) return;
-    messages_.note(tr("heights are true now, as shadows of another time need: Camera, Heights"));
+    messages_.note(
+        tr("heights are drawn 1:1 now, so that shadows are true; Camera, Heights sets another"));
 }
 
 void MainWindow::take_shape() {
     const double before = state_.land.exaggeration;
     use_dem();
     Document& document = state_.document;
-    document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
+    if (moves_->is_home())  // also of heights that are drawn lower or higher
+        moves_->go_home();
+    else
+        document.pose = exaggerated(document.pose, state_.land, before, state_.land.exaggeration);
     state_.set_utc(document.utc);
     history_.amend(document);
     state_.measurement = {};  // its ends lie on the ground as it was drawn

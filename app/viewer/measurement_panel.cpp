@@ -58,10 +58,11 @@ std::vector<std::optional<Place>> places_of(const std::vector<glm::dvec3>& line_
     return places;
 }
 
-void draw_dot(ImDrawList& list, ImVec2 at) {
+/// A ring, so that a moon that stands over the point is seen in it.
+void draw_ring(ImDrawList& list, ImVec2 at) {
     const float unit = style::px(1);
-    list.AddCircleFilled(at, 5 * unit, style::kMark);
-    list.AddCircle(at, 6 * unit, style::kInk, 0, 1.5f * unit);
+    list.AddCircle(at, 7 * unit, style::kMark, 0, 3 * unit);
+    list.AddCircle(at, 9 * unit, style::kInk, 0, 1.5f * unit);
 }
 
 /// Straight, from the last corner to the first.
@@ -87,10 +88,10 @@ void draw_measurement(const Measurement& measurement, const Picture& picture, gl
     std::optional<ImVec2> last;
     for (const glm::dvec3& corner_m : measurement.corners_m) {
         last = at_window(picture, size_px, corner_m);
-        if (last) draw_dot(list, *last);
+        if (last) draw_ring(list, *last);
     }
     if (measurement.marked && *measurement.marked < places.size())
-        if (const auto& place = places[*measurement.marked]) draw_dot(list, place->at);
+        if (const auto& place = places[*measurement.marked]) draw_ring(list, place->at);
     if (!last || !measurement.profile) return;
     const std::string length = length_text(measurement.profile->level_m);
     label_over({last->x + style::px(15), last->y - style::px(8)}, length.c_str());

@@ -2,9 +2,9 @@
 
 namespace relevo::viewer {
 
-void Messages::note(std::string text) {
+void Messages::note(std::string text, std::chrono::seconds lasts) {
     shown_ = note_ = std::move(text);
-    noted_at_ = std::chrono::steady_clock::now();
+    until_ = std::chrono::steady_clock::now() + lasts;
 }
 
 void Messages::report(std::string text) {
@@ -13,8 +13,7 @@ void Messages::report(std::string text) {
 }
 
 bool Messages::expire() {
-    constexpr std::chrono::seconds kNote(8);
-    if (note_.empty() || std::chrono::steady_clock::now() - noted_at_ < kNote) return false;
+    if (note_.empty() || std::chrono::steady_clock::now() < until_) return false;
     const bool is_shown = shown_ == note_;
     if (is_shown) shown_.clear();
     note_.clear();

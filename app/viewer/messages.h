@@ -25,13 +25,15 @@ void try_or_log(const Act& act) {
 /// them.
 class Messages {
   public:
+    static constexpr std::chrono::seconds kNote{8}, kShortNote{3};
+
     /// @param shown  the text that panels draw; outlives this
     explicit Messages(std::string& shown) : shown_(shown) {}
 
     /// @param text  as on the command line; window_words() are shown
     void show(std::string_view text) { shown_ = window_words(text); }
     /// Shows a text for some seconds.
-    void note(std::string text);
+    void note(std::string text, std::chrono::seconds lasts = kNote);
     /// Shows a text for some seconds and logs it.
     void report(std::string text);
     /// Calls `act`. Shows and logs an Error that it throws.
@@ -50,7 +52,7 @@ class Messages {
   private:
     std::string& shown_;
     std::string note_;
-    std::chrono::steady_clock::time_point noted_at_;
+    std::chrono::steady_clock::time_point until_;
 };
 
 }  // namespace relevo::viewer

@@ -92,7 +92,9 @@ Opening::Event Opening::poll_open() {
     }
     std::shared_ptr<const Opened> opened = open_.thread->opened();
     if (opened == opened_) return Event::None;
+    const bool was_preview = is_preview();
     opened_ = std::move(opened);
+    if (was_preview && !is_preview() && !open_.is_reload) home_view_ = opened_->scene.view;
     if (!is_preview()) complete_ = open_.scene;
     return Event::Changed;
 }

@@ -63,7 +63,7 @@ class Opening {
     const scene::Scene& scene() const { return opened_ ? open_.scene : next_->scene; }
     /// The scene that is being opened. Requires is_opening().
     const scene::Scene& next_scene() const { return next_->scene; }
-    /// The scene's view when its DEM was opened first.
+    /// The scene's view when its DEM was opened first, chosen from all posts if they are read.
     const scene::View& home_view() const { return home_view_; }
     /// The first file of the DEM that the user asked for last.
     const std::string& requested_file() const { return requested_file_; }

@@ -1,5 +1,6 @@
 #include "viewer/scene_saver.h"
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -54,6 +55,12 @@ void SceneSaver::save_job() {
     });
 }
 
+std::string SceneSaver::progress() const {
+    if (!export_) return {};
+    if (!export_->can_cancel()) return tr("writing the file ...");
+    return tr_format("drawing the picture, {:.0f} %; Ctrl+P: cancel", 100 * *export_->share());
+}
+
 void SceneSaver::draw_sheet() {
     // Arrows and Space move through the sheet as long as it has the keyboard.
     if (sheet_.has_focus() && !parts_.window.panels_have_keys())
@@ -71,12 +78,17 @@ void SceneSaver::draw_sheet() {
                         to = camera_of(pose_for(document, choice.is_centred, aspect), state.land);
     scene::Scene map = scene;
     map.ortho = choice.of().is_ortho;
+    std::function<void()> cancel;
+    if (export_ && export_->can_cancel()) cancel = [&] { export_->cancel(); };
+    if (!export_ && state.saving_progress) cancel = [&] { parts_.overlay.cancel_export(); };
     parts_.messages.try_to(
         [&] { scene::fit_map(map, parts_.opening.opened()->dem->source->grid()); });
     sheet_.draw(window, choice,
                 {.scene = scene,
                  .utc = document.utc,
                  .zone = document.zone,
+                 .done = export_ ? export_->share() : state.saving_progress,
+                 .cancel = cancel,
                  .is_busy = is_exporting() || state.saving_progress,
                  .has_figures = document.overlay.kind > OverlayKind::File,
                  .message = state.message,

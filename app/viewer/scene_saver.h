@@ -35,6 +35,8 @@ class SceneSaver {
     ExportSheet& sheet() { return sheet_; }
     void draw_sheet();
     bool is_exporting() const { return export_ != nullptr; }
+    /// "drawing the picture, 34 %"; empty: none is drawn
+    std::string progress() const;
     /// Waits for a picture that is being exported.
     void finish() { export_.reset(); }
     /// Saves the image that was asked for once it is complete; starts what the sheet orders, and

@@ -123,6 +123,8 @@ std::string sun_figures(const State& state);
 /// Lens, exposure, exaggeration and time zone. @param aspect  of the window
 void view_panel(State& state, double aspect);
 void effects_panel(State& state);
+/// The values of one effect, those that matter most first.
+void effect_values(State& state, const effect::Effect& effect);
 void menu_bar(State& state);
 /// The panels of the scene, in one column, whose width the user can change.
 /// @param size_px    of the window

@@ -26,6 +26,7 @@
 #include "viewer/fonts.h"
 #include "viewer/scene_thread.h"
 #include "viewer/style.h"
+#include "viewer/typing.h"
 
 namespace relevo::viewer {
 namespace {
@@ -147,11 +148,9 @@ struct Window::Impl {
     std::set<char32_t> letters;  // additional characters of panels
     std::vector<KeyPress> keys;
     std::set<int> held;  // pressed without Ctrl, even if Ctrl is released first
-    /// Keys since the last frame. ImGui polls keys once a frame and would miss those already
-    /// released.
-    std::vector<int> tapped;
+    Typing typing;
     std::vector<std::string> dropped;
-    bool has_input = false;  // clicks, keys or wheel events
+    bool has_input = false;  // clicks or wheel events
     bool closes_popup = false;
     int frames = 0;  // until it is shown
 
@@ -203,25 +202,9 @@ struct Window::Impl {
         context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(handle, this);
-        glfwSetKeyCallback(
-            handle, [](GLFWwindow* window, int code, int scancode, int action, int mods) {
-                Impl& self = of(window);
-                self.has_input = true;
-                const bool control = (mods & GLFW_MOD_CONTROL) != 0;
-                if (action == GLFW_PRESS && !control) self.held.insert(code);
-                if (action == GLFW_RELEASE) self.held.erase(code);
-                if (action == GLFW_PRESS) self.tapped.push_back(code);
-                const int key = letter_of(code, scancode);
-                if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
-                    self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
-            });
         // ImGui's callbacks chain to these.
-        glfwSetMouseButtonCallback(
-            handle, [](GLFWwindow* window, int, int, int) { of(window).has_input = true; });
         glfwSetScrollCallback(
             handle, [](GLFWwindow* window, double, double) { of(window).has_input = true; });
-        glfwSetCharCallback(handle,
-                            [](GLFWwindow* window, unsigned) { of(window).has_input = true; });
         glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
             Impl& self = of(window);
             self.dropped.assign(names, names + count);
@@ -231,8 +214,34 @@ struct Window::Impl {
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().LogFilename = nullptr;
         ImGui_ImplGlfw_InitForOpenGL(handle, /*install_callbacks=*/true);
+        // Instead of ImGui's, which type() calls.
+        glfwSetKeyCallback(
+            handle, [](GLFWwindow* window, int key, int scancode, int action, int mods) {
+                of(window).typing.add({Typed::Kind::Key, key, scancode, action, mods});
+            });
+        glfwSetCharCallback(handle, [](GLFWwindow* window, unsigned letter) {
+            of(window).typing.add({.kind = Typed::Kind::Letter, .letter = letter});
+        });
+        glfwSetMouseButtonCallback(
+            handle, [](GLFWwindow* window, int button, int action, int mods) {
+                of(window).has_input = true;
+                if (action == GLFW_PRESS)
+                    of(window).typing.add({Typed::Kind::Button, button, 0, action, mods});
+            });
         ImGui_ImplOpenGL3_Init("#version 450 core");
         is_open() = true;
+    }
+
+    void type(const Typed& now) {
+        if (now.kind == Typed::Kind::Letter) return ImGui_ImplGlfw_CharCallback(handle, now.letter);
+        if (now.kind == Typed::Kind::Button)
+            return ImGui_ImplGlfw_MouseButtonCallback(handle, now.key, now.action, now.mods);
+        ImGui_ImplGlfw_KeyCallback(handle, now.key, now.scancode, now.action, now.mods);
+        if (now.is_press() && !now.has_control()) held.insert(now.key);
+        if (now.action == GLFW_RELEASE) held.erase(now.key);
+        const int key = letter_of(now.key, now.scancode);
+        if (now.is_press() || (now.action == GLFW_REPEAT && repeats(key)))
+            keys.push_back({key, now.has_control(), (now.mods & GLFW_MOD_SHIFT) != 0});
     }
 
     void set_style(bool light, int text_px) {
@@ -340,7 +349,7 @@ void Window::wait(double at_most_s) {
 }
 
 bool Window::take_input() {
-    return std::exchange(impl_->has_input, false);
+    return std::exchange(impl_->has_input, false) || impl_->typing.is_waiting();
 }
 
 void Window::wake() {
@@ -373,13 +382,12 @@ void Window::set_line(float share) {
 void Window::draw(const std::function<void()>& panels) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    // A press comes after what was typed before it.
     ImGuiIO& io = ImGui::GetIO();
-    const std::vector<int> tapped = std::exchange(impl_->tapped, {});
-    for (const int key : tapped)
-        if (key >= 0) io.KeysDown[key] = true;
+    for (int button = 0; button < IM_ARRAYSIZE(io.MouseDown); ++button)
+        if (impl_->typing.awaits(button)) io.MouseDown[button] = false;
     ImGui::NewFrame();
-    for (const int key : tapped)
-        if (key >= 0) io.KeysDown[key] = glfwGetKey(impl_->handle, key) == GLFW_PRESS;
+    impl_->typing.frame();
     panels();
     // After the panels: the same Esc must not also close the sheet that gets the focus back.
     if (std::exchange(impl_->closes_popup, false)) close_popup();
@@ -406,6 +414,8 @@ void Window::draw(const std::function<void()>& panels) {
 }
 
 std::vector<KeyPress> Window::take_keys() {
+    impl_->typing.hand_over(ImGui::GetIO().WantTextInput,
+                            [&](const Typed& typed) { impl_->type(typed); });
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
     if (ImGui::GetIO().WantTextInput) keys.clear();
     // Esc first ends what is active in the panels. ImGui closes popups only with its own keyboard.

@@ -16,20 +16,6 @@ constexpr double kPanelLeft = 56, kPanelRight = 14, kPanelTop = 8, kPanelBottom 
 constexpr double kLit = 40, kLevel = 57;  // lines of hours below the carpet
 const Pen kNoon{.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}};
 
-Color color_of(light::Light light) {
-    switch (light) {
-        case light::Light::Night:
-            return {0x1e2943};
-        case light::Light::Twilight:
-            return {0x6d7fb5};
-        case light::Light::Shaded:
-            return {0xb5aca0};
-        case light::Light::Lit:
-            return {0xffd24a};
-    }
-    return {};
-}
-
 int days_of(int year) {
     return sun::days_between({year, 1, 1}, {year + 1, 1, 1});
 }
@@ -49,7 +35,7 @@ struct Plot : Rect {
 
 /// Cells of one kind that follow each other are one area.
 void add_cells(Drawing& drawing, const light::Carpet& carpet, const Plot& area) {
-    drawing.rect(area, {.fill = color_of(light::Light::Night), .crisp = true});
+    drawing.rect(area, {.fill = CarpetChart::color_of(light::Light::Night), .crisp = true});
     for (int row = 0; row < carpet.light.height(); ++row) {
         const sun::Date date = carpet.days[static_cast<std::size_t>(row)].date;
         const double x = area.x_of(date);
@@ -61,7 +47,7 @@ void add_cells(Drawing& drawing, const light::Carpet& carpet, const Plot& area) 
             const double top = area.y_of(to * double{1} * carpet.step_s);
             drawing.rect(
                 {x, top, area.day_width(), area.y_of(from * double{1} * carpet.step_s) - top},
-                {.fill = color_of(light), .crisp = true});
+                {.fill = CarpetChart::color_of(light), .crisp = true});
         }
     }
 }
@@ -140,11 +126,13 @@ void add_frame(Drawing& drawing, const Plot& area, bool is_panel) {
 
 void add_keys(Drawing& drawing, double keys_y) {
     double x = kLeft;
-    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Lit)}, "direct sun");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Shaded)},
+    x = add_key(drawing, x, keys_y, {.fill = CarpetChart::color_of(light::Light::Lit)},
+                "direct sun");
+    x = add_key(drawing, x, keys_y, {.fill = CarpetChart::color_of(light::Light::Shaded)},
                 "sun behind terrain, up over a level horizon");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Twilight)}, "civil twilight");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Night)}, "night");
+    x = add_key(drawing, x, keys_y, {.fill = CarpetChart::color_of(light::Light::Twilight)},
+                "civil twilight");
+    x = add_key(drawing, x, keys_y, {.fill = CarpetChart::color_of(light::Light::Night)}, "night");
     add_key(drawing, x, keys_y, kNoon, "true noon");
 }
 
@@ -172,6 +160,20 @@ void add_plot(Drawing& drawing, const light::Carpet& carpet, const Plot& area, b
 }
 
 }  // namespace
+
+Color CarpetChart::color_of(light::Light light) {
+    switch (light) {
+        case light::Light::Night:
+            return {0x1e2943};
+        case light::Light::Twilight:
+            return {0x6d7fb5};
+        case light::Light::Shaded:
+            return {0xb5aca0};
+        case light::Light::Lit:
+            return {0xffd24a};
+    }
+    return {};
+}
 
 Rect CarpetChart::plot() const {
     if (panel)

@@ -16,7 +16,9 @@ struct CarpetChart {
     std::string place_name;          ///< for the title, where there is one
     std::string horizon_definition;  ///< TerrainHorizon::description()
 
-    std::optional<PanelSize> panel;  ///< none: a sheet
+    std::optional<PanelSize> panel;  ///< none: a sheet. Only that has a legend
+
+    static Color color_of(light::Light light);
 
     /// The days of the year from left to right, the day from midnight at the lower edge.
     Rect plot() const;

@@ -186,6 +186,7 @@ Fit fit_above(const Camera& camera, std::span<const glm::dvec3> points, const Ro
 
 /// The nearest place from which enough posts are in the picture and the near edge is below it.
 /// Voids can rule that out: then the place with the least picture below the edge.
+/// @param aspect  of what the insets leave
 template <typename RoomWithin>
 Fit aerial_fit(const Camera& camera, const AerialGround& ground, double aspect, const Room& picture,
                const RoomWithin& room_within) {
@@ -278,7 +279,9 @@ Camera aerial_camera(const Orbit& orbit, const AerialGround& ground, double fov_
         place(camera, fit_above(camera, ground.posts, room), ground.posts, orbit.zoom);
         return camera;
     }
-    const Fit fit = aerial_fit(camera, ground, aspect, picture, [&](const Insets& margins) {
+    const double free =
+        aspect * (1 - insets.left - insets.right) / (1 - insets.bottom - insets.top);
+    const Fit fit = aerial_fit(camera, ground, free, picture, [&](const Insets& margins) {
         return Room::within(fov_y_rad, aspect, insets, margins);
     });
     place(camera, fit, ground.posts, orbit.zoom);

@@ -90,9 +90,11 @@ image::Picture Session::Impl::make_panorama(const Session& session, render::Pass
     if (annotated) maker.keep_depths();
     {
         const CameraKept kept(state.inputs.camera);
-        for (const PanoramaPart& shown :
-             parts_of(map, reads_around ? kMargin_px : kLeastMargin_px, kTileFrame_px,
-                      context->info().max_picture_size)) {
+        const std::vector<PanoramaPart> parts =
+            parts_of(map, reads_around ? kMargin_px : kLeastMargin_px, kTileFrame_px,
+                     context->info().max_picture_size);
+        maker.expect(parts.size());
+        for (const PanoramaPart& shown : parts) {
             const glm::dmat3 turned = axes * shown.axes;
             const scene::Camera turned_camera{camera.eye_m, turned[2], turned[1], shown.fov_y_rad};
             panorama.add(shown, maker.draw({.camera = turned_camera,

@@ -127,10 +127,14 @@ PictureMaker::PictureMaker(Session::Impl& impl)
     }
     const int side_px = side_of(std::min(format_.frame_px, kTileFrame_px), max_side_px);
     tiles_ = tiles_of(picture_px_, side_px, kMargin_px);
+    expected_ = tiles_.size();
     refuse_in_tiles();
 }
 
 void PictureMaker::draw_frame(const PictureTile& tile, const glm::dvec2& offset_px) {
+    const double all = static_cast<double>(expected_) * samples_of(scene_);
+    if (impl_.options.on_frame)
+        impl_.options.on_frame(std::min(1.0, static_cast<double>(drawn_++) / all));
     impl_.drawn->resize(tile.frame.size.x, tile.frame.size.y);
     impl_.part.reset();
     if (frame_)

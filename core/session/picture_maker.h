@@ -53,6 +53,8 @@ class PictureMaker {
 
     /// @param times  of the first frame; may be null
     void time_first_frame(render::PassTimes* times) { times_ = times; }
+    /// For Options::on_frame, before draw(). @param frames  without their samples
+    void expect(std::size_t frames) { expected_ = frames; }
     /// A frame of another camera than the scene's.
     struct Frame {
         scene::Camera camera;
@@ -95,6 +97,7 @@ class PictureMaker {
     glm::ivec2 picture_px_;
     std::vector<PictureTile> tiles_;
     render::PassTimes* times_ = nullptr;
+    std::size_t expected_ = 1, drawn_ = 0;  // frames; each sample of the drawn ones counts
     bool keeps_depths_ = false, shows_ground_ = false;
     std::optional<Frame> frame_;  // instead of tiles
     std::vector<float> depths_m_;

@@ -107,6 +107,9 @@ struct Options {
     bool allow_unmet = false;
     /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
+    /// Called before each frame of a picture with the share of its frames that are drawn, 0 to 1.
+    /// What it throws ends the picture.
+    std::function<void(double share)> on_frame{};
     /// Called with the shader sources before they are compiled.
     std::function<void(const render::StitchedFrames&)> stitched{};
 };

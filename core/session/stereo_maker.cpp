@@ -47,6 +47,7 @@ image::Picture Session::Impl::make_stereo(const Session& session, render::PassTi
     PictureMaker maker(*this);
     maker.time_first_frame(times);
     maker.keep_depths();
+    maker.expect(3);
     image::Picture left, right;
     {
         const CameraKept kept(state.inputs.camera);

@@ -120,6 +120,27 @@ TEST(Aerial, TheNearEdgeIsBelowThePictureAndTheFarEdgeInIt) {
     }
 }
 
+// What panels leave of a small window is taller than wide, whatever the window is.
+TEST(Aerial, FillsATallRoomBesidePanels) {
+    const DefaultDay day({radians(46), 0, 0});
+    const GroundNet net = dem_net(60e3, 60e3, 0, hills_m);
+    const AerialGround ground = aerial_of(net);
+    const Orbit orbit = frame_aerial(kAerial, net, ground, day).orbit;
+    constexpr double kAspect = 4.0 / 3;
+    const Insets insets{.left = 0.45, .bottom = 0.07, .top = 0.04};
+    const Camera camera = aerial_camera(orbit, ground, aerial_fov_rad(kAspect), kAspect, insets);
+    double highest = -1;
+    for (const glm::dvec3& post : ground.posts) {
+        const glm::dvec3 at = post - camera.eye_m;
+        highest = std::max(
+            highest, dot(at, camera.up) / dot(at, camera.forward) / std::tan(camera.fov_y_rad / 2));
+    }
+    // Of the free height, from its lower edge.
+    const double filled = (0.5 * (1 + highest) - insets.bottom) / (1 - insets.bottom - insets.top);
+    EXPECT_GT(filled, 0.4);
+    EXPECT_LT(filled, 0.9);
+}
+
 TEST(Aerial, AnglesDependOnTheDemAloneAndGivenOnesStay) {
     const DefaultDay day({radians(46), 0, 0});
     const GroundNet net = dem_net(60e3, 50e3, 10, hills_m);

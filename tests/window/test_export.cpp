@@ -143,6 +143,25 @@ TEST_F(ExportOrders, MeshesAreThoseOfTheirCommand) {
     }
 }
 
+TEST_F(ExportOrders, OfPicturesSayHowFarTheyAreAndCanBeCancelled) {
+    choice_.folder = folder_.string();
+    choice_.name = "poster";
+    choice_.size_px = {3000, 2000};
+    choice_.samples = 16;
+    FilesInUse files;
+    scene::Scene scene = scene_;
+    session::Session session(scene, {.device = "software"}, files);
+    const ExportOrder poster = order();
+    FileExport drawn(poster, "software", session.dem(), [] {});
+    ASSERT_TRUE(WindowedProgram::wait([&] { return drawn.share() > 0.1; }));
+    EXPECT_TRUE(drawn.can_cancel());
+    drawn.cancel();
+    ASSERT_TRUE(WindowedProgram::wait([&] { return drawn.is_done(); }));
+    EXPECT_LT(drawn.share(), 1);
+    EXPECT_THAT(drawn.result(), HasSubstr("cancelled, no file was written"));
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
 TEST_F(ExportOrders, AreRemembered) {
     const Memory memory(folder_ / "config", folder_ / "state");
     Settings settings;

@@ -320,7 +320,7 @@ TEST_F(LayersInWindow, AnOverlayOfAnotherTimeHasNoShadowsUnlessAskedFor) {
 TEST_F(LayersInWindow, AreSwitchedMovedAndRemovedInThePanel) {
     open_with_hours({"--overlay-opacity", "0.4", "--enable", "contours"});
     constexpr int kSwitch = 19, kDown = 301, kRemove = 325;
-    constexpr int kFirst = 251, kSecond = 303, kShadows = 375;  // rows
+    constexpr int kFirst = 251, kSecond = 326, kShadows = 398;  // rows
     const auto saved = [&](const std::function<bool(const nlohmann::json&)>& holds) {
         return wait([&] { return holds(scene()); });
     };
@@ -344,6 +344,16 @@ TEST_F(LayersInWindow, AreSwitchedMovedAndRemovedInThePanel) {
     // Only the overlay is left, in the first row.
     ASSERT_TRUE(changes([&] { click(kRemove, kFirst); }));
     EXPECT_TRUE(saved([](const auto& s) { return !s.contains("overlay"); }));
+}
+
+TEST_F(LayersInWindow, HaveTheSettingsOfTheirEffects) {
+    open({dem_, "--only", "contours"});
+    click(60, 300);
+    ASSERT_TRUE(settles());
+    click(152, 375);  // heights on the lines
+    EXPECT_TRUE(wait([&] {
+        return scene()["effects"].dump().find("contours.") != std::string::npos;
+    })) << scene().dump();
 }
 
 // What the window's picture shows of a choice is what a capture of the saved scene shows.

@@ -281,8 +281,7 @@ TEST_F(OpenedFiles, ReturnTakesASuggestedCrsAndOpens) {
     act({"mousemove", "420", "413", "click", "1"});
     act({"type", "--delay", "60", "1,2"});
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    for (int i = 0; i < 3; ++i)
-        act({"key", "BackSpace", "sleep", "0.4"});
+    act({"key", "--delay", "80", "BackSpace", "BackSpace", "BackSpace"});
     act({"mousemove", "420", "243", "click", "1"});
     for (int i = 0; i < 2; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));

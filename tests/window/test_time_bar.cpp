@@ -92,5 +92,16 @@ TEST_F(TimeBar, ShowsWhereGroundHidesTheSunFromThePoint) {
     EXPECT_TRUE(wait([&] { return dark() > 5; })) << dark();
 }
 
+TEST_F(Viewer, TheYearOfAPointSaysWhatItsColoursAre) {
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    act({"mousemove", "800", "500", "click", "1"});
+    constexpr glm::ivec4 kTabs{900, 600, 370, 28};
+    const auto sunny = [&] { return count_near(display_.screen(), kTabs, {255, 210, 74}); };
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(sunny(), 0);
+    act({"mousemove", "450", "615", "click", "1"});
+    EXPECT_TRUE(wait([&] { return sunny() > 100; }));
+}
+
 }  // namespace
 }  // namespace relevo::test_time_bar

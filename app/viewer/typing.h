@@ -1,0 +1,41 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+
+namespace relevo::viewer {
+
+/// An event of the keyboard, or the press of a mouse button, as GLFW reports it.
+struct Typed {
+    enum class Kind { Key, Letter, Button } kind = Kind::Key;
+    int key = 0;  ///< or mouse button
+    int scancode = 0, action = 0, mods = 0;
+    unsigned letter = 0;
+
+    bool is_press() const;
+    bool has_control() const;
+};
+
+/// Hands what was typed to the frames, in order. ImGui looks at keys once a frame, and takes
+/// letters before them (its queue of events came with version 1.87): a frame gets letters, and then
+/// at most one key that is no letter's. What follows waits, so that nothing is lost, changes its
+/// place or is taken with the Ctrl of another key.
+class Typing {
+  public:
+    void add(const Typed& typed) { waiting_.push_back(typed); }
+    bool is_waiting() const { return !waiting_.empty(); }
+    /// Whether a button of the mouse was pressed after what frames have got.
+    bool awaits(int button) const;
+    /// Hands over what the next frame gets. Nothing until frame() after a call that did.
+    /// @param in_text  a text field has the keyboard
+    void hand_over(bool in_text, const std::function<void(const Typed&)>& take);
+    /// A frame took it.
+    void frame();
+
+  private:
+    std::deque<Typed> waiting_;
+    bool awaits_frame_ = false;
+    int holds_ = 0;  // so many frames
+};
+
+}  // namespace relevo::viewer
