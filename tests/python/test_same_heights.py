@@ -57,3 +57,9 @@ def test_errors(name):
         with pytest.raises(relevo.BadInput, match=WRONG[name]):
             with relevo.open(source, **options) as dem:
                 dem.sun.shadow(sun=(123, 12))
+
+
+def test_bag_of_rasterio_has_heights_though_its_crs_says_depths():
+    file, dataset = list(sources("sample.bag"))[:2]
+    made = [relevo.open(source).heights().values for source in (file[0], dataset[0])]
+    assert made[0].max() > 90 and (made[0] == made[1]).all()

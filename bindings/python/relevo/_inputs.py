@@ -123,14 +123,17 @@ def of_rasterio(dataset: Any, band: int, crs: Any, nodata: Nodata, unit: Optiona
     has_mask = bool(flags & {"per_dataset", "alpha"}) and "nodata" not in flags
     void = _void_of(nodata, dataset.nodatavals[band - 1])
     values, known = plain_heights(dataset.read(band, masked=has_mask), void)
+    text = crs_text(dataset.crs if crs is None else crs)
+    # All BAG files have heights, though the vertical CRS of some has its axis downwards.
+    sign = -1.0 if dataset.driver == "BAG" and "DOWN]" in text.upper() else 1.0
     return Heights(
         values,
         read_transform(dataset.transform),
-        crs_text(dataset.crs if crs is None else crs),
+        text,
         unit or dataset.units[band - 1] or None,
         known or has_mask,
-        float(dataset.scales[band - 1]),
-        float(dataset.offsets[band - 1]),
+        sign * float(dataset.scales[band - 1]),
+        sign * float(dataset.offsets[band - 1]),
     )
 
 
