@@ -1,16 +1,16 @@
 //! provides  shafts: shares of the sun in the air before each pixel, after occlusion by terrain
 //! hook      visibility, atmosphere, sky
 //! reads     shadow clearances of all posts, heights of the DEM, depth of the ground
-//! writes    air_sun_shares (lib/air_pixel.glsl), from which haze and fog take their light; the sky's radiance
-//! source    docs/light: heights of shadows by core/light/sweep; the air by core/sky/eye_tables.h
+//! writes    air_sun_shares (lib/air_sun.glsl), from which haze and fog take their light; the sky's radiance
+//! source    heights of shadows: core/light/sweep; the air: core/sky/eye_tables.h
 
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
 //@ include lib/air_sun.glsl
 //@ include lib/ground.glsl
-//@ include lib/pixel_half.glsl
 //@ include lib/height_means.glsl
 //@ include lib/pixel.glsl
+//@ include lib/pixel_half.glsl
 //@ include lib/screen.glsl
 //@ include lib/sun_share.glsl
 
@@ -18,7 +18,7 @@ uniform sampler2D shafts_edge;
 uniform sampler2D shafts_view;
 uniform sampler2D shafts_depths; //@ from(core.ground_depth)
 
-const int shafts_steps = 8;       // in each of the three parts of a ray
+const int shafts_steps = 8;  // in each of the three parts of a ray
 const float shafts_far_m = 1e6;
 const float shafts_earth_m = 6371000.0;
 
