@@ -25,9 +25,10 @@ namespace {
     if (!std::filesystem::exists(source_dir() / "plugins" / (id))) \
     GTEST_SKIP() << "the plugin " << (id) << " is not there"
 
-/// Effects that leave the bundled DEM as it is: they paint voids, slopes that it lacks, or what a
-/// file has that users name, or summits.
-const std::set<std::string> kSilent{"avalanche", "blank", "drape", "infill", "labels", "summits"};
+/// Effects that leave the bundled DEM as it is: they paint voids, slopes that it lacks, what a file
+/// has that users name, summits, or the shade of air that another effect draws.
+const std::set<std::string> kSilent{"avalanche", "blank",  "drape",  "infill",
+                                    "labels",    "shafts", "summits"};
 
 class Toggles : public testing::Test {
   protected:

@@ -46,7 +46,7 @@ TEST(BashCompletion, ProposesCommandsOptionsAndValues) {
     EXPECT_EQ(by_bash({"relevo", "cap"}), Words{"capture"});
     EXPECT_EQ(by_bash({"relevo", "sun", "ho"}), (Words{"horizon", "horizons", "hours"}));
     EXPECT_EQ(by_bash({"relevo", "capture", "--en"}), (Words{"--enable", "--encoding"}));
-    EXPECT_EQ(by_bash({"relevo", "capture", "--enable", "sh"}), Words{"shadows"});
+    EXPECT_EQ(by_bash({"relevo", "capture", "--enable", "shad"}), Words{"shadows"});
     EXPECT_EQ(by_bash({"relevo", "capture", "--enable", "haze,sky"}),
               (Words{"haze,sky", "haze,skylight"}));
     EXPECT_EQ(by_bash({"relevo", "capture", "a.tif", "--set", "haze.d"}), Words{"haze.density="});
@@ -80,7 +80,7 @@ TEST(FishCompletion, ProposesTheSame) {
             words.push_back(one.substr(0, one.find('\t')));
         return words;
     };
-    EXPECT_EQ(proposed("relevo capture --enable sh"), Words{"shadows"});
+    EXPECT_EQ(proposed("relevo capture --enable shad"), Words{"shadows"});
     EXPECT_EQ(proposed("relevo sun hours --tz Europe/Zur"), Words{"Europe/Zurich"});
     EXPECT_EQ(proposed("relevo capture --set haze.d"), Words{"haze.density="});
     EXPECT_EQ(proposed("relevo sun hours --ba"), (Words{"--band", "--bands"}));
