@@ -53,9 +53,16 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (const float width = ImGui::GetWindowWidth(); width != side.size.x)
         state.settings.panel_width = static_cast<int>(std::lround(width / px_a_unit));
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
-    // A double click edits a slider's number, as Ctrl and a click do.
-    bool& control = ImGui::GetIO().KeyCtrl;
-    const bool was_down = std::exchange(control, control || ImGui::IsMouseDoubleClicked(0));
+    // A double click edits a slider's number, as Ctrl and a click do. A text field has double
+    // clicks of its own, and ImGui ends the program where one of the two says otherwise than the
+    // other.
+    ImGuiIO& io = ImGui::GetIO();
+    const bool was_down = io.KeyCtrl;
+    const ImGuiKeyModFlags were_down = io.KeyMods;
+    if (ImGui::IsMouseDoubleClicked(0) && !io.WantTextInput) {
+        io.KeyCtrl = true;
+        io.KeyMods |= ImGuiKeyModFlags_Ctrl;
+    }
     state.measurement.marked.reset();
     if (state.measurement.profile && ImGui::CollapsingHeader(tr_label("Measured line"), kOpen))
         measurement_panel(state);
@@ -66,7 +73,8 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (ImGui::CollapsingHeader(tr_label("Point"), kOpen)) roomy_point_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Effects"), kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader(tr_label("Export"), kOpen)) export_panel(state);
-    control = was_down;
+    io.KeyCtrl = was_down;
+    io.KeyMods = were_down;
     ImGui::End();
 }
 
