@@ -249,6 +249,15 @@ TEST_F(Viewer, LosesNoKeyThatIsTypedWithinAFrame) {
     expect_view_of_place(resting_scene()["camera"]);
 }
 
+// Elsewhere in the panel it edits a slider's number.
+TEST_F(Viewer, ADoubleClickInATextFieldSelectsItsWord) {
+    open({dem_, "--only"});
+    act({"mousemove", "170", "401", "sleep", "0.3", "click", "1", "sleep", "0.5"});
+    EXPECT_TRUE(changes([&] { act({"type", "haze"}); }, 0.01)) << "the list has one effect";
+    act({"click", "--repeat", "2", "--delay", "60", "1", "sleep", "1"});
+    EXPECT_TRUE(changes([&] { act({"key", "BackSpace"}); }, 0.01)) << program_->output();
+}
+
 TEST_F(Viewer, MovesTheSunByKeysAndLetsTheDayPass) {
     open({dem_, "--time", "2026-06-21T18:00:00Z"});
     ASSERT_TRUE(changes(
