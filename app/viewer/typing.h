@@ -16,10 +16,10 @@ struct Typed {
     bool has_control() const;
 };
 
-/// Hands what was typed to the frames, in order. ImGui looks at keys once a frame, and takes
-/// letters before them (its queue of events came with version 1.87): a frame gets letters, and then
-/// at most one key that is no letter's. What follows waits, so that nothing is lost, changes its
-/// place or is taken with the Ctrl of another key.
+/// Hands what was typed to the frames, in order. ImGui looks at keys once a frame, and at letters
+/// before them (its queue of events came with version 1.87). So a frame gets letters and then one
+/// key that writes no letter. The rest waits for the next frame: no key is lost, comes before an
+/// earlier one, or is taken with another key's Ctrl.
 class Typing {
   public:
     void add(const Typed& typed) { waiting_.push_back(typed); }
