@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/held_notices.h"
 #include "cli/commands.h"
-#include "dem/files_of.h"
 #include "dem/source.h"
 
 namespace relevo::cli {
@@ -32,10 +31,10 @@ void ExportArguments::open(FilesInUse& files, bool scale_file) {
     check_ending();
     if (scene().holes == dem::Holes::Mark)
         bad_usage("--holes: mark paints pictures, expected fill or cut");
-    dem::add_named(dem.paths, files);
+    dem.add_named(files);
     file_ = &files.open_output(path, overwrite, "-o");
     if (scale_file) scale_file_ = &files.open_output(path + ".json", overwrite, "-o");
-    dem::add_all(dem.paths, files);
+    dem.add_all(files);
 }
 
 output::ExportedGround ExportArguments::read(const std::optional<glm::ivec2>& size,

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "dem/files_of.h"
 #include "geo/geodetic.h"
 
 namespace relevo::cli {
@@ -109,6 +110,25 @@ void DemArguments::add_to(Verb verb) {
         .group("DEM");
 }
 
+void DemArguments::add_surroundings_to(Verb verb) {
+    verb.add_option("--surroundings", surroundings,
+                    "Wider, coarser DEM in which this one lies: its ground shades, too; may be "
+                    "repeated, several are one DEM")
+        .one_word()
+        .needs(dem_option)
+        .group("DEM");
+}
+
+void DemArguments::add_named(FilesInUse& files) const {
+    dem::add_named(paths, files);
+    dem::add_named(surroundings, files, "the surroundings");
+}
+
+void DemArguments::add_all(FilesInUse& files) const {
+    dem::add_all(paths, files);
+    dem::add_all(surroundings, files, "the surroundings");
+}
+
 void DemArguments::apply_to(scene::Scene& scene) const {
     if (!paths.empty()) scene.dems = paths;
     values.apply_to(scene);
@@ -124,6 +144,7 @@ void DemArguments::apply_to(scene::Scene& scene) const {
 dem::LoadOptions DemArguments::options() const {
     scene::Scene scene;
     apply_to(scene);
+    scene.dem.surroundings = surroundings;
     return scene.dem;
 }
 

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/files_in_use.h"
 #include "cli/verb.h"
 #include "figure/options.h"
 #include "light/point/refraction_at.h"
@@ -61,9 +62,16 @@ struct DemArguments {
     bool no_nodata = false;
     std::optional<dem::Bounds> bounds;
     bool no_cache = false;
+    std::vector<std::string> surroundings;
     Option dem_option;
 
     void add_to(Verb verb);
+    /// --surroundings, for verbs of light over Posts.
+    void add_surroundings_to(Verb verb);
+    /// What a run reads: names, before an output is opened, and then all files behind them.
+    /// @throws Error as FilesInUse::add_input
+    void add_named(FilesInUse& files) const;
+    void add_all(FilesInUse& files) const;
     /// Puts what was given in the place of what a scene says.
     void apply_to(scene::Scene& scene) const;
     dem::LoadOptions options() const;

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "base/text.h"
-#include "dem/files_of.h"
 #include "geo/crs.h"
 #include "image/image.h"
 #include "sun/event_time.h"
@@ -117,6 +116,7 @@ report::View LightArguments::view() const {
 
 void TerrainArguments::add_to(Verb verb) {
     dem.add_to(verb);
+    dem.add_surroundings_to(verb);
     add_number(verb, figure::kTerrestrialRefraction, refraction, "-k,").group("Horizon");
     add_number(verb, figure::kHighestAtPoint_m, highest_m).group("Horizon");
 }
@@ -142,9 +142,9 @@ void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_
 OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
     if (path.empty()) return nullptr;
     check_ending();
-    dem::add_named(dem.paths, files);
+    dem.add_named(files);
     OutputFile& file = files.open_output(path, overwrite, "-o");
-    dem::add_all(dem.paths, files);
+    dem.add_all(files);
     return &file;
 }
 

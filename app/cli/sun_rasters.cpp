@@ -96,6 +96,7 @@ void add_tiles(Verb verb, RasterArguments& arguments) {
 void RasterArguments::add_to(Verb verb_of_rasters, figure::Figure& figure) {
     verb = verb_of_rasters;
     dem.add_to(*verb);
+    dem.add_surroundings_to(*verb);
     add_number(*verb, figure::kTerrestrialRefraction, figure.terrestrial_refraction, "-k,");
     output.endings = {"tif", "tiff"};
     verb->add_option("-o,--output", output.path,
@@ -150,10 +151,11 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
     if (!tiles.given()) return output.open(files, dem);
     const std::filesystem::path folder = output.path;
-    dem::add_named(dem.paths, files);
+    dem.add_named(files);
     if (output.overwrite)
-        for (const std::filesystem::path& path : dem::files_of(dem.paths))
-            files.add_input(path, "a file that the DEM is read from,");
+        for (const auto& paths : {dem.paths, dem.surroundings})
+            for (const std::filesystem::path& path : dem::files_of(paths))
+                files.add_input(path, "a file that the DEM is read from,");
     if (!parse_number(tiles.tiles)) files.add_input(tiles.tiles, "the index of tiles");
     check_results(*this, folder, files);
     return nullptr;

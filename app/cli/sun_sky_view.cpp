@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include <fmt/format.h>
@@ -15,11 +16,12 @@ struct Arguments {
     RasterArguments raster;
     Figure figure;
 
-    /// @returns whether files were made, as RasterArguments::make()
-    bool make() const {
+    /// @param say  what came of it; is called if files were made
+    void make(const std::function<void(const dem::Posts&)>& say) const {
         FilesInUse files;
         OutputFile* const file = raster.open(files);
-        return raster.make(file, files, raster.load(), figure);
+        const figure::RasterGround ground = raster.load();
+        if (raster.make(file, files, ground, figure)) say(ground.posts);
     }
 };
 
@@ -32,18 +34,20 @@ void run(Arguments<figure::SkyView>& arguments) {
         posts += seen;
         definition = part.definition;
     };
-    if (arguments.make())
+    arguments.make([&](const dem::Posts&) {
         fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts),
                    definition);
+    });
 }
 
 void run(Arguments<figure::Horizons>& arguments) {
     const figure::Horizons& figure = arguments.figure;
-    if (arguments.make())
+    arguments.make([&](const dem::Posts& posts) {
         fmt::print(
             "horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
             figure.directions, 360.0 / figure.directions,
-            light::horizons_definition(figure.terrestrial_refraction));
+            light::horizons_definition(posts, figure.terrestrial_refraction));
+    });
 }
 
 template <typename Figure>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -64,13 +63,7 @@ namespace {
 
 /// Takes the members of the options that say how numbers in memory become heights.
 dem::Stored take_stored(json::Value& options) {
-    json::Value own;
-    own.kind = json::Value::Kind::Object;
-    const auto is_own = [](const auto& member) {
-        return member.name == "scale" || member.name == "offset" || member.name == "voids_known";
-    };
-    std::ranges::copy_if(options.members, std::back_inserter(own.members), is_own);
-    std::erase_if(options.members, is_own);
+    const json::Value own = take_members(options, {"scale", "offset", "voids_known"});
     json::ObjectReader reader("heights", "options", "", own);
     constexpr double kMost = 1e7;
     dem::Stored stored{.scale = reader.number("scale", 1, -kMost, kMost, false),
@@ -137,6 +130,8 @@ relevo_result relevo_dem_around(relevo_dem* dem, relevo_dem* around) {
     return c::guarded("relevo_dem_around", [&] {
         const auto of = c::dems().get(dem, "dem");
         if (dem == around) throw c::BadCall{"around: expected another DEM"};
+        if (!of->named().dem.surroundings.empty())
+            throw c::BadCall{"dem: was opened with surroundings already"};
         of->set_around(around ? c::dems().get(around, "around") : nullptr);
     });
 }

@@ -1,10 +1,13 @@
 #include "options.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/allowed_name.h"
+#include "base/contains.h"
 #include "base/error.h"
 #include "scene/options.h"
 #include "scene/scene_reader.h"
@@ -51,6 +54,15 @@ std::string refraction_name(const std::string& name, const std::string& who) {
     return name;
 }
 
+json::Value take_members(json::Value& object, const std::vector<std::string>& names) {
+    json::Value own;
+    own.kind = json::Value::Kind::Object;
+    const auto is_own = [&](const auto& member) { return contains(names, member.name); };
+    std::ranges::copy_if(object.members, std::back_inserter(own.members), is_own);
+    std::erase_if(object.members, is_own);
+    return own;
+}
+
 json::Value parse_dem(const char* text) {
     return json::parse("dem", kText, text ? text : "{}");
 }
@@ -68,11 +80,14 @@ scene::Scene read_dem(const std::vector<std::string>& files, json::Value dem) {
         item.text = file;
     }
     if (dem.kind == json::Value::Kind::Object) dem.members.push_back({"files", std::move(list)});
+    const json::Value own = take_members(dem, {"surroundings"});
+    allow_names(own);
     json::Value whole;
     whole.kind = json::Value::Kind::Object;
     whole.members.push_back({"dem", std::move(dem)});
     scene::Scene scene;
     take(scene, whole, {});
+    scene.dem.surroundings = json::ObjectReader("dem", kText, "", own).strings("surroundings");
     return scene;
 }
 

@@ -47,10 +47,13 @@ void change_scene(scene::Scene& scene, const char* text, const std::filesystem::
 std::string refraction_name(const std::string& name, const std::string& who);
 
 /// A scene of a DEM.
-/// @param text  members of `dem` without `files`; null: none
+/// @param text  members of `dem` without `files`, and `surroundings`; null: none
 /// @throws Error (BadInput)
 scene::Scene read_dem(const std::vector<std::string>& files, const char* text);
 scene::Scene read_dem(const std::vector<std::string>& files, json::Value dem);
+
+/// Takes members out of an object, into one of their own.
+json::Value take_members(json::Value& object, const std::vector<std::string>& names);
 
 /// JSON of a DEM, as read_dem() takes it. @throws Error (BadInput)
 json::Value parse_dem(const char* text);

@@ -22,7 +22,6 @@
 #include "figure/raster_run.h"
 #include "figure/run.h"
 #include "figure/shadow.h"
-#include "light/raster/sun_terrain.h"
 #include "options.h"
 #include "session/words.h"
 
@@ -59,7 +58,11 @@ class FigureCall {
         if (!crs.empty()) clip_->crs = geo::Crs::parse(crs, "options: clip_crs");
     }
 
-    const dem::Posts& posts() { return dem_->posts(); }
+    const dem::Posts& posts() {
+        if (!around_) return dem_->posts();
+        if (!nested_) nested_ = dem_->posts().in({around_, &around_->posts()});
+        return *nested_;
+    }
     /// The DEM, or the wider one around it.
     Dem& whole() { return around_ ? *around_ : *dem_; }
     light::TerrainAccess terrain() {
@@ -77,6 +80,7 @@ class FigureCall {
     }
 
     std::shared_ptr<Dem> dem_, around_;
+    std::optional<dem::Posts> nested_;
     Progress progress_;
     const char** about_;
     std::optional<dem::Clip> clip_;
@@ -95,24 +99,22 @@ class RasterCall : public FigureCall {
         check_count("count", count_, band_size() * bands.size());
         const dem::Window window = this->window();
         if (clip_) std::fill_n(values_, count_, std::nanf(""));
-        const dem::Posts* const around = around_ ? &around_->posts() : nullptr;
-        const std::optional<light::Beyond> beyond = figure.beyond(
-            whole().posts(),
-            around ? light::window_over(around->grid(), dem_->grid(), window) : window);
+        const dem::Posts& posts = this->posts();
+        const std::optional<light::Beyond> beyond = figure.beyond(posts, window);
         if (beyond) log::warning(beyond->advice());
         const figure::PartMade made = figure::make_all(
-            figure, posts(), window, dem_->named().dem.memory,
+            figure, posts, whole().grid().center(), window, dem_->named().dem.memory,
             [this](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
                 put(band, part, values);
             },
-            [this](double share) { progress_.add(share); }, around);
+            [this](double share) { progress_.add(share); });
         if (!about_) return;
         nlohmann::ordered_json json{{"definition", made.definition}, {"holes", made.holes}};
         for (const output::RasterBand& band : bands)
             json["bands"].push_back({{"name", band.name}, {"unit", band.unit}});
         if (beyond) json["beyond"] = beyond->text(figure.would());
         for (const auto& [key, value] :
-             figure::metadata_of(figure, posts(), RELEVO_VERSION, made, window))
+             figure::metadata_of(figure, posts, RELEVO_VERSION, made, window))
             json["metadata"][key] = value;
         *about_ = returned_text(json.dump());
     }

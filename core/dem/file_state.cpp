@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include "base/error.h"
@@ -118,11 +119,11 @@ std::string text_of(const LoadOptions& options) {
     const auto bounds = options.bounds.value_or(Bounds{});
     return fmt::format(
         "crs {}\nband {}\nunit {}\nnodata {:.17g} {} {}\nencoding {}\ncrop {}\nbounds {} {:.17g} "
-        "{:.17g} {:.17g} {:.17g}\n",
+        "{:.17g} {:.17g} {:.17g}\n{}",
         options.crs, options.band, options.unit, options.nodata.value_or(0),
         options.nodata.has_value(), options.no_nodata, static_cast<int>(options.encoding),
         options.crop, options.bounds.has_value(), bounds.west_deg, bounds.south_deg,
-        bounds.east_deg, bounds.north_deg);
+        bounds.east_deg, bounds.north_deg, fmt::join(options.surroundings, "\n"));
 }
 
 std::optional<std::string> state_of_files(std::span<const std::string> paths,

@@ -99,6 +99,8 @@ struct Description {
     /// `nodata` in as many digits as the file's type has: "-3.4028235e+38"; empty where none.
     std::string nodata_text() const;
 
+    std::string joined;  ///< surroundings.h: how heights became the site's; empty: they are as read
+
     std::string vertical_datum;  ///< what heights are above, as the file says; empty: it does not
 
     /// Whole sentences, for people: every choice that the file did not make itself.

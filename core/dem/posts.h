@@ -43,13 +43,17 @@ class Posts {
     ///     has a height
     Posts(const Source& source, std::int64_t max_posts);
 
-    /// Opens files and holds their posts in memory where LoadOptions::memory allows that.
+    /// Opens files and holds their posts in memory where LoadOptions::memory allows that. With
+    /// LoadOptions::surroundings these are read too, with half of the memory; posts in memory that
+    /// have no height get theirs.
     /// @throws Error (BadInput) as dem::load, and for heights that no ground of the Earth has
     /// @param facts  of the same DEM: one beyond memory is then opened and not read, and its
     /// heights
     ///     are not checked again. Figures are the same; bound_m() is the highest post everywhere
     static Posts load(std::span<const std::string> paths, const LoadOptions& options = {},
                       const PostsFacts* facts = nullptr);
+    /// The same of what is open already, without surroundings.
+    static Posts load(Source source, const LoadOptions& options);
     /// Of posts that are not unrolled().
     PostsFacts facts() const;
     /// A hash of all heights and their places (content_of()). Of posts that are not unrolled().
@@ -61,6 +65,14 @@ class Posts {
     static Posts unrolled(const Posts& posts, int first, int columns);
     /// A turn of them with a place in the middle; none of a grid that does not go round the Earth.
     static std::optional<Posts> around(const Posts& posts, const geo::Geodetic& place);
+
+    /// The same posts with a wider DEM around them, whose ground shades them, too.
+    /// @param surroundings  null: none
+    /// @param rim           of how many posts, as rimmed() makes it
+    Posts in(std::shared_ptr<const Posts> surroundings, int rim = 0) const;
+    /// That DEM; null: there is none.
+    const Posts* surroundings() const { return surroundings_.get(); }
+    int rim() const { return rim_; }
 
     Posts(Posts&&) noexcept;
     Posts& operator=(Posts&&) noexcept;
@@ -106,8 +118,10 @@ class Posts {
 
   private:
     struct Impl;
-    explicit Posts(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    explicit Posts(std::shared_ptr<Impl> impl);
+    std::shared_ptr<Impl> impl_;
+    std::shared_ptr<const Posts> surroundings_;
+    int rim_ = 0;
 };
 
 }  // namespace relevo::dem

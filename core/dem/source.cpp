@@ -78,7 +78,15 @@ Array2d<float> Source::read(const Window& window, int columns, int rows) const {
         height_m = all ? impl_->read_stored(window) : impl_->read_means(window, columns, rows);
     } while (broken_while_read() != before);
     if (impl_->leaves_earth) cut_to_earth(grid().part(window, columns, rows), height_m);
+    if (impl_->shift_m != 0)
+        for (float& height : height_m)
+            height += impl_->shift_m;
     return height_m;
+}
+
+void Source::raise(double shift_m, const std::string& how) {
+    impl_->shift_m = static_cast<float>(shift_m);
+    impl_->about.joined = how;
 }
 
 Source::Blank Source::Impl::blank(const Window& window) const {
@@ -109,7 +117,9 @@ Source::Blank Source::Impl::blank(const Window& window) const {
 }
 
 Source::Blank Source::blank(const Window& window) const {
-    return impl_->blank(window);
+    Blank blank = impl_->blank(window);
+    blank.height_m += impl_->shift_m;
+    return blank;
 }
 
 int Source::block_rows() const {

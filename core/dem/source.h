@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/memory_budget.h"
 #include "dem/encoding.h"
@@ -30,6 +31,9 @@ struct LoadOptions {
     /// `--memory`. load() averages a raster with more posts down by a power of two, and the
     /// description says by which.
     MemoryBudget memory = MemoryBudget::of_mib(MemoryBudget::kDefault_mib);
+    /// `--surroundings`: wider and coarser DEMs in which this one lies, as their files say they
+    /// are. Posts::load() alone reads them (surroundings.h).
+    std::vector<std::string> surroundings = {};
     /// Averaged levels of large DEMs are kept in the user's cache (LevelCache). Never so for
     /// libraries, which write no files unasked.
     bool cached = false;
@@ -65,6 +69,10 @@ class Source {
     Source(Source&&) noexcept;
     Source& operator=(Source&&) noexcept;
     ~Source();
+
+    /// From now on all heights are so much higher, but for stored().
+    /// @param how  Description::joined
+    void raise(double shift_m, const std::string& how);
 
     const Grid& grid() const;                ///< of all posts
     const Description& description() const;  ///< all but the statistics

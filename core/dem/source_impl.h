@@ -25,6 +25,7 @@ struct Source::Impl {
     Description about;
     std::int64_t work_bytes = 0;   // MemoryBudget::work_bytes
     std::int64_t block_bytes = 0;  // MemoryBudget::block_bytes
+    float shift_m = 0;             // of all heights, by raise()
     bool leaves_earth = false;     // some posts have no place
 
     /// Leaves the posts of a window. Rasters keep theirs, of which some are then outside.

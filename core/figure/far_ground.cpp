@@ -65,7 +65,7 @@ FarGround::FarGround(const std::vector<std::string>& paths, const dem::LoadOptio
     if (!kept || kept->width() != width || kept->height() != height)
         kept = source_.read(all, width, height);
     field_ = field_of(std::move(*kept), posts, all);
-    around_.emplace(*field_);
+    around_ = std::make_shared<const dem::Posts>(*field_);
 }
 
 void FarGround::write(const std::filesystem::path& folder) const {
@@ -124,10 +124,9 @@ FarGround::Site FarGround::site_of(const dem::Window& tile) {
     made.field = field_of(read_site(site), posts_, site);
     last_ = made.field;
     last_site_ = site;
-    made.posts.emplace(*made.field);
     const bool is_all =
         site.columns == posts_.grid().columns() && site.rows == posts_.grid().rows();
-    if (!is_all) made.around = &*around_;
+    made.posts = dem::Posts(*made.field).in(is_all ? nullptr : around_);
     made.tile = {tile.column - site.column, tile.row - site.row, tile.columns, tile.rows};
     return made;
 }

@@ -45,9 +45,8 @@ class FarGround {
     /// A tile with its halo.
     struct Site {
         std::shared_ptr<const dem::Heightfield> field;
-        std::optional<dem::Posts> posts;
-        const dem::Posts* around = nullptr;  ///< null: the site is all of the DEM
-        dem::Window tile;                    ///< of these posts
+        std::optional<dem::Posts> posts;  ///< in the means, unless the site is all of the DEM
+        dem::Window tile;                 ///< of these posts
     };
     /// Reads what the last site does not have.
     Site site_of(const dem::Window& tile);
@@ -65,7 +64,7 @@ class FarGround {
     double halo_m_;
     int means_;
     std::unique_ptr<const dem::Heightfield> field_;  // of means
-    std::optional<dem::Posts> around_;
+    std::shared_ptr<const dem::Posts> around_;
     std::shared_ptr<const dem::Heightfield> last_;  // of site_of()
     dem::Window last_site_;
 };

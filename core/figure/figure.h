@@ -29,8 +29,6 @@ using Put = std::function<void(std::size_t band, const dem::Window& part, Array2
 struct Work {
     /// All of a DEM, or a tile with its halo. Outlive the maker.
     const dem::Posts& posts;
-    /// A wider and coarser DEM, as light::SunPlan takes it; may be null.
-    const dem::Posts* around = nullptr;
     dem::Window window{};    ///< posts of which parts will be asked for
     geo::Geodetic middle{};  ///< of the whole DEM
     Put put;

@@ -27,7 +27,7 @@ std::optional<light::Beyond> Directions::beyond(const dem::Posts& posts,
 
 std::shared_ptr<light::SunPlan> Directions::plan(const Work& work) const {
     return std::make_shared<light::SunPlan>(
-        work.posts, light::LightPath{terrestrial_refraction, {}}, work.window, false, work.around);
+        work.posts, light::LightPath{terrestrial_refraction, {}}, work.window);
 }
 
 output::RasterMetadata SkyView::metadata(const dem::Posts&) const {
@@ -64,7 +64,7 @@ std::vector<output::RasterBand> Horizons::bands() const {
 PartMaker Horizons::maker(Work work) const {
     const auto plan = this->plan(work);
     light::add_horizon_directions(*plan, azimuths());
-    const std::string definition = light::horizons_definition(terrestrial_refraction);
+    const std::string definition = light::horizons_definition(work.posts, terrestrial_refraction);
     return [plan, definition, put = std::move(work.put),
             done = std::move(work.done)](const dem::Window& part) {
         PartMade made{0, definition};

@@ -149,7 +149,6 @@ light::SunHoursOptions Hours::options() const {
 PartMaker Hours::maker(Work work) const {
     light::SunHoursOptions options = this->options();
     options.part = work.window;
-    options.around = work.around;
     options.done = std::move(work.done);
     options.mixes_suns = work.is_estimate;
     const auto plan =

@@ -55,8 +55,9 @@ dem::Window around(const dem::Window& a, const dem::Window& b) {
 
 std::string stamp_of_dem(const std::vector<std::string>& paths, const dem::LoadOptions& options) {
     std::vector<std::string> files = paths;
-    for (const std::filesystem::path& file : dem::files_of(paths))
-        files.push_back(file.string());
+    for (const auto& of : {paths, options.surroundings})
+        for (const std::filesystem::path& file : dem::files_of(of))
+            files.push_back(file.string());
     return sha256_of_text(output::stamp_of(files) + dem::text_of(options));
 }
 
@@ -96,6 +97,8 @@ void RasterRun::choose_tiles() {
     const dem::Posts& posts = ground_.posts;
     std::vector<output::PlannedTile> tiles = options_.tiles.of(posts.grid(), ground_.window);
     if (options_.tiles.halo_km) {
+        if (posts.surroundings())
+            bad_usage("--halo: not with --surroundings; make tiles without a halo");
         halo_m_ = *options_.tiles.halo_km * 1000;
         for (const output::PlannedTile& tile : tiles)
             FarGround::require_room(posts.grid(), halo_m_, tile.window, ground_.options.memory);
@@ -148,11 +151,9 @@ void RasterRun::count(double of_call) {
     if (is_dry() && worked_s > kEnough_s && share_ < 1 && sampled_.suffices()) throw Enough();
 }
 
-PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Posts* around,
-                              const dem::Window& window) {
+PartMaker RasterRun::maker_of(const dem::Posts& posts, const dem::Window& window) {
     return figure_.maker(
         {.posts = posts,
-         .around = around,
          .window = window,
          .middle = ground_.posts.grid().center(),
          .put =
@@ -169,7 +170,7 @@ void RasterRun::make_all() {
     if (is_done()) return;
     try {
         PartMaker make_part;
-        if (!far_) make_part = maker_of(ground_.posts, nullptr, window_);
+        if (!far_) make_part = maker_of(ground_.posts, window_);
         ready_s_ = passed_s_ = seconds_since(began_);
         for (const output::PlannedTile& tile : todo_)
             if (far_)
@@ -190,7 +191,7 @@ std::vector<dem::Window> RasterRun::parts_of(const dem::Window& raster) const {
 void RasterRun::make_far(const output::PlannedTile& tile) {
     const Progress::Clock::time_point began = Progress::Clock::now();
     const FarGround::Site site = far_->site_of(tile.window);
-    const PartMaker make_part = maker_of(*site.posts, site.around, site.tile);
+    const PartMaker make_part = maker_of(*site.posts, site.tile);
     sites_s_ += seconds_since(began);
     ++sites_;
     make(tile, site.tile, make_part, *site.posts);

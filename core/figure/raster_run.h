@@ -73,9 +73,8 @@ class RasterRun {
     double halo_m() const { return halo_m_; }
 
   private:
-    /// @param posts, around, window  as Work
-    PartMaker maker_of(const dem::Posts& posts, const dem::Posts* around,
-                       const dem::Window& window);
+    /// @param posts, window  as Work
+    PartMaker maker_of(const dem::Posts& posts, const dem::Window& window);
     void count(double of_call);
     /// Creation options of the result: as many threads as memory allows, and what the user says.
     std::vector<std::string> options_of_file() const;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "dem/surroundings.h"
+
 namespace relevo::figure {
 
 output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts,
@@ -19,6 +21,8 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
         {"DEM", posts.about().path},
         {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", figure.terrestrial_refraction)},
         {"HOLES", fmt::format("{}", made.holes)}};
+    if (const std::string around = dem::surroundings_text(posts, ""); !around.empty())
+        about.emplace_back("SURROUNDINGS", around);
     const dem::TileReport& tiles = posts.about().tiles;
     if (tiles.missing.count > 0)
         about.emplace_back("TILES_MISSING",
@@ -77,14 +81,13 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
     return sum;
 }
 
-PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
-                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done,
-                  const dem::Posts* around) {
+PartMade make_all(const Figure& figure, const dem::Posts& posts, const geo::Geodetic& middle,
+                  const dem::Window& all, const MemoryBudget& memory, Put put,
+                  const std::function<void(double)>& done) {
     double share = 1;  // of a call
     const PartMaker make = figure.maker({.posts = posts,
-                                         .around = around,
                                          .window = all,
-                                         .middle = (around ? *around : posts).grid().center(),
+                                         .middle = middle,
                                          .put = std::move(put),
                                          .done = [&](double of_call) {
                                              if (done) done(share * of_call);
@@ -101,7 +104,8 @@ Raster raster_of(const Figure& figure, const dem::Posts& posts,
     const auto put = [&](std::size_t, const dem::Window&, Array2d<float> values) {
         raster.values = std::move(values);
     };
-    raster.made = make_all(figure, posts, whole_window(posts.grid()), {}, put, done);
+    raster.made =
+        make_all(figure, posts, posts.grid().center(), whole_window(posts.grid()), {}, put, done);
     return raster;
 }
 
@@ -129,7 +133,9 @@ void write_raster(OutputFile& file, const Figure& figure, const dem::Posts& post
     const auto put = [&](std::size_t band, const dem::Window& part, const Array2d<float>& values) {
         raster.put(band, part.column, part.row, values);
     };
-    const PartMade made = whole ? whole->made : make_all(figure, posts, all, memory, put, done);
+    const PartMade made =
+        whole ? whole->made
+              : make_all(figure, posts, posts.grid().center(), all, memory, put, done);
     output::RasterMetadata more;
     if (const auto beyond = figure.beyond(posts, all))
         more.emplace_back("BEYOND_DEM", beyond->text(figure.would()));

@@ -27,12 +27,12 @@ PartMade make_parts(const PartMaker& make, const std::vector<dem::Window>& parts
                     const std::function<void(const dem::Window& part)>& begin);
 
 /// Makes all of a window, shaded by the whole DEM.
+/// @param middle  as Work::middle
 /// @param done    called with the fraction completed since its last call; an exception from it ends
 ///     the work
-/// @param around  as Work::around
-PartMade make_all(const Figure& figure, const dem::Posts& posts, const dem::Window& all,
-                  const MemoryBudget& memory, Put put, const std::function<void(double)>& done = {},
-                  const dem::Posts* around = nullptr);
+PartMade make_all(const Figure& figure, const dem::Posts& posts, const geo::Geodetic& middle,
+                  const dem::Window& all, const MemoryBudget& memory, Put put,
+                  const std::function<void(double)>& done = {});
 
 /// The first band of a whole DEM.
 struct Raster {

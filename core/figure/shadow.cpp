@@ -62,8 +62,7 @@ PartMaker Shadow::maker(Work work) const {
     light::ShadowOptions options = this->options();
     options.done = work.done;
     const auto plan = std::make_shared<light::SunPlan>(
-        work.posts, light::LightPath{options.refraction, options.air}, work.window, soft,
-        work.around);
+        work.posts, light::LightPath{options.refraction, options.air}, work.window, soft);
     plan->add_suns(work.middle, directions());
     return [this, plan, options, put = std::move(work.put)](const dem::Window& part) mutable {
         options.part = part;

@@ -69,7 +69,7 @@ void warn_of_the_edge(const light::Doubt& doubt) {
             : "";
     log::warning(
         fmt::format("mountains of up to {:.0f} m{} outside the DEM could {}: {}{}; use a larger "
-                    "DEM, or bound them with --highest",
+                    "DEM or --surroundings, or bound them with --highest",
                     doubt.highest_m, doubt.earths_needed_m ? " (the DEM's highest post)" : "",
                     matters_text(doubt), fmt::join(parts, ", and "), earths));
 }

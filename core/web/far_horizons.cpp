@@ -37,7 +37,8 @@ std::uint8_t step_of(double distance_m) {
 
 }  // namespace
 
-GroundAround::GroundAround(dem::Heightfield field) : field_(std::move(field)), posts_(field_) {}
+GroundAround::GroundAround(dem::Heightfield field)
+    : field_(std::move(field)), posts_(std::make_shared<const dem::Posts>(field_)) {}
 
 std::unique_ptr<const GroundAround> GroundAround::of(std::span<const std::string> paths,
                                                      const dem::LoadOptions& options,
@@ -65,14 +66,13 @@ FarHorizons GroundAround::horizons(const dem::Heightfield& ground) const {
     const float lowest_m = dem::statistics(ground.height_m).min_m;
     std::ranges::fill(low.height_m, lowest_m);
     low.about.statistics = dem::statistics(low.height_m);
-    const dem::Posts posts(low);
+    const dem::Posts posts = dem::Posts(low).in(posts_);
     FarHorizons far;
     for (int i = 0; i < kNodes * kNodes; ++i) {
         const float eye_m = eyes_m[static_cast<std::size_t>(i)];
-        const light::TerrainHorizon horizon(posts, low.grid.place(i % kNodes, i / kNodes),
-                                            {.eye_height_m = std::isnan(eye_m) ? lowest_m : eye_m,
-                                             .eye_above_ground = false,
-                                             .around = &posts_});
+        const light::TerrainHorizon horizon(
+            posts, low.grid.place(i % kNodes, i / kNodes),
+            {.eye_height_m = std::isnan(eye_m) ? lowest_m : eye_m, .eye_above_ground = false});
         for (const light::HorizonPoint& point : horizon.profile(FarHorizons::kAzimuths)) {
             far.hundredths.push_back(
                 static_cast<std::int16_t>(std::lround(100 * degrees(point.elevation_rad))));

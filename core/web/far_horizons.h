@@ -44,7 +44,7 @@ class GroundAround {
   private:
     explicit GroundAround(dem::Heightfield field);
     dem::Heightfield field_;
-    dem::Posts posts_;
+    std::shared_ptr<const dem::Posts> posts_;
 };
 
 }  // namespace relevo::web

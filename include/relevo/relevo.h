@@ -91,7 +91,8 @@ typedef struct relevo_dem relevo_dem;
 
 /* Opens files as one DEM, in any format that the program opens.
  * @param options  as `dem` of a scene, without `files`: crs, band, unit, nodata, encoding, bounds,
- *     crop, memory_mib */
+ *     crop, memory_mib. Since 0.2 also "surroundings": ["30m.tif"], wider and coarser DEMs in which
+ *     this one lies: their ground shades figures, too (not pictures) */
 RELEVO_API relevo_result relevo_dem_open(const char* const* files, size_t count,
                                          const char* options, relevo_dem** dem);
 

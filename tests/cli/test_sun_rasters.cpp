@@ -370,7 +370,8 @@ TEST(SunRasters, TellOfTerrainBeyondTheDemThatCouldMatter) {
     EXPECT_NE(
         shadow({}).find("relevo: warning: mountains outside this DEM could change 46 % of the "
                         "values if as high as its highest post (600 m), 54 % of the values if 8850 "
-                        "m; use a DEM 1 or 46 km larger on each side, or set --highest\n"),
+                        "m; use a DEM 1 or 46 km larger on each side or --surroundings, or "
+                        "set --highest\n"),
         std::string::npos);
     EXPECT_NE(shadow({"-v"}).find("relevo: " + tells + "\n"), std::string::npos);
     EXPECT_EQ(opened(out("b.tif"))->GetMetadataItem("BEYOND_DEM"), tells);

@@ -221,7 +221,7 @@ TEST(SunHorizonVerb, WarnsWhereTheRidgeMayLieBeyondTheDem) {
         "where the DEM reaches "
         "11.9 km, and above 786 m from azimuth 328 (NNW) to 347 (NNW) as far as 57 km away, where "
         "the DEM reaches 16.6 km; those of up to 8850 m (the Earth's highest) as far as 329 km; "
-        "use a larger DEM, or bound them with --highest\n");
+        "use a larger DEM or --surroundings, or bound them with --highest\n");
     const Result low = relevo(
         {"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv", "--highest", "200"});
     EXPECT_EQ(low.err, "");

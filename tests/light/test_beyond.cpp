@@ -47,7 +47,7 @@ TEST(TerrainBeyond, MattersAsFarAsItsShadowReaches) {
     EXPECT_EQ(found->advice(),
               "mountains outside this DEM could change 17 % of the values if as high as its "
               "highest post (400 m), all values if 8850 m; use a DEM 1 or 9 km larger on each "
-              "side, or set --highest");
+              "side or --surroundings, or set --highest");
     // Only the bound that is given counts.
     EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(45)}, {}, 400)->earths);
     // What is known to be lower does not.

@@ -1,6 +1,7 @@
 // A fine DEM in a wider and coarser one.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@
 
 namespace relevo::light::test_nested {
 namespace {
+
+std::shared_ptr<const dem::Posts> shared(const dem::Heightfield& field) {
+    return std::make_shared<const dem::Posts>(field);
+}
 
 /// A site in the middle of hills whose shadows cross its border; they on a coarse grid, and all of
 /// them on one as fine as the site's.
@@ -31,10 +36,9 @@ struct NestedHills {
 
 TEST(Nested, ASiteIsLitAsInAWideFineDem) {
     const NestedHills hills;
-    const dem::Posts posts(hills.site), around(hills.coarse), whole(hills.fine);
-    const auto lit = [](const dem::Posts& of, const dem::Posts* wider, const SunOverDem& sun,
-                        const Window& part) {
-        SunPlan plan(of, {}, part, false, wider);
+    const dem::Posts posts(hills.site), whole(hills.fine), inside = posts.in(shared(hills.coarse));
+    const auto lit = [](const dem::Posts& of, const SunOverDem& sun, const Window& part) {
+        SunPlan plan(of, {}, part);
         plan.add_suns(of.grid().center(), {sun});
         ShadowOptions options;
         options.part = part;
@@ -45,9 +49,8 @@ TEST(Nested, ASiteIsLitAsInAWideFineDem) {
     for (const double azimuth_deg : {20.0, 95.0, 170.0, 250.0, 310.0})
         for (const double elevation_deg : {-0.3, 3.0, 8.0, 20.0}) {
             const SunOverDem sun{radians(azimuth_deg), radians(elevation_deg), 0};
-            const Array2d<float> expected = lit(whole, nullptr, sun, inner),
-                                 nested = lit(posts, &around, sun, {}),
-                                 alone = lit(posts, nullptr, sun, {});
+            const Array2d<float> expected = lit(whole, sun, inner), nested = lit(inside, sun, {}),
+                                 alone = lit(posts, sun, {});
             int differ = 0;
             for (std::size_t i = 0; i < expected.size(); ++i) {
                 differ += nested.data()[i] != expected.data()[i];
@@ -65,10 +68,8 @@ TEST(Nested, ASiteIsLitAsInAWideFineDem) {
 
 TEST(Nested, AHorizonGoesOnOverTheWiderDem) {
     const NestedHills hills;
-    const dem::Posts around(hills.coarse);
-    HorizonOptions options;
-    options.around = &around;
-    const TerrainHorizon nested(hills.site, hills.middle, options), whole(hills.fine, hills.middle),
+    const dem::Posts inside = dem::Posts(hills.site).in(shared(hills.coarse));
+    const TerrainHorizon nested(inside, hills.middle), whole(hills.fine, hills.middle),
         alone(hills.site, hills.middle);
     double worst = 0, worst_alone = 0;
     for (int azimuth_deg = 0; azimuth_deg < 360; ++azimuth_deg) {
@@ -112,18 +113,17 @@ struct Apart {
 struct FineHills : NestedHills {
     const dem::Heightfield near = on("near", 10, 0, 361), far = on("far", 20, 20, 901),
                            all = on("wide", 10, 0, 1801);
-    const dem::Posts posts{near}, around{far}, whole{all};
+    const dem::Posts posts{near}, whole{all}, inside = posts.in(shared(far));
     static constexpr Window kMiddle{120, 120, 121, 121}, kMiddleOfAll{840, 840, 121, 121};
 };
 
 TEST(Nested, HorizonsOfAllPostsGoOnOverTheWiderDem) {
     const FineHills hills;
-    const dem::Posts &posts = hills.posts, &around = hills.around, &whole = hills.whole;
+    const dem::Posts &posts = hills.posts, &inside = hills.inside, &whole = hills.whole;
     const std::vector<double> azimuths{radians(3.0),   radians(48.0),  radians(95.0),
                                        radians(140.0), radians(201.0), radians(310.0)};
-    const auto found = [&](const dem::Posts& of, const dem::Posts* wider, const Window& part,
-                           std::size_t k) {
-        SunPlan plan(of, {}, part, false, wider);
+    const auto found = [&](const dem::Posts& of, const Window& part, std::size_t k) {
+        SunPlan plan(of, {}, part);
         add_horizon_directions(plan, azimuths);
         Array2d<float> horizon = horizon_elevations(plan, plan.suns()[k], part);
         for (float& value : horizon)
@@ -132,9 +132,9 @@ TEST(Nested, HorizonsOfAllPostsGoOnOverTheWiderDem) {
     };
     double mean = 0, over_limit = 0, mean_alone = 0;
     for (std::size_t k = 0; k < azimuths.size(); ++k) {
-        const Array2d<float> expected = found(whole, nullptr, FineHills::kMiddleOfAll, k);
-        const Apart nested(found(posts, &around, FineHills::kMiddle, k), expected),
-            alone(found(posts, nullptr, FineHills::kMiddle, k), expected);
+        const Array2d<float> expected = found(whole, FineHills::kMiddleOfAll, k);
+        const Apart nested(found(inside, FineHills::kMiddle, k), expected),
+            alone(found(posts, FineHills::kMiddle, k), expected);
         fmt::print("[ accuracy ] azimuth {:3.0f}: mean {:.4f}, worst {:.3f}; alone {:.3f}\n",
                    degrees(azimuths[k]), nested.mean, nested.worst, alone.mean);
         mean += nested.mean / static_cast<double>(azimuths.size());
@@ -149,20 +149,18 @@ TEST(Nested, HorizonsOfAllPostsGoOnOverTheWiderDem) {
 
 TEST(Nested, SkyViewAndHoursOfManyDaysAreThoseOfAWideFineDem) {
     const FineHills hills;
-    const dem::Posts &posts = hills.posts, &around = hills.around, &whole = hills.whole;
-    const auto sky = [](const dem::Posts& of, const dem::Posts* wider, const Window& part) {
+    const dem::Posts &posts = hills.posts, &inside = hills.inside, &whole = hills.whole;
+    const auto sky = [](const dem::Posts& of, const Window& part) {
         SkyViewOptions options;
         options.part = part;
-        SunPlan plan(of, {}, part, false, wider);
+        SunPlan plan(of, {}, part);
         add_sky_view_directions(plan, options.directions);
         return sky_view(plan, options).share;
     };
-    const Apart in_sky(sky(posts, &around, FineHills::kMiddle),
-                       sky(whole, nullptr, FineHills::kMiddleOfAll));
-    const auto hours = [](const dem::Posts& of, const dem::Posts* wider, const Window& part) {
+    const Apart in_sky(sky(inside, FineHills::kMiddle), sky(whole, FineHills::kMiddleOfAll));
+    const auto hours = [](const dem::Posts& of, const Window& part) {
         SunHoursOptions options;
         options.part = part;
-        options.around = wider;
         constexpr double kDays = 100;
         const sun::Instant begin = sun::Instant::from_utc({{2026, 11, 1}});
         Array2d<float> found = sun_hours(of, begin, begin + kDays * 86400, options).hours;
@@ -170,9 +168,9 @@ TEST(Nested, SkyViewAndHoursOfManyDaysAreThoseOfAWideFineDem) {
             value *= static_cast<float>(60 / kDays);
         return found;
     };
-    const Array2d<float> expected = hours(whole, nullptr, FineHills::kMiddleOfAll);
-    const Apart nested(hours(posts, &around, FineHills::kMiddle), expected),
-        alone(hours(posts, nullptr, FineHills::kMiddle), expected);
+    const Array2d<float> expected = hours(whole, FineHills::kMiddleOfAll);
+    const Apart nested(hours(inside, FineHills::kMiddle), expected),
+        alone(hours(posts, FineHills::kMiddle), expected);
     fmt::print(
         "[ accuracy ] sky view: mean {:.5f}, worst {:.4f}; minutes a day, of 100: mean {:.2f}, "
         "worst {:.1f}, without the wider DEM {:.1f} and {:.0f}\n",
@@ -199,14 +197,12 @@ TEST(Nested, ASiteLiesAcrossTheFirstColumnOfADemRoundTheEarth) {
     const dem::Heightfield site = test::field_of(40, 40, {180.1, 0.001, 0, 46.02, 0, -0.001},
                                                  "EPSG:4326", [](int, int) { return 200.0; }),
                            wider = walled(-180, 1 / 30.0, 10800, 21);
-    const dem::Posts posts(site), around(wider);
-    HorizonOptions options;
-    options.around = &around;
-    const TerrainHorizon horizon(posts, place_at(46, -179.88), options);
+    const dem::Posts posts = dem::Posts(site).in(shared(wider));
+    const TerrainHorizon horizon(posts, place_at(46, -179.88));
     EXPECT_GT(degrees(horizon.elevation_rad(radians(270))), 10);
     EXPECT_LT(degrees(horizon.elevation_rad(radians(90))), 1);
     const auto lit = [&](double azimuth_deg) {
-        SunPlan plan(posts, {}, {}, false, &around);
+        SunPlan plan(posts, {}, {});
         plan.add_suns(site.grid.center(), {{radians(azimuth_deg), radians(5), 0}});
         return shadows(plan, plan.suns().front(), {}).lit_posts;
     };
@@ -227,13 +223,11 @@ TEST(Nested, VoidsOfASiteAreGroundOfTheWiderDem) {
                               });
     };
     const dem::Heightfield site = field(30, 121, false), wider = field(90, 121, true);
-    const dem::Posts posts(site), around(wider);
-    SunPlan plan(posts, {}, {}, false, &around);
+    const dem::Posts posts = dem::Posts(site).in(shared(wider));
+    SunPlan plan(posts, {}, {});
     plan.add_suns(site.grid.center(), {{radians(270), radians(10), 0}});
     EXPECT_EQ(shadows(plan, plan.suns().front(), {}).lit.at(60, 60), 0);
-    HorizonOptions options;
-    options.around = &around;
-    const TerrainHorizon horizon(posts, site.grid.place(60, 60), options);
+    const TerrainHorizon horizon(posts, site.grid.place(60, 60));
     EXPECT_GT(degrees(horizon.elevation_rad(radians(270))), 20);
 }
 
@@ -251,8 +245,8 @@ TEST(Nested, AHighSiteInAFlatDemSeesTheSunBelowTheLevel) {
     const dem::Heightfield site = island(60, 121),
                            flat = test::field_of(201, 201, {400000, 1000, 0, 5300000, 0, -1000},
                                                  "EPSG:32632", [](int, int) { return 0.0; });
-    const dem::Posts posts(site), around(flat);
-    SunPlan plan(posts, {}, {}, false, &around);
+    const dem::Posts posts = dem::Posts(site).in(shared(flat));
+    SunPlan plan(posts, {}, {});
     plan.add_suns(site.grid.center(), {{radians(180), radians(-1.2), 0}});
     EXPECT_EQ(shadows(plan, plan.suns().front(), {}).lit.at(60, 60), 1);
 }
@@ -262,13 +256,11 @@ TEST(Nested, ADemThatDoesNotContainTheSiteIsRefused) {
                                                  "EPSG:32632", [](int, int) { return 100.0; }),
                            beside = test::field_of(40, 40, {510000, 90, 0, 5200000, 0, -90},
                                                    "EPSG:32632", [](int, int) { return 100.0; });
-    const dem::Posts posts(site), around(beside);
-    EXPECT_EQ(test::error_of([&] { SunPlan(posts, {}, {}, false, &around); }),
+    const dem::Posts posts = dem::Posts(site).in(shared(beside));
+    EXPECT_EQ(test::error_of([&] { SunPlan(posts, {}, {}); }),
               "exit 3: sun: the wider DEM does not contain all of the DEM in it");
-    HorizonOptions options;
-    options.around = &around;
     EXPECT_NE(test::error_of([&] {
-                  TerrainHorizon(posts, site.grid.place(20, 20), options);
+                  TerrainHorizon(posts, site.grid.place(20, 20));
               }).find("outside of the wider DEM"),
               std::string::npos);
 }

@@ -35,6 +35,7 @@ const std::vector<Row>& rows() {
           "JOB",         "A",        "B",       "GOLDEN",       "OUTPUT",       "--slurm",
           "--parallel",  "--stac",   "--tiles", "--weather",    "--land-cover", "--horizon",
           "--irradiance"}},
+        {Kind::File, {"--surroundings"}},
         {Kind::Folder, {"--plugin-path", "--dump-shaders", "--into", "FOLDER", "PATH", "PLUGIN"}},
         {Kind::Effect, {"--enable", "--disable", "--only", "--order", "--ab", "ID"}},
         {Kind::Parameter, {"--set", "--vary"}},

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray
 
 _FIGURES = ("horizons", "shadow", "sky_view", "sun_hours")
-_DEM_OPTIONS = ("band", "bounds", "crop", "crs", "encoding", "holes", "memory_mib", "nodata", "unit")
+_DEM_OPTIONS = ("band", "bounds", "crop", "crs", "encoding", "holes", "memory_mib", "nodata", "surroundings", "unit")
 
 
 def again(
@@ -41,6 +41,8 @@ def again(
         return _made(dem, figure, options, alone)
     files = _files(about, None if trust else folder)
     how = _object(about, "dem_options")
+    if "surroundings" in how:
+        how["surroundings"] = _beside(how["surroundings"], None if trust else folder)
     with open(files, **_keywords(how, *_DEM_OPTIONS)) as opened:
         if opened.provenance()["dem_sha256"] != about.get("dem_sha256"):
             raise BadInput(f"dem: heights of {files[0]} are not those that the raster was made of; dem= takes others")
@@ -100,10 +102,15 @@ def _files(about: dict[str, Any], folder: Optional[pathlib.Path]) -> list[str]:
         named = json.loads(about["dem_files"])
     except (KeyError, TypeError, ValueError):
         named = None
-    if not isinstance(named, list) or not all(isinstance(name, str) for name in named):
-        raise BadInput("raster: does not say of which files its DEM is; give dem=")
-    if not named:
+    if named == []:
         raise BadInput("raster: its DEM was an array; give dem=")
+    return _beside(named, folder)
+
+
+def _beside(named: Any, folder: Optional[pathlib.Path]) -> list[str]:
+    """Files of these names in a folder; no folder: where they are."""
+    if not isinstance(named, list) or not named or not all(isinstance(name, str) for name in named):
+        raise BadInput("raster: does not say of which files its DEM is; give dem=")
     if folder is None:
         return named
     beside = [folder / os.path.basename(name) for name in named]

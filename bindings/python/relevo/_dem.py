@@ -93,11 +93,14 @@ class Dem:
         return self._handle.closed
 
     def provenance(self) -> dict[str, str]:
-        """What rasters say of the DEM: "dem", its name; "dem_sha256" of heights, grid and CRS, which is the same for
+        """What rasters say of the DEM: "dem", its name; "dem_sha256" of heights, grid and CRS, and of surroundings, which is the same for
         copies, in memory and in any format; "dem_files" and "dem_options" by which it was opened, JSON."""
         if "dem_sha256" not in self._opened_by:
             heights = self.heights().values
             found = hashlib.sha256(f"{self._shape} {tuple(self._transform)} {self._wkt} ".encode())
+            if around := json.loads(self._opened_by["dem_options"]).get("surroundings"):
+                with open(around) as wider:
+                    found.update(wider.provenance()["dem_sha256"].encode())
             for row in range(0, len(heights), 64):  # Ctrl-C does not wait for all
                 some = heights[row : row + 64]
                 some[numpy.isnan(some)] = numpy.nan  # of one kind
@@ -199,7 +202,7 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def open(
-    source: _inputs.Source, *, transform: Optional[Sequence[float]] = None, crs: Optional[_inputs.Crs] = None,
+    source: _inputs.Source, *, surroundings: Union[Path, Sequence[Path], None] = None, transform: Optional[Sequence[float]] = None, crs: Optional[_inputs.Crs] = None,
     band: Optional[int] = None, unit: Optional[str] = None, nodata: _inputs.Nodata = None,
     encoding: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
     crop: Union[str, Sequence[float], None] = None, memory_mib: Optional[int] = None, holes: Optional[str] = None,
@@ -212,6 +215,9 @@ def open(
         - an array of heights, (rows, columns), of any numbers: NaN and masked elements are voids. It needs `transform`
           and `crs`. It is copied.
         - a DataArray of xarray with coordinates; the CRS is that of rioxarray (`spatial_ref`) or of CF
+    surroundings: files of wider and coarser DEMs in which this one lies, a path or several of one DEM: their ground
+        shades figures (not pictures), with heights joined by vertical datum or by the median difference. Voids are
+        answered by it. A warning says what does not fit.
     transform: of arrays: an affine.Affine, or its numbers a, b, c, d, e, f: x = a column + b row + c. Those of GDAL's
         order go through relevo.Transform.from_gdal().
     crs: instead of the source's: "EPSG:32632", WKT, a PROJ string, a number of EPSG, a CRS of rasterio or pyproj
@@ -230,7 +236,13 @@ def open(
     """
     if crop is not None and not isinstance(crop, str):
         crop = ",".join(repr(edge) for edge in _degrees("crop", crop))
-    common = {"crop": crop, "memory_mib": memory_mib, "holes": holes}
+    around = _paths(surroundings) if surroundings else None
+    if surroundings is not None and around is None:
+        raise BadInput("surroundings: expected a path, or several of one DEM")
+    common = {
+        "crop": crop, "memory_mib": memory_mib, "holes": holes,
+        "surroundings": around and [_absolute(path) for path in around],
+    }
     for_files = {"encoding": encoding, "bounds": None if bounds is None else _degrees("bounds", bounds)}
     paths = _paths(source)
     if paths is not None:
@@ -254,7 +266,8 @@ def open(
         | common,
     )
     with messages(assumptions=True):
-        return Dem(_relevo.dem_from_heights(heights.values, heights.transform.to_gdal(), heights.crs, text), name)
+        handle = _relevo.dem_from_heights(heights.values, heights.transform.to_gdal(), heights.crs, text)
+        return Dem(handle, name, options=options_text({"surroundings": common["surroundings"]}))
 
 
 def _paths(source: Any) -> Optional[list[str]]:

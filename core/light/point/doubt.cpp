@@ -71,7 +71,9 @@ void settle_open(Doubt& doubt, const dem::Posts& posts, const std::optional<doub
 }  // namespace
 
 double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& given_m) {
-    return given_m.value_or(std::min<double>(posts.highest_m(), kHighestTerrain_m));
+    const dem::Posts* const around = posts.surroundings();
+    const float highest_m = std::max(posts.highest_m(), around ? around->highest_m() : -INFINITY);
+    return given_m.value_or(std::min<double>(highest_m, kHighestTerrain_m));
 }
 
 Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& profile,

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "dem/surroundings.h"
 #include "light/point/edge_ground.h"
 #include "light/point/fan.h"
 #include "light/point/ground_at.h"
@@ -113,9 +114,9 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
         fan_ = std::make_unique<const Fan>(grid, place_, post_,
                                            longest_m(*posts_, place_, eye_m_, options),
                                            options.few_directions);
-    if (options.around && fan_) {
-        unrolled_around_ = dem::Posts::around(*options.around, place_);
-        around_ = unrolled_around_ ? &*unrolled_around_ : options.around;
+    if (const dem::Posts* const around = posts.surroundings(); around && fan_) {
+        unrolled_around_ = dem::Posts::around(*around, place_);
+        around_ = unrolled_around_ ? &*unrolled_around_ : around;
         const dem::Grid& wider = around_->grid();
         if (!is_within(wider, wider.post(place_)))
             bad_input(fmt::format("horizon: {}: outside of the wider DEM", place_text(place_)));
@@ -256,11 +257,13 @@ double TerrainHorizon::hole_rad(double azimuth_rad, const HighestCrossing& highe
 double TerrainHorizon::edge_m(const HorizonPoint& point) const {
     if (!fan_) return point.reach_m;
     const auto outside = [&](double distance_m) {
-        const glm::dvec2 post = fan_->post(point.azimuth_rad, distance_m);
-        if (!is_within(posts_->grid(), post)) return true;
+        const dem::Posts& posts = farthest_posts();
+        const glm::dvec2 post =
+            (around_ ? *fan_around_ : *fan_).post(point.azimuth_rad, distance_m);
+        if (!is_within(posts.grid(), post)) return true;
         const auto column = static_cast<int>(std::lround(post.x)),
                    row = static_cast<int>(std::lround(post.y));
-        return std::isnan(posts_->thinned_m(column, row)) && posts_->is_outside(column, row);
+        return std::isnan(posts.thinned_m(column, row)) && posts.is_outside(column, row);
     };
     double inside_m = point.reach_m, outside_m = 1.01 * point.reach_m + 1;
     if (outside(outside_m)) return point.reach_m;
@@ -312,7 +315,10 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
             fmt::format("horizon: {}: the target is {:.0f} km away, expected at most {:.0f}; "
                         "nothing on Earth is seen from so far",
                         place_text(target), sight.distance_m / 1000, kFarthestSeen_m / 1000));
-    const glm::dvec2 spacing_m = posts_->grid().post_spacing_m();
+    const dem::Grid& under = is_within(posts_->grid(), posts_->grid().post(target))
+                                 ? posts_->grid()
+                                 : farthest_posts().grid();
+    const glm::dvec2 spacing_m = under.post_spacing_m();
     const double until_m = sight.distance_m - kNear_posts * std::max(spacing_m.x, spacing_m.y);
     const double level =
         towards(sight.azimuth_rad).tangent(target.height_m, std::max(sight.distance_m, 1e-3));
@@ -329,12 +335,13 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
 std::string TerrainHorizon::description() const {
     const double above_m = eye_m_ - place_.height_m;
     return fmt::format(
-        "terrain horizon: highest crossing with the rows and columns of the DEM, {} with "
-        "terrestrial refraction k = {:.4g}; {}, on ground at {:.1f} m{}",
-        options_.map_radius_m ? "on the map, on a sphere" : "on the WGS 84 ellipsoid",
-        options_.refraction,
-        above_m > 0 ? fmt::format("eye {:.4g} m up", above_m) : "eye at ground level",
-        place_.height_m, kBeyondTheDem);
+               "terrain horizon: highest crossing with the rows and columns of the DEM, {} with "
+               "terrestrial refraction k = {:.4g}; {}, on ground at {:.1f} m{}",
+               options_.map_radius_m ? "on the map, on a sphere" : "on the WGS 84 ellipsoid",
+               options_.refraction,
+               above_m > 0 ? fmt::format("eye {:.4g} m up", above_m) : "eye at ground level",
+               place_.height_m, kBeyondTheDem) +
+           dem::surroundings_text(given_, "; ");
 }
 
 }  // namespace relevo::light

@@ -30,9 +30,6 @@ struct HorizonOptions {
     /// those that are prepared for all directions together. A viewpoint with one direction takes a
     /// thirtieth of the time, 34 us (tests/light/bench_light.cpp, horizon_of_one_direction).
     bool few_directions = false;
-    /// A wider and coarser DEM around these posts, whose ground is in the horizon from where they
-    /// end; null: none. Outlives the horizon. Not on a map.
-    const dem::Posts* around = nullptr;
 };
 
 /// Of the Earth: Mount Everest [m].
@@ -71,7 +68,8 @@ struct Sight {
 
 class Fan;
 
-/// What of the sky the terrain hides from one point.
+/// What of the sky the terrain hides from one point. Where the posts end that of their
+/// Posts::surroundings() goes on, but not on a map.
 ///
 /// The horizon in a direction is the highest of all crossings of the line of sight with the rows
 /// and columns of the grid, where heights are linear from post to post: every post in the way
@@ -166,7 +164,7 @@ class TerrainHorizon {
     /// they are half way round. Columns are of this one, but for those that callers get.
     std::optional<dem::Posts> unrolled_;
     const dem::Posts* posts_;
-    std::optional<dem::Posts> unrolled_around_;  // likewise of HorizonOptions::around
+    std::optional<dem::Posts> unrolled_around_;  // likewise of Posts::surroundings()
     const dem::Posts* around_ = nullptr;
     std::unique_ptr<const Fan> fan_around_;
     std::unique_ptr<const Fan> fan_;  // none on a map

@@ -150,6 +150,19 @@ long percent_of(double share) {
     return std::lround(std::max(1.0, 100 * share));
 }
 
+/// The widest DEM that posts are in, and what of it is under a part of them.
+struct Widest {
+    const dem::Posts& posts;
+    Window part;
+
+    static Widest of(const dem::Posts& posts, const Window& part) {
+        const dem::Posts* const around = posts.surroundings();
+        if (!around) return {posts, part};
+        const Window all{0, 0, posts.grid().columns(), posts.grid().rows()};
+        return {*around, window_over(around->grid(), posts.grid(), part.is_empty() ? all : part)};
+    }
+};
+
 /// Towards a sun from the middle of a DEM, posts a metre.
 std::optional<glm::dvec2> way_of(const SunField& sky, const dem::Grid& grid) {
     const glm::dvec2 way = sky.step({(grid.columns() - 1) / 2, (grid.rows() - 1) / 2});
@@ -180,12 +193,12 @@ std::string Beyond::advice() const {
     if (!earths)
         return fmt::format(
             "mountains outside this DEM could change {} values; use a DEM {:.0f} km larger on each "
-            "side, or bound them with --highest",
+            "side or --surroundings, or bound them with --highest",
             values(share), km(*this));
     return fmt::format(
         "mountains outside this DEM could change {} values if as high as its highest post "
-        "({:.0f} m), {} values if {:.0f} m; use a DEM {:.0f} or {:.0f} km larger on each side, or "
-        "set --highest",
+        "({:.0f} m), {} values if {:.0f} m; use a DEM {:.0f} or {:.0f} km larger on each side or "
+        "--surroundings, or set --highest",
         values(share), highest_m, values(earths->share), earths->highest_m, km(*this), km(*earths));
 }
 
@@ -193,8 +206,9 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part
                                      const std::vector<SunOverDem>& suns,
                                      const ShadowOptions& options,
                                      const std::optional<double>& highest_m) {
-    const SunTerrain terrain(posts, {options.refraction, options.air}, false);
-    Looking looking(terrain, part, highest_m);
+    const Widest widest = Widest::of(posts, part);
+    const SunTerrain terrain(widest.posts, {options.refraction, options.air}, false);
+    Looking looking(terrain, widest.part, highest_m);
     std::vector<std::pair<SunField, glm::dvec2>> skies;
     for (const SunOverDem& sun : suns) {
         const SunField sky(terrain, posts.grid().center(), sun);
@@ -219,8 +233,9 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part
 std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part,
                                      const std::vector<double>& azimuth_rad, double refraction,
                                      const std::optional<double>& highest_m) {
-    const SunTerrain terrain(posts, {refraction, {}}, false);
-    Looking looking(terrain, part, highest_m);
+    const Widest widest = Widest::of(posts, part);
+    const SunTerrain terrain(widest.posts, {refraction, {}}, false);
+    Looking looking(terrain, widest.part, highest_m);
     std::vector<glm::dvec2> ways;
     for (const double azimuth : azimuth_rad)
         if (const std::optional<glm::dvec2> way =

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "dem/surroundings.h"
 #include "light/point/edge_ground.h"
 #include "light/raster/ground_slope.h"
 #include "light/raster/post_loops.h"
@@ -20,10 +21,10 @@ constexpr double kHorizonTolerance_rad = radians(0.1);  // of a direction
 constexpr double kSkyTolerance_rad = radians(0.5);      // directions that are summed up
 constexpr int kLeastDirections = 4, kMostDirections = 3600;
 
-std::string surroundings(double refraction) {
+std::string surroundings(const dem::Posts& posts, double refraction) {
     return fmt::format(
-        "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}{}",
-        refraction, kBeyondTheDem);
+        "ground of {}, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}{}",
+        dem::ground_text(posts), refraction, kBeyondTheDem);
 }
 
 /// Adds up what each direction gives to the sky view of the ground.
@@ -58,8 +59,8 @@ Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& directi
     return elevation_rad;
 }
 
-std::string horizons_definition(double refraction) {
-    return "elevation of the horizon as seen from the ground; " + surroundings(refraction);
+std::string horizons_definition(const dem::Posts& posts, double refraction) {
+    return "elevation of the horizon as seen from the ground; " + surroundings(posts, refraction);
 }
 
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction,
@@ -73,7 +74,7 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
     if (!result.elevation_rad.empty())
         for (const float elevation : result.elevation_rad.front())
             result.holes += std::isnan(elevation);
-    result.definition = horizons_definition(refraction);
+    result.definition = horizons_definition(posts, refraction);
     return result;
 }
 
@@ -123,7 +124,7 @@ SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
         "share of a uniform sky's light that falls on {}, of {} directions (Dozier and Frew 1990); "
         "{}",
         options.level ? "a level plane" : "the ground as it is inclined", options.directions,
-        surroundings(options.refraction));
+        surroundings(plan.terrain().given(), options.refraction));
     return result;
 }
 

@@ -35,7 +35,7 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad,
 Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& direction,
                                   const Window& part);
 void add_horizon_directions(SunPlan& plan, const std::vector<double>& azimuth_rad);
-std::string horizons_definition(double refraction);
+std::string horizons_definition(const dem::Posts& posts, double refraction);
 
 struct SkyViewOptions {
     int directions = 36;

@@ -181,7 +181,7 @@ OpenSky::Energy OpenSky::at(double column, double row) const {
 SkyLight::SkyLight(const SunTerrain& terrain, sun::Instant begin, double length_s,
                    const SunHoursOptions& options)
     : options_(options),
-      plan_(terrain.given(), {options.refraction, {}}, options.part, false, options.around),
+      plan_(terrain.given(), {options.refraction, {}}, options.part),
       open_(terrain, begin, length_s, options.irradiation->linke) {
     add_sky_view_directions(plan_, options.irradiation->sky_directions);
 }

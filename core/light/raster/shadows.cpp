@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "dem/surroundings.h"
 #include "geo/geodetic.h"
 #include "light/point/edge_ground.h"
 #include "light/raster/clearance.h"
@@ -82,11 +83,11 @@ Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions&
         result.shaded_posts += share == 0;
     }
     result.definition = fmt::format(
-        "{}, at the height of the ground; ground of the DEM alone shades, on the WGS 84 ellipsoid "
+        "{}, at the height of the ground; ground of {} shades, on the WGS 84 ellipsoid "
         "with terrestrial refraction k = {:.4g}{}",
         options.soft ? "visible fraction of the solar disc over the terrain, cut by a level line"
                      : "1 where the centre of the sun is above the terrain, 0 in shadow",
-        options.refraction, kBeyondTheDem);
+        dem::ground_text(plan.terrain().given()), options.refraction, kBeyondTheDem);
     return result;
 }
 

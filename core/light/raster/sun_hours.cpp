@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "dem/surroundings.h"
 #include "light/point/edge_ground.h"
 #include "light/raster/hours_by_horizon.h"
 #include "light/raster/hours_by_sun.h"
@@ -70,7 +71,7 @@ struct SunHoursPlan::Impl {
           begin(from),
           length_s(end - from),
           few(length_s <= SunHoursOptions::kMostDays * kDay_s),
-          plan(posts, {of.refraction, of.air}, of.part, false, of.around) {
+          plan(posts, {of.refraction, of.air}, of.part) {
         if (few)
             plan.add_time(begin, length_s, options.step_s);
         else
@@ -83,12 +84,12 @@ struct SunHoursPlan::Impl {
         const double finer_s = options.step_s / SunPlan::finer(options.step_s);
         return fmt::format(
             "hours that the centre of the sun stands over the terrain, at the height of the "
-            "ground, {}; ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial "
+            "ground, {}; ground of {} shades, on the WGS 84 ellipsoid with terrestrial "
             "refraction k = {:.4g}{}; no clouds",
             few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon",
                               options.step_s, finer_s)
                 : "from horizons in directions 2 degrees apart",
-            options.refraction, kBeyondTheDem);
+            dem::ground_text(plan.terrain().given()), options.refraction, kBeyondTheDem);
     }
 };
 

@@ -31,8 +31,6 @@ struct SunHoursOptions {
         int sky_directions = 36;  ///< of the sky view, as in SkyViewOptions
     };
     std::optional<Irradiation> irradiation;
-    /// A wider and coarser DEM, as SunPlan takes it; outlives the plan.
-    const dem::Posts* around = nullptr;
     Window part{};                     ///< as in ShadowOptions
     std::function<void(double)> done;  ///< likewise
     /// Only to measure the time: visits suns in an order of which any beginning has low and high

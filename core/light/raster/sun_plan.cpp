@@ -32,13 +32,15 @@ double turn_rad(const SunTerrain& terrain) {
 }  // namespace
 
 SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
-                 bool with_discs, const dem::Posts* around)
-    : around_(around ? std::make_unique<const SunTerrain>(
-                           *around, path, with_discs,
-                           SunTerrain::Nesting{.around = nullptr, .site = &posts})
-                     : nullptr),
-      terrain_(std::make_unique<const SunTerrain>(
-          posts, path, with_discs, SunTerrain::Nesting{.around = around, .site = nullptr})),
+                 bool with_discs)
+    : terrain_(std::make_unique<const SunTerrain>(
+          posts, path, with_discs,
+          SunTerrain::Nesting{.around = posts.surroundings(), .site = nullptr})),
+      around_(posts.surroundings()
+                  ? std::make_unique<const SunTerrain>(
+                        *posts.surroundings(), path, with_discs,
+                        SunTerrain::Nesting{.around = nullptr, .site = &terrain_->posts()})
+                  : nullptr),
       window_(terrain_->window_of(window)) {}
 
 void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {

@@ -26,12 +26,11 @@ struct PlannedSun {
 /// of a raster is made with the same plan, so that its bits are the whole raster's.
 class SunPlan {
   public:
-    /// @param posts   outlive this
+    /// @param posts   outlive this. All ground of their Posts::surroundings() shades them, too, but
+    ///     for what lies on their own DEM
     /// @param window  posts that will be asked for; without columns: all
-    /// @param around  a wider and coarser DEM, all of whose ground shades these posts, but for what
-    ///     lies on their own DEM; null: none. Outlives this
     SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
-            bool with_discs = false, const dem::Posts* around = nullptr);
+            bool with_discs = false);
 
     /// Suns that stand so over a place.
     /// @throws Error (BadInput) as divide()
@@ -69,7 +68,7 @@ class SunPlan {
     std::shared_ptr<const PlannedSun> sun_around(const PlannedSun& sun, double tolerance_rad) const;
     void divide_all(std::size_t first, const Window& window, double tolerance_rad);
 
-    std::unique_ptr<const SunTerrain> around_, terrain_;  // SunField has their addresses
+    std::unique_ptr<const SunTerrain> terrain_, around_;  // SunField has their addresses
     Window window_;
     std::vector<PlannedSun> suns_;
 };

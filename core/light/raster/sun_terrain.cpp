@@ -12,6 +12,7 @@
 #include "base/array2d.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "dem/surroundings.h"
 #include "geo/ellipsoid.h"
 #include "light/point/edge_ground.h"
 
@@ -20,10 +21,13 @@ namespace {
 
 constexpr double kAirTolerance_rad = radians(0.02);  // five seconds of the sun's way
 
-/// A DEM that goes round the Earth, with some columns more on either side.
-std::optional<dem::Posts> unrolled(const dem::Posts& posts, int columns) {
-    if (columns == 0) return std::nullopt;
-    return dem::Posts::unrolled(posts, -columns, posts.grid().columns() + 2 * columns);
+/// The larger grid: a DEM with a rim, or one that goes round the Earth and some columns more.
+/// @param rimmed  null: no rim
+std::optional<dem::Posts> larger(const dem::Posts& posts, const glm::ivec2& before,
+                                 const dem::Heightfield* rimmed) {
+    if (rimmed) return dem::Posts(*rimmed);
+    if (before.x == 0) return std::nullopt;
+    return dem::Posts::unrolled(posts, -before.x, posts.grid().columns() + 2 * before.x);
 }
 
 Sweep sweep_over(const dem::Posts& posts) {
@@ -159,9 +163,13 @@ Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& win
 SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs,
                        const Nesting& nesting)
     : given_(posts),
-      before_(posts.grid().columns_per_turn().value_or(0) / 2),
-      unrolled_(unrolled(posts, before_)),
-      posts_(unrolled_ ? *unrolled_ : posts),
+      before_(nesting.around && posts.rim() > 0
+                  ? glm::ivec2(posts.rim())
+                  : glm::ivec2(posts.grid().columns_per_turn().value_or(0) / 2, 0)),
+      rimmed_(before_.y > 0 ? std::make_unique<const dem::Heightfield>(dem::rimmed(posts))
+                            : nullptr),
+      larger_(larger(posts, before_, rimmed_.get())),
+      posts_(larger_ ? *larger_ : posts),
       is_nested_(nesting.around != nullptr),
       sweep_(nesting.site ? sweep_around(*nesting.site, posts_) : sweep_over(posts_)),
       spacing_m_(posts.grid().post_spacing_m()),

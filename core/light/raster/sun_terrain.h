@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,8 +30,8 @@ struct LightPath {
 /// What of a DEM is the same for all suns over it.
 ///
 /// A DEM that goes round the Earth is repeated for half a turn on either side, so that ground
-/// shades across the meridian at which its columns begin: posts and windows here are those of this
-/// larger grid.
+/// shades across the meridian at which its columns begin, and one with dem::Posts::rim() has that:
+/// posts and windows here are those of this larger grid.
 class SunTerrain {
   public:
     /// Another DEM, in which this one lies or around which it lies: both have one relief and one
@@ -52,14 +53,16 @@ class SunTerrain {
     const dem::Posts& given() const { return given_; }  ///< the DEM as it is
     const dem::Posts& posts() const { return posts_; }
     const dem::Grid& grid() const { return posts_.grid(); }
-    /// Where the DEM as it is lies on the grid.
-    Window window() const { return {before_, 0, given_.grid().columns(), given_.grid().rows()}; }
+    /// Where the DEM as it is lies on the grid: inside of what is repeated, or of its rim.
+    Window window() const {
+        return {before_.x, before_.y, given_.grid().columns(), given_.grid().rows()};
+    }
     /// That with what is repeated on either side.
     Window whole_grid() const { return {0, 0, grid().columns(), grid().rows()}; }
     /// A window of the DEM as it is; where it has no posts, all of it.
     Window window_of(const Window& given) const {
         if (given.is_empty()) return window();
-        return {given.column + before_, given.row, given.columns, given.rows};
+        return {given.column + before_.x, given.row + before_.y, given.columns, given.rows};
     }
     /// Whether a wider DEM has the ground around this one.
     bool is_nested() const { return is_nested_; }
@@ -94,8 +97,9 @@ class SunTerrain {
 
   private:
     const dem::Posts& given_;
-    int before_ = 0;                      // columns of the grid before it
-    std::optional<dem::Posts> unrolled_;  // of a DEM round the Earth
+    glm::ivec2 before_{0};  // columns and rows of the grid before it
+    std::unique_ptr<const dem::Heightfield> rimmed_;
+    std::optional<dem::Posts> larger_;  // of a DEM round the Earth, or with a rim
     const dem::Posts& posts_;
     bool is_nested_;
     Sweep sweep_;
