@@ -34,10 +34,12 @@ std::string out(const std::string& name) {
     return (folder() / name).string();
 }
 
-/// A valley between two ridges that run east, 900 m off the middle and 400 m high.
+/// A valley between two ridges that run east, 900 m off the middle and 400 m high, and two low ones
+/// that run north right beyond the site.
 double height_m(double x_m, double y_m) {
     const double ridge = std::exp(-std::pow((std::abs(y_m) - 900) / 300, 2));
-    return 600 + (400 + 80 * std::sin(x_m / 500)) * ridge +
+    const double beside = std::exp(-std::pow((std::abs(x_m) - 420) / 90, 2));
+    return 600 + 50 * beside + (400 + 80 * std::sin(x_m / 500)) * ridge +
            20 * std::sin(x_m / 310) * std::cos(y_m / 270);
 }
 
@@ -208,6 +210,20 @@ TEST(Surroundings, ChangeNothingWithMemoryForNeither) {
     for (std::size_t i = 0; i < all.size(); ++i)
         off += std::abs(all.data()[i] - some.data()[i]) / double(all.size());
     EXPECT_LT(off, 0.02);
+}
+
+TEST(Surroundings, ASummitOutsideOfTheSiteIsSeen) {
+    // The ridge in the south, of which both have the same height.
+    const std::vector<std::string> over{"--at",           "46.9515,8.9995", "--over",
+                                        "46.9438,8.9995", "--date",         "2026-03-05"};
+    const auto when = [&](std::vector<std::string> dems) {
+        dems.insert(dems.begin(), {"sun", "when"});
+        dems.insert(dems.end(), over.begin(), over.end());
+        return answer(dems);
+    };
+    const json nested = when({site(), "--surroundings", coarse()}), expected = when({wide()});
+    EXPECT_NEAR(nested["target"]["height_m"].get<double>(),
+                expected["target"]["height_m"].get<double>(), 20);  // of the nearest posts
 }
 
 TEST(Surroundings, BadOnesAreRefused) {

@@ -115,6 +115,8 @@ Ground ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
 }
 
 geo::Geodetic summit_near(const dem::Posts& given, const geo::Geodetic& place, double radius_m) {
+    if (given.surroundings() && !is_within(given.grid(), given.grid().post(place)))
+        return summit_near(*given.surroundings(), place, radius_m);
     const std::optional<dem::Posts> unrolled = dem::Posts::around(given, place);
     const dem::Posts& posts = unrolled ? *unrolled : given;
     const dem::Grid& grid = posts.grid();

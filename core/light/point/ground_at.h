@@ -26,7 +26,8 @@ struct Ground {
 Ground ground_at(const dem::Posts& posts, const geo::Geodetic& place);
 
 /// The highest post within a radius of a place, with its height: the summit that was meant. The
-/// place itself, with its interpolated height, where no post is near enough or the radius is 0.
+/// place itself, with its interpolated height, where no post is near enough or the radius is 0. Off
+/// the DEM that of its surroundings.
 /// @throws Error (BadInput) as ground_at()
 geo::Geodetic summit_near(const dem::Posts& posts, const geo::Geodetic& place, double radius_m);
 
