@@ -67,8 +67,8 @@ vec3 agx_print(in vec3 colour) {
     float after = before * light * shade;
     // Air before ground of any colour, soils and roofs in its light would turn lilac: by day nothing has so little green.
     float most = max(colour.r, max(colour.g, colour.b)), least = min(colour.r, colour.b);
-    float green = mix(0.24, 0.5, least / max(most, 1e-6));  // least place between red and blue: deep blue may stay
-    float more = colour.g - least - green * abs(colour.r - colour.b), bend = 0.06 * most;
+    float p = least / max(most, 1e-6), green = min(mix(0.24, 0.5, p), 4.0 * p);  // least place between red and blue
+    float more = colour.g - least - green * abs(colour.r - colour.b), bend = 0.25 * green * (most - least);
     colour.g += 0.5 * (sqrt(more * more + bend * bend) - abs(more)) + max(-more, 0.0);
     colour *= after / max(dot(colour, luminance), 1e-6);
     // An eye takes snow and clouds in sunlight for white, but for that of a low sun.
