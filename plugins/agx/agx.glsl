@@ -65,7 +65,16 @@ vec3 agx_print(in vec3 colour) {
     float shade = pow(min(before / agx_day_middle, 1.0), agx_day_contrast);
     colour *= light * shade;
     float after = before * light * shade;
-    float most = max(colour.r, max(colour.g, colour.b)), pale = min(colour.r, min(colour.g, colour.b)) / max(most, 1e-6);
+    // Air before ground of any colour, soils and roofs in its light would turn lilac: by day nothing has so little green.
+    float most = max(colour.r, max(colour.g, colour.b)), least = min(colour.r, colour.b);
+    float p = least / max(most, 1e-6), green = min(mix(0.24, 0.5, p), 4.0 * p);  // least place between red and blue
+    float more = colour.g - least - green * abs(colour.r - colour.b), bend = 0.25 * green * (most - least);
+    colour.g += 0.5 * (sqrt(more * more + bend * bend) - abs(more)) + max(-more, 0.0);
+    colour *= after / max(dot(colour, luminance), 1e-6);
+    // An eye takes snow and clouds in sunlight for white, but for that of a low sun.
+    float white = 0.8 * smoothstep(0.8, 0.95, least / max(most, 1e-6)) * smoothstep(0.25, 0.5, after);
+    colour = mix(colour, after * vec3(0.965, 1.0, 1.075), white * smoothstep(agx_high_sun, 0.42, frame.eye_sun.w));
+    float pale = min(colour.r, min(colour.g, colour.b)) / max(most, 1e-6);
     float blue = clamp((colour.b - max(colour.r, colour.g)) / max(0.3 * most, 1e-6), 0.0, 1.0);
     return clamp(after + (colour - after) * (1.0 + agx_day_saturation * pale * (1.0 - pale) * (1.0 - blue)), 0.0, 1.0);
 }

@@ -77,8 +77,11 @@ float bump_gully_wave(in vec2 anchored_m, in vec2 across, in float size_m) {
          d = bump_random(high);
     vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
     vec4 weight = vec4(vec2(1.0 - u.x, u.x) * (1.0 - u.y), vec2(1.0 - u.x, u.x) * u.y);
-    vec4 random = vec4(a.x, b.x, c.x, d.x), height = 1.0 + vec4(a.y, b.y, c.y, d.y);
+    vec4 random = vec4(a.x, b.x, c.x, d.x), height = 1.0 + vec4(a.y, b.y, c.y, d.y), aside = 0.4 * height - 0.4;
+    height *= 0.75 * height;  // here many, there none
+    // Each node's run a little across the fall: all along it they would look combed.
     vec4 along = dot(across, f) - vec4(0.0, across.x, across.y, across.x + across.y);
+    along += aside * (dot(vec2(across.y, -across.x), f) - vec4(0.0, across.y, -across.x, across.y - across.x));
     vec4 turns = bump_gully_turns * (0.6 + 0.8 * fract(256.0 * random));
     return dot(weight * height, sin(6.2831853 * turns * along + 3.1415927 * random));
 }
@@ -86,12 +89,15 @@ float bump_gully_wave(in vec2 anchored_m, in vec2 across, in float size_m) {
 /// Slopes of gullies that run down the DEM's hillsides, east and north: nothing on level ground.
 /// @param fall     tangent of the DEM's slope, pointing downhill
 /// @param pixel_m  the longer side of a pixel on the ground [m]
-vec2 bump_gully_slope(in vec2 anchored_m, in vec2 fall, in float pixel_m) {
+/// @param snow     share of the ground, 0..1
+vec2 bump_gully_slope(in vec2 anchored_m, in vec2 fall, in float pixel_m, in float snow) {
     vec2 sum = vec2(0.0);
     float size_m = bump_gully_posts / frame.normal_texels_per_m, tangent = length(fall);
-    // What posts far apart say is less steep than the ground, by a power of their distance. Walls would be organ pipes.
-    float steep = min(tangent * max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0), 1.0);
-    steep *= 1.0 - smoothstep(1.0, 2.5, tangent);
+    // What posts far apart say is less steep than the ground, by a power of their distance. Walls would be organ pipes,
+    // gentle slopes would be combed, and snow has gullies only on faces that avalanches sweep.
+    float steeper = max(pow(bump_gully_true_m * frame.normal_texels_per_m, -0.3), 1.0);
+    float steep = min(tangent * steeper, 1.0);
+    steep *= smoothstep(0.2 * snow, 0.7 / (steeper * steeper) + 0.2 * snow, steep) * (1.0 - smoothstep(1.0, 2.5, tangent));
     float depth = bump_gully_depth;
     for (int i = 0; i < bump_gully_octaves; ++i) {
         float seen = 1.0 - smoothstep(0.15, 0.5, bump_gully_turns * pixel_m / size_m);
@@ -137,11 +143,12 @@ vec2 bump_relief_slope(in vec2 anchored_m, in float pixel_m, in float pixel_post
 vec2 bump_invented_slope(in Surface s) {
     const vec4 rough = vec4(0.7, 0.8, 1.5, 0.6);  // sand, grass, rock, snow
     float kind = s.material_weight.x * rough[s.material.x] + s.material_weight.y * rough[s.material.y];
+    float snow = dot(s.material_weight, vec2(s.material.x == 3, s.material.y == 3));
     vec3 east = east_at(s.up);
     vec2 fall = vec2(dot(s.ground_normal, east), dot(s.ground_normal, cross(s.up, east))) /
                 clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
     float pixel_m = max(length(s.ground_dx_m), length(s.ground_dy_m));
-    vec2 slope = sqrt(kind) * bump_gully_slope(s.anchored_m, fall, pixel_m);
+    vec2 slope = sqrt(kind) * bump_gully_slope(s.anchored_m, fall, pixel_m, snow);
 #if HAS_near
     slope += kind * (0.05 + 0.13 * min(length(fall), 1.0)) *
              bump_relief_slope(s.anchored_m, pixel_m, s.pixel_posts);

@@ -45,16 +45,16 @@ uniform vec3 cover_tundra = vec3(0.15, 0.14, 0.062); //@ colour label("Alpine gr
 uniform vec3 cover_heath = vec3(0.074, 0.060, 0.036); //@ colour label("Heath") description("Moors of cool and wet country")
 uniform vec3 cover_scrub = vec3(0.095, 0.092, 0.047); //@ colour label("Scrub") description("Evergreen shrubs on the slopes of dry, mild country")
 uniform vec3 cover_conifers = vec3(0.033, 0.045, 0.020); //@ colour label("Needleleaf forest")
-uniform vec3 cover_broadleaf = vec3(0.052, 0.076, 0.022); //@ colour label("Broadleaf forest")
+uniform vec3 cover_broadleaf = vec3(0.049, 0.075, 0.024); //@ colour label("Broadleaf forest")
 uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Bare broadleaf forest")
 uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, green")
 uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
-uniform vec3 cover_town = vec3(0.168, 0.150, 0.132); //@ colour label("Towns")
+uniform vec3 cover_town = vec3(0.165, 0.148, 0.114); //@ colour label("Towns")
 uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
-uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
-uniform vec3 cover_white = vec3(0.77, 0.79, 0.82); //@ colour label("Snow")
+uniform vec3 cover_firn = vec3(0.62, 0.73, 0.82); //@ colour label("Ice")
+uniform vec3 cover_white = vec3(0.75, 0.79, 0.855); //@ colour label("Snow")
 
 // Of sand, grass, rock, snow.
 uniform vec4 cover_specular = vec4(0.02, 0.012, 0.025, 0.08); //@ range(0, 1) label("Specular")
@@ -187,14 +187,20 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
     return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
-/// A plot of some 320 x 190 m or twice that, a field or a block of houses, with bent borders: two numbers of it, 0..1, and
-/// how far single ones are seen.
+/// A number of a plot, 0..1: fields and blocks of houses of some 320 x 190 m or twice that, with bent borders, and of
+/// what lies around them, of 1280 x 760 m; far away those alone.
+/// @returns two numbers, and how far plots are seen
 vec3 cover_plot(in Surface s, in cover_Shape shape) {
     const mat2 per_m = mat2(0.7986 / 320.0, 0.6018 / 190.0, -0.6018 / 320.0, 0.7986 / 190.0);
+    float single = 1.0 - smoothstep(40.0, 140.0, shape.across_m), seen = 1.0 - smoothstep(200.0, 700.0, shape.across_m);
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m + 120.0 * shape.broad.rg, per_m, within), large = cell >> 1;
-    if (noise_random(large, 2u) < 0.4) cell = 2 * large;
-    return vec3(noise_random(cell, 0u), noise_random(cell, 1u), 1.0 - smoothstep(30.0, 120.0, shape.across_m));
+    float around = noise_random(cell >> 2, 2u);
+    if (fract(61.0 * around) < 0.5) cell = 2 * large;
+    float one = noise_random(cell, 0u);
+    vec2 number = 0.5 + (0.8 - 0.45 * single) * (vec2(around, fract(257.0 * around)) - 0.5) +
+                  0.85 * single * (vec2(one, fract(257.0 * one)) - 0.5);
+    return vec3(clamp(number, 0.0, 1.0), seen);
 }
 
 /// Fields are green, ripe or bare, and most of them between; from afar their mean.
@@ -202,20 +208,26 @@ vec3 cover_field(in vec3 plot, in float green) {
     float greens = 0.12 + 0.75 * green;
     vec3 other = mix(cover_soil, cover_ripe, 0.5), one = mix(cover_soil, cover_ripe, plot.y);
     vec3 mean = mix(other, cover_crop, greens);
-    one = mix(cover_crop, one, smoothstep(greens - 0.5, greens + 0.5, plot.x));
-    // More than half of a field is as all are: hedges, weeds and what the last year has left.
-    return mix(1.0, 0.82 + 0.36 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.4 * plot.z);
+    one = mix(cover_crop, one, smoothstep(greens - 0.4, greens + 0.4, plot.x));
+    // Nearly half of a field is as all are: hedges, weeds and what the last year has left.
+    return mix(1.0, 0.78 + 0.44 * fract(7.0 * plot.y), plot.z) * mix(mean, one, 0.55 * plot.z);
 }
 
 /// Ground without trees, by what covers land.
 vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in float growth, in cover_Shape shape) {
     float moor = smoothstep(-8.5, -5.5, -ground.temperature) * smoothstep(2.0, 4.0, ground.dryness);
-    vec3 grass = mix(cover_straw, cover_grass, ground.green);
+    // In dry country flat ground by rivers is watered, and slopes above it are not.
+    float drained = smoothstep(0.03, 0.12, shape.steep) - smoothstep(0.3, 1.1, shape.steep + max(ground.dryness - 0.9, 0.0));
+    float watered = ground.green * (1.0 - 0.6 * max(drained, 0.0));
+    vec3 grass = mix(cover_straw, cover_grass, watered);
     grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
     vec3 plot = cover_plot(s, shape);
-    float gardens = 0.5 + plot.z * (0.9 * plot.x * plot.x - 0.3) + shape.small.a + 0.5 * shape.small.g;
-    vec3 town = mix(cover_town, mix(grass, cover_broadleaf, 0.4), 0.35 + 0.5 * clamp(gardens, 0.0, 1.0));
+    float gardens = 0.5 + plot.z * (1.6 * plot.x - 0.8) + 1.5 * shape.small.a + shape.small.g;
+    vec3 town = mix(cover_town * (0.6 + 0.6 * plot.y), mix(grass, cover_broadleaf, 0.55), 0.3 + 0.6 * clamp(gardens, 0.0, 1.0));
+    // Where people live meadows have owners, and each its own grass.
+    float owned = plot.z * smoothstep(0.02, 0.2, land.settled - 2.0 * shape.steep);
+    low *= 1.0 + owned * ((plot.x - 0.5) * vec3(0.7, 0.65, 0.6) + (plot.y - 0.5) * vec3(0.25, 0.1, 0.0));
     float rest = max(1.0 - land.trees - land.fields - land.bare - land.towns, 0.0);
     vec4 shares = vec4(rest, land.fields, land.bare, land.towns) / max(rest + land.fields + land.bare + land.towns, 1e-3);
     vec3 open = shares.x * low + shares.y * cover_field(plot, ground.green) + shares.z * cover_soil + shares.w * town;
@@ -320,9 +332,9 @@ cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, 
     if (crowns == 0.0) return canopy;
     cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
     bool between = crown.height < -1.0;
-    canopy.slope = between ? vec2(0.0) : 0.6 * crowns * crowns * (crown.slope * cover_turn);
-    float depth = between ? 0.3 : mix(0.5, 1.25, smoothstep(-0.9, 0.7, crown.height));
-    vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.7, 0.4, 0.2);
+    canopy.slope = between ? vec2(0.0) : 0.5 * crowns * crowns * (crown.slope * cover_turn);
+    float depth = between ? 0.42 : mix(0.6, 1.2, smoothstep(-0.9, 0.7, crown.height));
+    vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.42, 0.3, 0.2);
     // Clumps of leaves on a crown, of a metre, shade each other.
     const float clump_m = 9.0;
     vec4 clump = cover_turned_patch(s, cover_turn / clump_m);
@@ -425,9 +437,10 @@ void cover_on_albedo(inout Surface s) {
     s.forest = shares.forest * (1.0 - shares.rock);
     cover_part(shares, land, shape);
 
-    // Patches are for the eye that is near: none of them is seen from afar.
+    // Patches are for the eye that is near: none of them is seen from afar, and the broad ones from nowhere but there.
     float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
-    float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r + 0.4 * shape.broad.a + 0.3 * shape.broad.r);
+    float wide = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.000002);
+    float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r) + wide * (0.4 * shape.broad.a + 0.3 * shape.broad.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     open = mix(open, cover_land(land, s, ground, growth, shape), land.known);
     // Dry land lies as low as the shore of the Dead Sea.
@@ -439,7 +452,7 @@ void cover_on_albedo(inout Surface s) {
     // Wet rock is dark, with lichen and moss on it.
     rock *= (1.0 + 1.6 * tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
     // Stands of another age or kind are darker or bluer.
-    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone + near * shape.broad.g * vec3(0.65, 0.45, 0.1));
+    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone + wide * shape.broad.g * vec3(0.65, 0.45, 0.1));
     vec3 albedo = mix(open, rock, shares.rock);
     // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
@@ -453,8 +466,10 @@ void cover_on_albedo(inout Surface s) {
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
-    albedo = mix(albedo, cover_firn, shares.ice);
-    lying = max(lying, shares.ice * shares.snow);
+    // Ice that the wind has swept is bluer and darker than what lies in its lee.
+    float swept = clamp(1.1 * shape.broad.r + 0.7 * shape.small.r, -0.5, 0.5);
+    albedo = mix(albedo, cover_firn * (1.0 + swept * vec3(0.5, 0.36, 0.2)), shares.ice);
+    lying = max(lying, shares.ice * shares.snow) * (1.0 - shares.ice * (0.3 - 0.6 * swept));
     albedo = mix(albedo, cover_white, lying);
 
     float covered = max(lying, shares.ice);

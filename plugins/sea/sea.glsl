@@ -17,13 +17,15 @@
 //@ include lib/surround.glsl
 //@ include lib/water.glsl
 
+uniform sampler2D sea_patches;
+
 uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("0: water where the DEM has sea and lakes. Otherwise all ground at or below this height is flooded")
 uniform float sea_least_depth_m = 10.0; //@ range(0, 1000) unit(m) label("Least depth") description("Added to the depth of flooded ground, whose height may equal the level")
 uniform float sea_wind_m_s = 5.0; //@ range(0, 20) unit(m/s) label("Wind") description("Wind speed: more wind raises longer waves and widens the sun's glitter")
 uniform float sea_wind_deg = 240.0; //@ range(0, 360) unit(°) label("Wind from") description("Direction that the wind blows from, clockwise from north")
 uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substance") description("Absorption at 440 nm by dissolved matter: 0.01 in the open ocean, 0.2 near a coast, above 1 in an estuary")
 uniform int sea_floor = 0; //@ enum(auto, hidden, seen) label("Floor") description("Relief of the sea's floor. auto: seen from high above, where the DEM has the floor of a sea on more than a tenth of its posts")
-uniform float sea_shore = 1.0; //@ range(0, 1) label("Shores between posts") description("Synthetic bays and headlands between the DEM's posts; 0: straight from post to post")
+uniform float sea_shore = 1.0; //@ range(0, 1) label("Shores between posts") description("Synthetic bays and headlands between the DEM's posts, and slicks on the water; 0: straight from post to post, and plain water")
 uniform float sea_relief = 1.0; //@ range(0, 10) label("Relief") description("Factor on the slopes that the floor is shaded with")
 
 const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 610, 550 and 465 nm [1/m]
@@ -47,11 +49,13 @@ float sea_height_m(in Surface s) {
     return s.height_m + dot(surface_point(s) - s.position_m, s.up) / frame.height_range.z;
 }
 
-// Of a seen floor, chosen by eye: its colour in deep water, what is added to that at the shore, and the depths that
-// this fades over [m]: blue reaches deepest.
-const vec3 sea_basin = vec3(0.006, 0.035, 0.10);
-const vec3 sea_shallows = vec3(0.045, 0.112, 0.125);
-const vec3 sea_fade_m = vec3(100.0, 450.0, 1400.0);
+// Of a seen floor, chosen by eye: its colour in deep water, what is added to that on the feet of islands and at the
+// shore, and the depths that these fade over [m]: blue reaches deepest.
+const vec3 sea_basin = surround_sea_albedo;
+const vec3 sea_feet = vec3(0.003, 0.018, 0.028);
+const float sea_feet_m = 1200.0;
+const vec3 sea_shallows = vec3(0.045, 0.085, 0.065);
+const vec3 sea_fade_m = vec3(40.0, 130.0, 420.0);
 
 const float sea_low_m = 4000.0;  // eyes higher than this above the water see maps, lower ones see water
 const float sea_least_sine = 0.5;  // the sun shades the floor from no lower: long shadows are of no use in a map
@@ -74,7 +78,7 @@ float sea_seen() {
 
 /// Albedo of a seen floor and the water over it, but for the light of the shore's sand.
 vec3 sea_map_albedo(in float depth_m) {
-    return sea_basin + sea_shallows * exp(-sqrt(depth_m / sea_fade_m));
+    return sea_basin + sea_feet * exp(-depth_m / sea_feet_m) + sea_shallows * exp(-sqrt(depth_m / sea_fade_m));
 }
 
 /// Normal of a steeper slope. @param steeper  factor on its tangent
@@ -261,6 +265,13 @@ sea_Water sea_water(in Surface s, in float height_m) {
                     mix(unseen_m, depth_m + sea_tide_m + sea_shelf / frame.normal_texels_per_m, known), water.y, known);
 }
 
+/// Slicks and clouded water of kilometres: how bright it is there, over its mean.
+float sea_gusts(in Surface s) {
+    const mat2 per_m = mat2(0.5 / 9000.0, 0.866 / 31000.0, -0.866 / 9000.0, 0.5 / 31000.0);
+    vec4 patches = textureGrad(sea_patches, ground_repeats(s.anchored_m, per_m), per_m * s.ground_dx_m.xy, per_m * s.ground_dy_m.xy);
+    return 1.0 + sea_shore * (patches.r + 0.7 * patches.a - 0.85);
+}
+
 /// At a visible point. @param near  factor on the waves that pixels resolve
 sea_Waves sea_waves_of(in Surface s, in sea_Water water, in float near) {
 #ifdef ORTHOGRAPHIC
@@ -309,10 +320,11 @@ void sea_on_material(inout Surface s) {
     sun_light(s.up, to_sun);
     vec3 albedo = sea_albedo(sea_level_m != 0.0 ? s.diffuse : sea_sand, water.seen_m);
     float pixel_m = s.pixel_posts / frame.normal_texels_per_m;
-    vec3 map = albedo - sea_scattered + sea_map_albedo(water.depth_m);
-    map *= sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m));
+    vec3 map = albedo - sea_scattered + sea_map_albedo(water.seen_m);
+    // Light that water scatters itself knows nothing of the floor's slopes.
+    map *= mix(1.0, sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m)), 0.45 + 0.55 * exp(-water.depth_m / sea_feet_m));
     float rim = seen > 0.0 ? sea_at_rim(s.post) : 0.0;
-    albedo = mix(albedo, mix(map, surround_sea_albedo, rim), seen);
+    albedo = mix(albedo * sea_gusts(s), mix(map, surround_sea_albedo, rim), seen);
 
     sea_Waves waves = sea_waves_of(s, water, 1.0 - seen);
     sea_here = water.share * (1.0 - seen * rim);  // the sea beyond mirrors nothing

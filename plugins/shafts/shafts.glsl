@@ -7,6 +7,7 @@
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
 //@ include lib/air_sun.glsl
+//@ include lib/beyond.glsl
 //@ include lib/ground.glsl
 //@ include lib/height_means.glsl
 //@ include lib/pixel.glsl
@@ -58,8 +59,10 @@ vec2 shafts_level(in vec3 direction) {
 }
 
 /// The part of a ray that may be in the shade of terrain, from x to y along it [m].
-/// @param limit_m  where it ends
+/// @param limit_m  where it ends; kSky_m: nowhere, or on the country beyond the DEM
 vec2 shafts_way(in vec3 direction, in float limit_m) {
+    float country_m = beyond_distance_m(direction);
+    if (limit_m == kSky_m && country_m > 0.0) limit_m = country_m;
     vec2 level = shafts_level(direction);
     float top_m = frame.height_range.z * (frame.height_range.x + 1.0 / frame.height_range.y);
     vec2 below = shafts_below(top_m - frame.eye_m.w, dot(direction, frame.eye_up.xyz));

@@ -14,17 +14,25 @@ float air_scale_at(in float distance_m) {
     return frame.air_scale * max(1.0 - frame.air_near_m / max(distance_m, 1e-3), 0.0);
 }
 
+/// How far the DEM is a sea with its floor, 0 to 1: there clearer air over the DEM would be a dark square.
+float air_over_sea() {
+    return smoothstep(0.5, 0.7, frame.sea_floor_share);
+}
+
 /// The same for a distance beyond the DEM: towards its far side the air becomes the true one.
 float air_scale_beyond(in float distance_m) {
     float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
     float whole = min(4.0 * frame.air_scale, 1.0);  // over more than 100 km true air would be all that is seen
-    return max(mix(air_scale_at(distance_m), whole, smoothstep(0.5, 1.3, widths)), smoothstep(2.0, 8.0, widths));
+    float sea = air_over_sea();  // all of it is seen from afar
+    return max(mix(air_scale_at(distance_m), whole, smoothstep(0.5 + 0.4 * sea, 1.3 + 1.7 * sea, widths)),
+               smoothstep(2.0, 8.0, widths));
 }
 
-/// How far ground of the DEM goes over into what is beyond: 1 on the DEM's rim. @param post  of Surface
+/// How far ground of the DEM goes over into what is beyond: 1 on the DEM's rim, and everywhere of a sea.
+/// @param post  of Surface
 float air_rim_at(in vec2 post) {
     vec2 inside = min(post, frame.posts.xy - 1.0 - post) * frame.posts.zw;
-    return 1.0 - smoothstep(0.0, air_rim, min(inside.x, inside.y));
+    return max(1.0 - smoothstep(0.0, air_rim, min(inside.x, inside.y)), air_over_sea());
 }
 
 /// The same before ground of the DEM. @param rim  air_rim_at()

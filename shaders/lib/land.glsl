@@ -33,6 +33,7 @@ struct LandClasses {
     float trees, fields, bare, towns;
     float shrubs;  // of what is left, 0..1
     vec3 tint;     // logarithm to base 2 of how the ground's colour differs from what these usually have
+    float settled; // fields and towns in the country around, kilometres wide
     float known;   // 1, or 0 where nothing is known
 };
 
@@ -61,5 +62,7 @@ LandClasses land_classes_at(in vec2 post, in float pixel_posts, in vec3 up) {
     place.z = 0.0;  // the DEM is in the middle
 #endif
     vec4 looks = textureLod(land_around, vec3(place.xy, 1.0), place.z);
-    return LandClasses(shares.r, shares.g, shares.b, shares.a, looks.a, 4.0 * looks.rgb - 2.0, frame.land_cover.y);
+    vec4 around = textureLod(land_around, vec3(place.xy, 0.0), max(place.z, 1.0));
+    return LandClasses(shares.r, shares.g, shares.b, shares.a, looks.a, 4.0 * looks.rgb - 2.0, around.g + around.a,
+                       frame.land_cover.y);
 }

@@ -7,7 +7,7 @@
 //@ include lib/water.glsl
 
 /// Albedo of a deep sea as overviews show it, chosen by eye.
-const vec3 surround_sea_albedo = vec3(0.007, 0.043, 0.133);
+const vec3 surround_sea_albedo = vec3(0.006, 0.037, 0.108);
 
 /// How far what lies beyond the DEM is sea, 0 to 1: nobody knows it, but around a DEM that is mostly sea it is likely.
 float surround_sea() {

@@ -47,5 +47,26 @@ TEST(WideDem, HasTheLightOfASmallOne) {
     }
 }
 
+/// The country beyond the near edge ends the air before it: rays go no further, below the DEM.
+TEST(WideDem, HasCountryBeforeItsNearEdge) {
+    if (!std::filesystem::exists(source_dir() / "plugins/shafts"))
+        GTEST_SKIP() << "the plugin shafts is not there";
+    const std::filesystem::path folder = scratch_dir("near_edge");
+    const auto take = [&](const char* word) {
+        const Result run =
+            relevo({"-q", "capture", (source_dir() / "data/dem/vancouver-island.tif").string(),
+                    "-o", (folder / "a.png").string(), "--overwrite", "--size", "640x360",
+                    "--exaggerate", "3.4", word, "shafts"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return image::read(folder / "a.png");
+    };
+    const image::Image8 with = take("--enable"), without = take("--disable");
+    int worst = 0;
+    for (int y = 300; y < with.height; ++y)
+        for (int i = 0; i < 3 * with.width; ++i)
+            worst = std::max(worst, std::abs(with.row(y)[i] - without.row(y)[i]));
+    EXPECT_LE(worst, 12);  // 183 where the lower right corner was black
+}
+
 }  // namespace
 }  // namespace relevo::test::test_wide_dem

@@ -79,19 +79,20 @@ TEST(Agx, IsNeutralByDay) {
     gpu.values().set("agx.day_saturation", "0");
     const auto toned_at = [&](float sun_rad) {
         gpu.frame().eye_sun.w = sun_rad;
-        return gpu.run("vec3 c = vec3(0.2, 0.1, 0.05);\nagx_on_tonemap(c);\nresult = vec4(c, 1.0);",
-                       1, 1)[0];
+        return gpu.run(
+            "vec3 c = vec3(0.2, 0.15, 0.05);\nagx_on_tonemap(c);\nresult = vec4(c, 1.0);", 1, 1)[0];
     };
     const glm::vec4 low = toned_at(0.1f), high = toned_at(0.4f), between = toned_at(0.24f);
     // Neutral tones leave middle colours as they are but for the exposure.
-    EXPECT_NEAR(high.x, 0.2 * std::exp2(0.5), 1e-4);
-    EXPECT_NEAR(high.z, 0.05 * std::exp2(0.5), 1e-4);
+    EXPECT_NEAR(high.x, 0.2 * std::exp2(0.5), 2e-3);
+    EXPECT_NEAR(high.z, 0.05 * std::exp2(0.5), 2e-3);
     EXPECT_LT(low.z, high.z - 0.01) << "film has darker shade";
     EXPECT_NEAR(between.z, (low.z + high.z) / 2, 1e-3);
 }
 
 TEST(Agx, HasTheContrastOfAPrintByDay) {
     test::GpuSnippet gpu("agx");
+    gpu.frame().eye_sun.w = 0.3F;  // lower than those whose white is made bluer
     const int count = 1000;
     const auto greys = gpu.run("result = vec4(agx_print(vec3(float(x) / 999.0)), 0.0);", count, 1);
     const auto slope = [&](int i) {
@@ -117,7 +118,7 @@ TEST(Agx, HasTheContrastOfAPrintByDay) {
         "result = vec4(p / max(p.r, max(p.g, p.b)), 0.0);",
         3, 1);
     EXPECT_LT(colours[0].z, 0.12 / 0.18 - 0.02);
-    EXPECT_NEAR(colours[1].x, 0.15 / 0.3, 1e-3);
+    EXPECT_NEAR(colours[1].x, 0.15 / 0.3, 0.01);
     EXPECT_NEAR(colours[2].y, 0, 1e-6);
 }
 

@@ -199,7 +199,7 @@ std::vector<glm::vec4> gullies(int side, double step_m, double pixel_m, const st
     test::GpuSnippet gpu("bump");
     gpu.frame().normal_texels_per_m = 1.0f / 30;
     return gpu.run(fmt::format("vec2 at = {:.9f} * vec2(x, y);\n"
-                               "result = vec4(bump_gully_slope(at, {}, {:.9f}), 0.0, 0.0);",
+                               "result = vec4(bump_gully_slope(at, {}, {:.9f}, 0.0), 0.0, 0.0);",
                                step_m, fall, pixel_m),
                    side, side);
 }

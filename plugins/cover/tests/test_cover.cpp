@@ -139,7 +139,7 @@ std::vector<glm::vec4> shares(const std::string& inputs, int count) {
             "shape.sunny = 0.0;\n"
             "shape.small = shape.broad = vec4(0.0);\n"
             "shape.ragged = 0.0;\n"
-            "LandClasses land = LandClasses(trees, 0.0, 0.0, 0.0, 0.0, vec3(0.0), known);\n"
+            "LandClasses land = LandClasses(trees, 0.0, 0.0, 0.0, 0.0, vec3(0.0), 0.0, known);\n"
             "cover_Shares found = cover_shares(ClimateGround(rain, growth, 1.0, 1.0), land, white, "
             "rain, growth, shape);\n"
             "result = vec4(found.rock, found.forest, found.ice, found.snow);",

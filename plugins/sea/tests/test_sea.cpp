@@ -243,9 +243,10 @@ TEST(Sea, ItsFloorsColourFollowsTheDepth) {
     const auto results = gpu.run("result = vec4(sea_map_albedo(2.0 * float(x)), 0.0);", 5500, 1);
     for (std::size_t x = 0; x < results.size(); ++x) {
         const double depth_m = 2.0 * static_cast<double>(x);
-        const glm::dvec3 expected = glm::dvec3(0.006, 0.035, 0.1) +
-                                    glm::dvec3(0.045, 0.112, 0.125) *
-                                        glm::exp(-glm::sqrt(depth_m / glm::dvec3(100, 450, 1400)));
+        const glm::dvec3 expected = glm::dvec3(0.006, 0.037, 0.108) +
+                                    glm::dvec3(0.003, 0.018, 0.028) * std::exp(-depth_m / 1200) +
+                                    glm::dvec3(0.045, 0.085, 0.065) *
+                                        glm::exp(-glm::sqrt(depth_m / glm::dvec3(40, 130, 420)));
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(results[x][c], expected[c], 1e-4) << depth_m;
             if (x > 0) {
