@@ -45,7 +45,7 @@ compile_cairo() {
     [ ! -e "$work/cairo.made" ] || return 0
     echo "== cairo"
     (cd "$work"/sources/cairo-* && ./configure --prefix="$prefix" --disable-static --disable-xlib --disable-xcb \
-        --disable-gl --disable-ps --disable-pdf --disable-svg --disable-gobject --disable-trace --disable-interpreter \
+        --disable-gl --disable-ps --disable-svg --disable-gobject --disable-trace --disable-interpreter \
         && make -j"$(nproc)" -C src install-libLTLIBRARIES install-cairoincludeHEADERS \
             install-nodist_cairoincludeHEADERS ACLOCAL=: AUTOCONF=: AUTOHEADER=: AUTOMAKE=: install-pkgconfigDATA)
     touch "$work/cairo.made"

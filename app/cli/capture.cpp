@@ -25,6 +25,7 @@
 #include "effect/search_path.h"
 #include "geo/format.h"
 #include "scene/panorama.h"
+#include "scene/sheet.h"
 #include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/picture_file.h"
@@ -130,7 +131,8 @@ void capture(const CaptureArguments& arguments) {
     log::HeldNotices notices;
     const std::filesystem::path output = arguments.format.named(arguments.output);
     const image::Encoding encoding = arguments.format.encoding(arguments.output);
-    const session::PictureFormat format = arguments.format.picture();
+    session::PictureFormat format = arguments.format.picture();
+    format.map_alone = scene::is_pdf(output);
     auto [scene, compared] = wanted(arguments);
     arguments.exaggeration.apply_to(scene,
                                     !arguments.scene.file.empty() || !arguments.from.empty());
@@ -141,6 +143,7 @@ void capture(const CaptureArguments& arguments) {
     if (linear) scene.stamps.margin = false;  // without stamps
     scene::check_panorama(scene);
     scene::check_stereo(scene);
+    scene::check_sheet(scene, output);
     // What is measured in a picture has its true heights.
     if (arguments.audit || !format.layers.empty() || linear) scene.chooses_exaggeration = false;
     session::SceneTimes times;
@@ -292,8 +295,8 @@ void add_capture(Verb app) {
     arguments->exaggeration.add_to(verb);
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
-                    "Picture to write: png, jpg, webp, avif, tif, or exr (linear light); - is "
-                    "standard output")
+                    "Picture to write: png, jpg, webp, avif, tif, pdf (of --sheet), or exr (linear "
+                    "light); - is standard output")
         .required();
     arguments->format.add_to(verb, /*with_format=*/true);
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");

@@ -8,13 +8,15 @@
 namespace relevo::cli {
 void FormatArguments::add_to(Verb verb, bool with_format) {
     if (with_format)
-        verb.add_option("--format", format,
-                        "Format of a picture on standard output: png, jpg, webp, avif, tif, exr")
+        verb.add_option(
+                "--format", format,
+                "Format of a picture on standard output: png, jpg, webp, avif, tif, pdf, exr")
             .group("Format");
     verb.add_option("--bits", bits, "Bits of each channel, 8 or 16 (png, tif); default: 8")
         .check(one_of({"8", "16"}))
         .group("Format");
-    verb.add_option("--quality", quality, "Quality of jpg, webp and avif, 1 to 100; default: 95")
+    verb.add_option("--quality", quality,
+                    "Quality of jpg, webp, avif and pdf, 1 to 100; default: 95")
         .check(whole_number())
         .check(in_range(1, 100))
         .group("Format");

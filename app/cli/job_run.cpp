@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "image/image.h"
 #include "scene/panorama.h"
+#include "scene/sheet.h"
 #include "scene/stereo.h"
 #include "session/batch.h"
 #include "session/trust.h"
@@ -91,6 +92,7 @@ void JobRun::read(const JobArguments& arguments) {
         trusted.keep_folders(shot.scene.effects);
         scene::check_panorama(shot.scene);
         scene::check_stereo(shot.scene);
+        scene::check_sheet(shot.scene, shot.output);
         fit(shot);
     }
     trusted.tell();

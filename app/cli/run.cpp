@@ -21,6 +21,7 @@
 #include "cli/job_run.h"
 #include "cli/shard.h"
 #include "scene/job.h"
+#include "scene/sheet.h"
 #include "session/batch.h"
 #include "session/made.h"
 #include "session/picture_file.h"
@@ -240,6 +241,7 @@ class Run {
         result.allow_blank = arguments_.allow_blank;
         result.encoding = arguments_.format.encoding();
         result.format = arguments_.format.picture();
+        result.format.map_alone = !shots_.empty() && scene::is_pdf(shots_.front().output);
         return result;
     }
 

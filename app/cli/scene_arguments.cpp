@@ -119,16 +119,21 @@ void SceneArguments::apply_size_to(scene::Scene& result) const {
 void SceneArguments::check_map(const scene::Scene& result) const {
     if (values.has("--resolution") && !size.empty())
         bad_usage("--resolution and --size exclude each other; use one");
-    if (result.ortho && view.any())
+    if (values.has("--sheet") && !size.empty())
+        bad_usage("--sheet and --size exclude each other; --dpi sets the pixels of a sheet");
+    if (result.sheet.is_on() && view.any() && !scene::is_from_above(result.view))
+        bad_usage("--sheet: a map is seen from straight above; use --view top, or none");
+    if (result.ortho && !result.sheet.is_on() && view.any())
         bad_usage(
             "--ortho and the camera of --view, --eye, --look-at, --heading or --pitch exclude each "
             "other; --view top is a picture from above that has a camera");
 }
 
 void SceneArguments::apply_stamps_to(scene::Stamps& result) const {
-    if (!stamps.empty()) {
+    const std::string shown = stamps.empty() && values.has("--sheet") ? "all" : stamps;
+    if (!shown.empty()) {
         try {
-            scene::show_stamps(split(stamps, ','), "--stamp", result);
+            scene::show_stamps(split(shown, ','), "--stamp", result);
         } catch (const Error& error) {
             bad_usage(error.what());
         }

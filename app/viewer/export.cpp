@@ -81,6 +81,7 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
     // As the window shows it, whatever projection a file asked for.
     scene.ortho = false;
     scene.resolution = 0;
+    scene.sheet = {};
     scene.view.panorama = scene::Panorama::None;
     scene.view.stereo = scene::Stereo::None;
     scene.dems = absolute_names(std::move(scene.dems));

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "scene/name_template.h"
 #include "scene/panorama.h"
+#include "scene/sheet.h"
 #include "scene/stereo.h"
 #include "session/picture_file.h"
 #include "session/record.h"
@@ -32,8 +33,10 @@ void set_picture(ExportOrder& order, const ExportChoice& choice, const scene::St
     scene.view.panorama = kind.panorama;
     scene.view.stereo = kind.stereo;
     scene.resolution = 0;  // the sheet has a size
+    scene.sheet = {};
     scene::check_panorama(scene);
     scene::check_stereo(scene);
+    scene::check_sheet(scene, order.path);
     order.encoding.bits = choice.file_format().bits;
     if (choice.file_format().has_quality) order.encoding.quality = choice.quality;
     image::check_encoding(

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "options.h"
 #include "scene/panorama.h"
+#include "scene/sheet.h"
 #include "scene/stereo.h"
 #include "session/batch.h"
 
@@ -42,6 +43,7 @@ void SceneDrawer::take(scene::Scene scene) {
     if (scene.dems.empty()) bad_input("scene: dem.files: missing, expected the files of a DEM");
     scene::check_panorama(scene);
     scene::check_stereo(scene);
+    scene::check_sheet(scene, {});
     scene::Shot shot;
     shot.scene = times_.with_absolute_paths(scene);
     if (dem_) times_.use(shot.scene, dem_->loaded(shot.scene));

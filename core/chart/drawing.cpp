@@ -90,6 +90,15 @@ void Drawing::end_clip() {
     items_.emplace_back(std::in_place_type<EndClip>);
 }
 
+void Drawing::fill_opaquely() {
+    for (Item& item : items_) {
+        if (auto* const path = std::get_if<Path>(&item); path && path->pen.fill)
+            path->pen.fill->opacity = 1;
+        if (auto* const circle = std::get_if<Circle>(&item); circle && circle->pen.fill)
+            circle->pen.fill->opacity = 1;
+    }
+}
+
 double text_width(const std::string& words, double size, bool bold) {
     int sum = 0;
     for (std::size_t i = 0; i < words.size(); ++i) {

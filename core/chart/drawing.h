@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/output_file.h"
 #include "image/image.h"
 
 namespace relevo::chart {
@@ -88,6 +89,8 @@ class Drawing {
     void clip(const Rect& rect);
     void clip_circle(const glm::dvec2& center, double radius);
     void end_clip();
+    /// Makes fills of areas opaque: on white paper nothing has to show through panels.
+    void fill_opaquely();
 
     struct Path {
         std::vector<glm::dvec2> points;
@@ -144,5 +147,32 @@ image::Image8 to_transparent_image(const Drawing& drawing, double scale = 1);
 
 /// Puts a drawing on a picture, RGB, its corner on the pixel (x, y). @throws Error as to_image()
 void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& picture);
+
+/// A drawing and its place in a picture.
+struct Placed {
+    Drawing drawing;
+    glm::dvec2 corner_px{0};  ///< its upper left corner
+    double scale = 1;         ///< pixels of a unit
+};
+/// The corner is rounded to whole pixels.
+void paint(const Placed& placed, image::Image8& picture);
+
+/// A sheet of paper with a picture on it, in pixels of that picture from the sheet's upper left
+/// corner.
+struct PaperSheet {
+    glm::dvec2 size_mm{0};
+    double dpi = 300;
+    Rect picture;                    ///< where it lies
+    double line_px = 0;              ///< width of a line around it
+    std::vector<Placed> drawings{};  ///< upon it and around it
+    std::vector<Rect> taken{};       ///< where panels and labels stand around it
+    std::string title{}, author{}, creator{};
+};
+
+/// Writes a sheet as PDF 1.5, all of it but finish(): text as text, lines as lines. Sizes are
+/// exact; there is no date in it.
+/// @param jpeg  the picture; the PDF has these bytes, with the metadata in them
+/// @throws Error (Failed) where memory or the disk refuses
+void write_pdf(const PaperSheet& sheet, std::vector<std::byte> jpeg, OutputFile& file);
 
 }  // namespace relevo::chart

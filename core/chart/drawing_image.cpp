@@ -7,92 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/units.h"
-#include "chart/drawing.h"
+#include "chart/cairo_painter.h"
 
 namespace relevo::chart {
 namespace {
-
-struct Destroy {
-    void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
-    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-
-class Painter {
-  public:
-    explicit Painter(cairo_t* cairo) : cairo_(cairo) {}
-
-    void operator()(const Drawing::Path& path) {
-        cairo_new_path(cairo_);
-        for (const glm::dvec2& p : path.points)
-            cairo_line_to(cairo_, p.x, p.y);
-        if (path.closed) cairo_close_path(cairo_);
-        draw(path.pen);
-    }
-    void operator()(const Drawing::Circle& circle) {
-        cairo_new_path(cairo_);
-        cairo_arc(cairo_, circle.center.x, circle.center.y, circle.radius, 0, 2 * kPi);
-        cairo_close_path(cairo_);
-        draw(circle.pen);
-    }
-    void operator()(const Drawing::Text& text) {
-        const Lettering& l = text.lettering;
-        cairo_save(cairo_);
-        cairo_translate(cairo_, text.at.x, text.at.y);
-        cairo_rotate(cairo_, radians(l.turn_deg));
-        cairo_select_font_face(cairo_, "Liberation Sans",
-                               l.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
-                               l.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-        cairo_set_font_size(cairo_, l.size);
-        cairo_text_extents_t extents;
-        cairo_text_extents(cairo_, text.words.c_str(), &extents);
-        const double share = l.anchor == Anchor::Start ? 0 : l.anchor == Anchor::Middle ? 0.5 : 1;
-        cairo_move_to(cairo_, -share * extents.x_advance, 0);
-        if (l.halo) {
-            cairo_text_path(cairo_, text.words.c_str());
-            color(*l.halo);
-            cairo_set_line_width(cairo_, l.size * 0.3);
-            cairo_stroke(cairo_);
-            cairo_move_to(cairo_, -share * extents.x_advance, 0);
-        }
-        color(l.color);
-        cairo_show_text(cairo_, text.words.c_str());
-        cairo_restore(cairo_);
-    }
-    void operator()(const Drawing::BeginClip& clip) {
-        cairo_save(cairo_);
-        cairo_new_path(cairo_);
-        if (clip.rect)
-            cairo_rectangle(cairo_, clip.rect->x, clip.rect->y, clip.rect->width,
-                            clip.rect->height);
-        else
-            cairo_arc(cairo_, clip.center.x, clip.center.y, clip.radius, 0, 2 * kPi);
-        cairo_clip(cairo_);
-    }
-    void operator()(const Drawing::EndClip&) { cairo_restore(cairo_); }
-
-  private:
-    void color(const Color& c) {
-        cairo_set_source_rgba(cairo_, (c.rgb >> 16 & 255) / 255.0, (c.rgb >> 8 & 255) / 255.0,
-                              (c.rgb & 255) / 255.0, c.opacity);
-    }
-    void draw(const Pen& pen) {
-        cairo_set_antialias(cairo_, pen.crisp ? CAIRO_ANTIALIAS_NONE : CAIRO_ANTIALIAS_GOOD);
-        if (pen.fill) {
-            color(*pen.fill);
-            cairo_fill_preserve(cairo_);
-        }
-        if (pen.stroke) {
-            color(*pen.stroke);
-            cairo_set_line_width(cairo_, pen.width);
-            cairo_set_dash(cairo_, pen.dash.data(), static_cast<int>(pen.dash.size()), 0);
-            cairo_stroke_preserve(cairo_);
-        }
-        cairo_new_path(cairo_);
-    }
-
-    cairo_t* cairo_;
-};
 
 /// A rectangle of pixels that Cairo draws on.
 class Canvas {
@@ -105,12 +23,12 @@ class Canvas {
         return data ? data + y * cairo_image_surface_get_stride(surface_.get()) : nullptr;
     }
 
-    void draw(const Drawing& drawing, double scale) {
+    /// @param at  of the drawing's corner [px]
+    void draw(const Drawing& drawing, double scale, const glm::ivec2& at = glm::ivec2(0)) {
         cairo_surface_mark_dirty(surface_.get());
-        const std::unique_ptr<cairo_t, Destroy> cairo(cairo_create(surface_.get()));
+        const std::unique_ptr<cairo_t, CairoDestroy> cairo(cairo_create(surface_.get()));
+        cairo_translate(cairo.get(), at.x, at.y);
         cairo_scale(cairo.get(), scale, scale);
-        cairo_set_line_join(cairo.get(), CAIRO_LINE_JOIN_ROUND);
-        cairo_set_line_cap(cairo.get(), CAIRO_LINE_CAP_ROUND);
         // Letters as they are drawn at any size, not pulled to the pixels of one.
         const std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> font(
             cairo_font_options_create(), cairo_font_options_destroy);
@@ -118,8 +36,7 @@ class Canvas {
         cairo_font_options_set_hint_style(font.get(), CAIRO_HINT_STYLE_NONE);
         cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
         cairo_set_font_options(cairo.get(), font.get());
-        for (const Drawing::Item& item : drawing.items())
-            std::visit(Painter(cairo.get()), item);
+        draw_items(drawing, cairo.get());
         cairo_surface_flush(surface_.get());
         if (cairo_status(cairo.get()) != CAIRO_STATUS_SUCCESS) refuse(cairo_status(cairo.get()));
     }
@@ -136,7 +53,7 @@ class Canvas {
             cairo_image_surface_get_height(surface_.get()), cairo_status_to_string(status)));
     }
 
-    std::unique_ptr<cairo_surface_t, Destroy> surface_;
+    std::unique_ptr<cairo_surface_t, CairoDestroy> surface_;
 };
 
 }  // namespace
@@ -173,13 +90,11 @@ image::Image8 to_transparent_image(const Drawing& drawing, double scale) {
     return image;
 }
 
-void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& picture) {
-    const int left = std::max(x, 0), top = std::max(y, 0);
-    const int width =
-        std::min(picture.width, x + static_cast<int>(std::lround(drawing.width() * scale))) - left;
-    const int height =
-        std::min(picture.height, y + static_cast<int>(std::lround(drawing.height() * scale))) - top;
-    if (width <= 0 || height <= 0) return;
+namespace {
+
+/// Paints what lies in a rectangle of a picture. @param at  of the drawing's corner in there
+void paint_part(const Drawing& drawing, const glm::ivec2& at, double scale, int left, int top,
+                int width, int height, image::Image8& picture) {
     Canvas canvas(width, height);
     canvas.check();
     for (int row = 0; row < height; ++row) {
@@ -191,7 +106,7 @@ void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& pi
             std::memcpy(to + 4 * column, &pixel, 4);
         }
     }
-    canvas.draw(drawing, scale);
+    canvas.draw(drawing, scale, at);
     for (int row = 0; row < height; ++row) {
         std::uint8_t* to = picture.row(top + row) + 3 * left;
         const std::uint8_t* const from = canvas.row(row);
@@ -203,6 +118,27 @@ void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& pi
             *to++ = static_cast<std::uint8_t>(pixel);
         }
     }
+}
+
+}  // namespace
+
+void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& picture) {
+    constexpr int kMost_px = 1 << 24;  // of a canvas
+    const int left = std::max(x, 0), top = std::max(y, 0);
+    const int right =
+        std::min(picture.width, x + static_cast<int>(std::lround(drawing.width() * scale)));
+    const int bottom =
+        std::min(picture.height, y + static_cast<int>(std::lround(drawing.height() * scale)));
+    if (left >= right) return;
+    const int rows = std::max(kMost_px / (right - left), 1);
+    for (int row = top; row < bottom; row += rows)
+        paint_part(drawing, {0, top - row}, scale, left, row, right - left,
+                   std::min(rows, bottom - row), picture);
+}
+
+void paint(const Placed& placed, image::Image8& picture) {
+    paint(placed.drawing, static_cast<int>(std::lround(placed.corner_px.x)),
+          static_cast<int>(std::lround(placed.corner_px.y)), placed.scale, picture);
 }
 
 }  // namespace relevo::chart

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Color kInk{0x202020}, kPanel{0xffffff, 0.82}, kEdge{0x303030};
 constexpr double kStampLetters = 11, kStampTitle = 17, kStampPadding = 8, kStampMargin = 12,
-                 kStampGap = 6;
+                 kStampGap = 6, kRatio = 14;
 constexpr double kLabelGap = 9;  // around labels of the graticule
 constexpr double kMostBar = 200, kMostOfWidth = 0.4;
 
@@ -53,8 +53,11 @@ Drawing scale_panel(const Stamps::Scale& scale, double width_px, double unit_px)
     const double words = scale.where.empty() ? 0 : text_width(scale.where, kStampLetters);
     const double left = kStampPadding + 3, over = text_width(end, kStampLetters) / 2;
     const double top = kStampPadding + kStampLetters + 4;
-    Drawing drawing(std::ceil(std::max(left + length + std::max(over, kStampPadding) + 2,
-                                       left + words + kStampPadding)),
+    const double ratio = scale.ratio.empty() ? 0 : text_width(scale.ratio, kRatio, true);
+    const double after = left + length + over + 8;  // the bar
+    Drawing drawing(std::ceil(std::max({left + length + std::max(over, kStampPadding) + 2,
+                                        left + words + kStampPadding,
+                                        ratio > 0 ? after + ratio + kStampPadding : 0})),
                     std::ceil(top + height + kStampPadding + (words > 0 ? kStampLetters + 6 : 0)));
     drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = kPanel});
     for (int part = 0; part < 4; ++part)
@@ -65,6 +68,9 @@ Drawing scale_panel(const Stamps::Scale& scale, double width_px, double unit_px)
                  {.size = kStampLetters, .color = kInk, .anchor = Anchor::Middle});
     drawing.text({left + length, top - 4}, end,
                  {.size = kStampLetters, .color = kInk, .anchor = Anchor::Middle});
+    if (ratio > 0)
+        drawing.text({after, top + height}, scale.ratio,
+                     {.size = kRatio, .color = kInk, .bold = true});
     if (words > 0)
         drawing.text({left, top + height + kStampLetters + 4}, scale.where,
                      {.size = kStampLetters, .color = kInk});
@@ -108,6 +114,14 @@ struct Panels {
                                       : lines_panel(stamps.lines, kStampLetters, false);
         if (stamps.north) north = north_panel(*stamps.north);
     }
+
+    /// Of what stands below a map, with gaps.
+    double width_below() const {
+        const auto width = [](const std::optional<Drawing>& drawing) {
+            return drawing ? drawing->width() + kStampGap : 0;
+        };
+        return width(north) + width(scale) + std::max(width(attribution), width(lines));
+    }
 };
 
 enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
@@ -116,10 +130,11 @@ enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
 class Layout {
   public:
     /// @param map  that no panel may lie on
-    Layout(image::Image8& picture, const std::optional<Rect>& map)
-        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)), map_(map) {}
+    Layout(const glm::dvec2& size_px, double unit_px, const std::optional<Rect>& map)
+        : size_px_(size_px), unit_px_(unit_px), map_(map) {}
 
     double unit_px() const { return unit_px_; }
+    const glm::dvec2& size_px() const { return size_px_; }
 
     /// @returns whether there was room
     bool add(const Drawing& drawing, Corner corner) {
@@ -129,8 +144,8 @@ class Layout {
         const bool right = corner == Corner::TopRight || corner == Corner::BottomRight;
         const bool below = corner == Corner::BottomLeft || corner == Corner::BottomRight;
         const double from = margin + used;
-        if (!put(drawing, right ? picture_.width - margin - width : margin,
-                 below ? picture_.height - from - height : from))
+        if (!put(drawing, right ? size_px_.x - margin - width : margin,
+                 below ? size_px_.y - from - height : from))
             return false;
         used += height + kStampGap * unit_px_;
         return true;
@@ -141,42 +156,39 @@ class Layout {
         const Rect at{std::round(x), std::round(y), drawing.width() * unit_px_,
                       drawing.height() * unit_px_};
         if (!is_free(at, 0) || (map_ && overlap(at, *map_))) return false;
-        taken_.push_back(at);
-        paint(drawing, static_cast<int>(at.x), static_cast<int>(at.y), unit_px_, picture_);
+        laid_.taken.push_back(at);
+        laid_.drawings.push_back({drawing, {at.x, at.y}, unit_px_});
+        if (map_) laid_.drawings.back().drawing.fill_opaquely();
         return true;
     }
 
     /// Whether a place is in the picture and nothing stands there.
     bool is_free(const Rect& at, double margin_px) const {
-        if (at.x < margin_px || at.y < margin_px || at.x + at.width > picture_.width - margin_px ||
-            at.y + at.height > picture_.height - margin_px)
+        if (at.x < margin_px || at.y < margin_px || at.x + at.width > size_px_.x - margin_px ||
+            at.y + at.height > size_px_.y - margin_px)
             return false;
-        return std::ranges::none_of(taken_, [&](const Rect& other) { return overlap(at, other); });
+        return std::ranges::none_of(laid_.taken,
+                                    [&](const Rect& other) { return overlap(at, other); });
     }
 
-    void take(const Rect& at) { taken_.push_back(at); }
-    const std::vector<Rect>& taken() const { return taken_; }
+    void take(const Rect& at) { laid_.taken.push_back(at); }
+    /// Notes what had no room.
+    void note(bool there_was_room, const char* name) {
+        if (!there_was_room) laid_.missing.emplace_back(name);
+    }
+    LaidStamps& laid() { return laid_; }
 
   private:
-    image::Image8& picture_;
+    glm::dvec2 size_px_;
     double unit_px_;
     std::optional<Rect> map_;
     std::array<double, 4> used_{};  // of each corner, upwards or downwards
-    std::vector<Rect> taken_;
+    LaidStamps laid_;
 };
 
-/// Names what had no room.
-class Missing {
-  public:
-    void note(bool there_was_room, const char* name) {
-        if (!there_was_room) names.emplace_back(name);
-    }
-    std::vector<std::string> names;
-};
-
-void add_to_corners(const Panels& panels, Layout& layout, Missing& missing) {
+void add_to_corners(const Panels& panels, Layout& layout) {
     const auto add = [&](const std::optional<Drawing>& drawing, Corner corner, const char* name) {
-        if (drawing) missing.note(layout.add(*drawing, corner), name);
+        if (drawing) layout.note(layout.add(*drawing, corner), name);
     };
     for (const Drawing& one : panels.legends)
         add(one, Corner::TopRight, "legend");
@@ -187,31 +199,57 @@ void add_to_corners(const Panels& panels, Layout& layout, Missing& missing) {
     add(panels.north, Corner::BottomLeft, "north");
 }
 
-void add_around(const Panels& panels, const Rect& map, const image::Image8& picture, Layout& layout,
-                Missing& missing) {
+/// The title no wider than its room, and the left and the right end of what stands below the map:
+/// those of the map, or a row about its middle if it is too narrow.
+struct Around {
+    std::optional<Drawing> title;
+    double left, right;
+};
+
+Around around(const Panels& panels, const std::string& title, const Rect& map, double margin_px,
+              const Layout& layout) {
+    const double unit = layout.unit_px(), end = layout.size_px().x - margin_px;
+    const double below = unit * panels.width_below();
+    Around result{panels.title, map.x, map.x + map.width};
+    if (below > map.width) {
+        result.left = std::clamp(map.x + (map.width - below) / 2, margin_px,
+                                 std::max(margin_px, end - below));
+        result.right = std::min(result.left + below, end);
+    }
+    const double room = (end - map.x) / unit;
+    if (panels.title && panels.title->width() > room)
+        result.title = lines_panel(
+            {shortened(title, kStampTitle, room - 2 * kStampPadding - 1, true)}, kStampTitle, true);
+    return result;
+}
+
+void add_around(const Panels& panels, const std::string& title, const Rect& map, Layout& layout) {
     const double unit = layout.unit_px(), margin = kStampMargin * unit, gap = kStampGap * unit;
+    const glm::dvec2 size = layout.size_px();
+    const Around room = around(panels, title, map, margin, layout);
     const auto put = [&](const Drawing& drawing, double x, double y, const char* name) {
-        missing.note(layout.put(drawing, x, y), name);
+        layout.note(layout.put(drawing, x, y), name);
     };
-    if (panels.title) put(*panels.title, map.x, margin, "title");
+    const double padding = kStampPadding * unit;  // letters begin where the map does
+    if (room.title) put(*room.title, map.x - padding, margin, "title");
     double y = map.y;
     for (const Drawing& one : panels.legends) {
-        put(one, picture.width - margin - one.width() * unit, y, "legend");
+        put(one, map.x + map.width + gap, y, "legend");
         y += one.height() * unit + gap;
     }
-    double x = map.x;
+    double x = room.left;
     for (const auto& [drawing, name] :
          {std::pair(&panels.north, "north"), std::pair(&panels.scale, "scale")}) {
         if (!*drawing) continue;
-        put(**drawing, x, picture.height - margin - (*drawing)->height() * unit, name);
+        put(**drawing, x, size.y - margin - (*drawing)->height() * unit, name);
         x += (*drawing)->width() * unit + gap;
     }
-    double from = picture.height - margin;
+    double from = size.y - margin;
     for (const auto& [drawing, name] : {std::pair(&panels.attribution, "attribution"),
                                         std::pair(&panels.lines, "date and sun")}) {
         if (!*drawing) continue;
         from -= (*drawing)->height() * unit;
-        put(**drawing, map.x + map.width - (*drawing)->width() * unit, from, name);
+        put(**drawing, room.right + padding - (*drawing)->width() * unit, from, name);
         from -= gap;
     }
 }
@@ -228,12 +266,11 @@ Stamps::Label outside(Stamps::Label label, const Rect& map) {
     return label;
 }
 
-/// @returns how many labels had no room
-int add_labels(const std::vector<Stamps::Label>& labels, const std::optional<Rect>& map,
-               Layout& layout, image::Image8& picture) {
-    if (labels.empty()) return 0;
+void add_labels(const std::vector<Stamps::Label>& labels, const std::optional<Rect>& map,
+                Layout& layout) {
+    if (labels.empty()) return;
     const double unit = layout.unit_px(), size = kStampLetters * unit;
-    Drawing drawing(picture.width, picture.height);
+    Drawing drawing(layout.size_px().x, layout.size_px().y);
     int left_out = 0;
     for (const Stamps::Label& each : labels) {
         const Stamps::Label label = map ? outside(each, *map) : each;
@@ -250,8 +287,11 @@ int add_labels(const std::vector<Stamps::Label>& labels, const std::optional<Rec
             {middle.x, middle.y + size * 0.36}, label.words,
             {.size = size, .color = kInk, .anchor = Anchor::Middle, .halo = Color{0xffffff, 0.85}});
     }
-    paint(drawing, 0, 0, 1, picture);
-    return left_out;
+    LaidStamps& laid = layout.laid();
+    laid.drawings.push_back({std::move(drawing), {0, 0}, 1});
+    if (left_out > 0)
+        laid.missing.push_back(
+            fmt::format("{} label{} of the graticule", left_out, left_out > 1 ? "s" : ""));
 }
 
 }  // namespace
@@ -276,7 +316,10 @@ double stamp_scale(int width_px, int height_px) {
 }
 
 Margins margins_for(const Stamps& stamps, int width_px, int height_px) {
-    const double unit = stamp_scale(width_px, height_px);
+    return margins_for(stamps, width_px, stamp_scale(width_px, height_px));
+}
+
+Margins margins_for(const Stamps& stamps, int width_px, double unit) {
     const Panels panels(stamps, width_px, unit);
     const auto height = [](const std::optional<Drawing>& drawing) {
         return drawing ? drawing->height() : 0.0;
@@ -298,21 +341,26 @@ Margins margins_for(const Stamps& stamps, int width_px, int height_px) {
                          (labels > 0 ? kStampLetters + kLabelGap : 0))};
 }
 
+LaidStamps lay_out(const Stamps& stamps, const glm::ivec2& size_px, double unit_px,
+                   const std::optional<Rect>& map) {
+    Layout layout(size_px, unit_px, map);
+    const Panels panels(stamps, size_px.x, unit_px);
+    if (map)
+        add_around(panels, stamps.title, *map, layout);
+    else
+        add_to_corners(panels, layout);
+    add_labels(stamps.graticule, map, layout);
+    return std::move(layout.laid());
+}
+
 std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
                                std::vector<Rect>* taken, const std::optional<Rect>& map) {
-    Layout layout(picture, map);
-    Missing missing;
-    const Panels panels(stamps, picture.width, layout.unit_px());
-    if (map)
-        add_around(panels, *map, picture, layout, missing);
-    else
-        add_to_corners(panels, layout, missing);
-    const int labels = add_labels(stamps.graticule, map, layout, picture);
-    if (labels > 0)
-        missing.names.push_back(
-            fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
-    if (taken) *taken = layout.taken();
-    return std::move(missing.names);
+    LaidStamps laid = lay_out(stamps, {picture.width, picture.height},
+                              stamp_scale(picture.width, picture.height), map);
+    for (const Placed& each : laid.drawings)
+        paint(each, picture);
+    if (taken) *taken = std::move(laid.taken);
+    return std::move(laid.missing);
 }
 
 }  // namespace relevo::chart

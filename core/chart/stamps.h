@@ -15,7 +15,8 @@ namespace relevo::chart {
 struct Stamps {
     struct Scale {
         double px_per_m = 0;
-        std::string where;  ///< where it holds: "at the picture's middle"; empty: everywhere
+        std::string where;    ///< where it holds: "at the picture's middle"; empty: everywhere
+        std::string ratio{};  ///< "1 : 25 000", of maps on paper
     };
     /// A line of the graticule, where it ends in the picture.
     struct Label {
@@ -52,13 +53,29 @@ struct Margins {
 /// @param stamps  with a scale, north and the longest label of the graticule, if there will be any
 /// @param width_px, height_px  of the whole picture
 Margins margins_for(const Stamps& stamps, int width_px, int height_px);
+/// The same with another stamp_scale().
+Margins margins_for(const Stamps& stamps, int width_px, double unit_px);
 
-/// Puts them on a picture, RGB, each whole and over none of the others.
-/// @param taken  if not null, receives the rectangles where they stand
-/// @param map    where the map is in the picture: they stand around it. nullopt: in the corners of
-///     the picture
-/// @returns what had no room: "title", "legend", "scale", "north", "date and sun", "attribution",
-///          "2 labels of the graticule"
+/// Where stamps stand in a picture: a picture and a PDF are drawn from the same.
+struct LaidStamps {
+    std::vector<Placed> drawings;
+    std::vector<Rect> taken;  ///< by them and by labels of the graticule [px]
+    /// What had no room: "title", "legend", "scale", "north", "date and sun", "attribution",
+    /// "2 labels of the graticule".
+    std::vector<std::string> missing;
+};
+
+/// Gives each stamp a place, whole and over none of the others.
+/// @param size_px  of the picture
+/// @param unit_px  as stamp_scale()
+/// @param map      where the map is in the picture: they stand around it. nullopt: in the corners
+///     of the picture
+LaidStamps lay_out(const Stamps& stamps, const glm::ivec2& size_px, double unit_px,
+                   const std::optional<Rect>& map = std::nullopt);
+
+/// Puts them on a picture, RGB: lay_out() and paint().
+/// @param taken  if not null, receives LaidStamps::taken
+/// @returns LaidStamps::missing
 /// @throws Error (Failed) as paint()
 std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture,
                                std::vector<Rect>* taken = nullptr,

@@ -70,7 +70,7 @@ OIIO::TypeDesc stored_as() {
 
 template <typename T>
 OIIO::ImageSpec spec_of(const Pixels<T>& image, const std::string& format, const Metadata& metadata,
-                        int quality) {
+                        int quality, double dpi = 0) {
     OIIO::ImageSpec spec(image.width, image.height, image.channels, stored_as<T>());
     spec.attribute("oiio:ColorSpace", std::is_same_v<T, float> ? "Linear" : "sRGB");
     // Alpha of whole numbers is straight, also where the library would multiply the colours.
@@ -78,6 +78,11 @@ OIIO::ImageSpec spec_of(const Pixels<T>& image, const std::string& format, const
         spec.attribute("oiio:UnassociatedAlpha", 1);
     if (format == "jpeg" || format == "webp") spec.attribute("CompressionQuality", quality);
     if (format == "tiff" || format == "openexr") spec.attribute("compression", "zip");
+    if (dpi > 0) {
+        spec.attribute("XResolution", static_cast<float>(dpi));
+        spec.attribute("YResolution", static_cast<float>(dpi));
+        spec.attribute("ResolutionUnit", "in");
+    }
     // Of itself the library writes when it wrote, by which equal pictures would differ.
     spec.attribute("DateTime", "");
     for (const auto& [keyword, text] : metadata)
@@ -162,10 +167,11 @@ std::string encode_tiff(std::vector<std::byte>& bytes, OIIO::ImageOutput& output
 
 template <typename T>
 std::string encode_pixels(std::vector<std::byte>& bytes, const std::string& format,
-                          const Pixels<T>& image, const Metadata& metadata, int quality) {
+                          const Pixels<T>& image, const Metadata& metadata, int quality,
+                          double dpi) {
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) return OIIO::geterror();
-    const OIIO::ImageSpec spec = spec_of(image, format, metadata, quality);
+    const OIIO::ImageSpec spec = spec_of(image, format, metadata, quality, dpi);
     const std::string xmp = xmp_packet(metadata);
     if (format == "tiff") return encode_tiff(bytes, *output, spec, image, xmp);
     if constexpr (std::is_same_v<T, std::uint8_t>)
@@ -238,7 +244,9 @@ std::string encode(std::vector<std::byte>& bytes, const std::string& format, con
     if (!picture.layers.empty())
         return encode_layers(bytes, std::get<ImageF>(picture.pixels), picture.layers, metadata);
     return std::visit(
-        [&](const auto& image) { return encode_pixels(bytes, format, image, metadata, quality); },
+        [&](const auto& image) {
+            return encode_pixels(bytes, format, image, metadata, quality, picture.dpi);
+        },
         picture.pixels);
 }
 

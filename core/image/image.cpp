@@ -46,7 +46,8 @@ constexpr std::array kFormats{Format{".png", "png", false, kAnySize, true, true,
                               Format{".avif", "avif", false, 16384, false, true, true},
                               Format{".tif", "tiff", false, kAnySize, true, true, false},
                               Format{".tiff", "tiff", false, kAnySize, true, true, false},
-                              Format{".exr", "openexr", true, kAnySize, false, true, false}};
+                              Format{".exr", "openexr", true, kAnySize, false, true, false},
+                              Format{".pdf", "jpeg", false, 65500, false, false, true}};
 
 const Format* format_of(const std::filesystem::path& path) {
     const std::string ending = lower(path.extension().string());
@@ -112,7 +113,8 @@ void check_has(const std::filesystem::path& path, const Format& format, const st
     if (has(format)) return;
     std::vector<std::string> others;
     for (const Format& other : kFormats)
-        if (has(other)) others.emplace_back(other.ending + 1);
+        if (has(other) && std::string_view(other.ending) != ".pdf")
+            others.emplace_back(other.ending + 1);
     bad_input(fmt::format("image: {}: {} has no {}; use {}", printable(path.string()), format.name,
                           what, fmt::join(others, ", ")));
 }
@@ -261,9 +263,9 @@ void write(OutputFile& file, const Picture& picture, const Metadata& metadata,
     std::visit([&](const auto& image) { check_holds(file.path(), format, image); }, picture.pixels);
     const auto* const deep = std::get_if<Image16>(&picture.pixels);
     if (deep)
-        write_png(file, *deep, metadata);
+        write_png(file, *deep, metadata, picture.dpi);
     else
-        write_png(file, std::get<Image8>(picture.pixels), metadata);
+        write_png(file, std::get<Image8>(picture.pixels), metadata, picture.dpi);
 }
 
 void write(OutputFile& file, Image8 image, const Metadata& metadata) {

@@ -62,6 +62,7 @@ struct Channel {
 struct Picture {
     std::variant<Image8, Image16, ImageF> pixels;
     std::vector<Channel> layers{};  ///< of an ImageF
+    double dpi = 0;                 ///< pixels per inch on paper, which files say; 0: none
 };
 
 /// What a picture file is, as far as its name does not say it.
@@ -79,7 +80,8 @@ Image8 from_device(int width_px, int height_px, const std::vector<std::uint8_t>&
 using Metadata = std::map<std::string, std::string>;
 
 /// Formats by the ending of the file's name: png, jpg, jpeg, webp, avif, tif, tiff hold an Image8,
-/// png, tif and tiff also an Image16, exr an ImageF.
+/// png, tif and tiff also an Image16, exr an ImageF. A pdf (chart/drawing.h) holds the JPEG that
+/// encoded() makes for its name.
 bool is_picture_name(const std::filesystem::path& path);
 bool holds_linear_light(const std::filesystem::path& path);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -170,7 +171,7 @@ class PngBands::Writer {
   public:
     /// @param bits  of a channel
     Writer(OutputFile& file, int width_px, int height_px, int channels, int bits,
-           const Metadata& metadata)
+           const Metadata& metadata, double dpi = 0)
         : subject_(file.path().string()), sink_{file, {}} {
         png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &subject_, on_error, on_warning);
         info = png_create_info_struct(png);
@@ -186,6 +187,8 @@ class PngBands::Writer {
                      static_cast<png_uint_32>(height_px), bits, colour_type(channels),
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
         png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+        const auto per_m = static_cast<png_uint_32>(std::lround(dpi / 0.0254));
+        if (per_m > 0) png_set_pHYs(png, info, per_m, per_m, PNG_RESOLUTION_METER);
         set_texts(metadata);
         png_write_info(png, info);
     }
@@ -245,8 +248,9 @@ void PngBands::end() {
 }
 
 template <typename T>
-void PngBands::write_whole(OutputFile& file, const Pixels<T>& image, const Metadata& metadata) {
-    Writer writer(file, image.width, image.height, image.channels, 8 * sizeof(T), metadata);
+void PngBands::write_whole(OutputFile& file, const Pixels<T>& image, const Metadata& metadata,
+                           double dpi) {
+    Writer writer(file, image.width, image.height, image.channels, 8 * sizeof(T), metadata, dpi);
     if (sizeof(T) * image.values.size() > kMostAtOnce) {
         writer.write_rows(image);
         return writer.end();
@@ -255,12 +259,12 @@ void PngBands::write_whole(OutputFile& file, const Pixels<T>& image, const Metad
     writer.flush();
 }
 
-void write_png(OutputFile& file, const Image8& image, const Metadata& metadata) {
-    PngBands::write_whole(file, image, metadata);
+void write_png(OutputFile& file, const Image8& image, const Metadata& metadata, double dpi) {
+    PngBands::write_whole(file, image, metadata, dpi);
 }
 
-void write_png(OutputFile& file, const Image16& image, const Metadata& metadata) {
-    PngBands::write_whole(file, image, metadata);
+void write_png(OutputFile& file, const Image16& image, const Metadata& metadata, double dpi) {
+    PngBands::write_whole(file, image, metadata, dpi);
 }
 
 Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {

@@ -12,9 +12,10 @@ namespace relevo::image {
 inline constexpr std::size_t kLongestTextOfPng = 7'900'000;
 
 /// Writes a PNG with the sRGB chunk and `metadata` as iTXt, all of it but finish().
+/// @param dpi  as Picture::dpi
 /// @throws Error (Failed)
-void write_png(OutputFile& file, const Image8& image, const Metadata& metadata);
-void write_png(OutputFile& file, const Image16& image, const Metadata& metadata);
+void write_png(OutputFile& file, const Image8& image, const Metadata& metadata, double dpi = 0);
+void write_png(OutputFile& file, const Image16& image, const Metadata& metadata, double dpi = 0);
 
 /// Writes a PNG band by band.
 class PngBands {
@@ -29,7 +30,8 @@ class PngBands {
     void end();
 
     template <typename T>
-    static void write_whole(OutputFile& file, const Pixels<T>& image, const Metadata& metadata);
+    static void write_whole(OutputFile& file, const Pixels<T>& image, const Metadata& metadata,
+                            double dpi);
 
   private:
     class Writer;

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/sheet.h"
 
 // Rejected: an orthographic camera in the local frame, because the ground of a CRS is neither flat
 // nor evenly scaled there (the corners of a degree at 47 N are off by hundreds of metres); and
@@ -69,6 +70,12 @@ void fit_map(Scene& scene, const dem::Grid& grid) {
     if (!scene.ortho && scene.resolution > 0)
         bad_input("--resolution: needs --ortho; --size is the size of other pictures");
     if (!scene.ortho) return;
+    if (scene.sheet.is_on()) {
+        const glm::ivec2 size = sheet_px(scene.sheet, grid);
+        scene.width_px = size.x;
+        scene.height_px = size.y;
+        return;
+    }
     if (scene.stamps.margin) {
         if (scene.resolution > 0)
             bad_input("--margin and --resolution exclude each other; use --size");

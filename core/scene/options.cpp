@@ -29,6 +29,10 @@ constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundss
 constexpr std::array<std::string_view, 2> kLights = {"flat", "lit"};
 constexpr std::array<std::string_view, 3> kPanoramas = {"none", "cylindrical", "equirectangular"};
 constexpr std::array<std::string_view, 4> kStereos = {"none", "parallel", "cross-eyed", "anaglyph"};
+constexpr std::array<std::string_view, 16> kSheets = {
+    "none",         "a4", "a4-portrait", "a4-landscape", "a3", "a3-portrait",
+    "a3-landscape", "a2", "a2-portrait", "a2-landscape", "a1", "a1-portrait",
+    "a1-landscape", "a0", "a0-portrait", "a0-landscape"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // in no range
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
@@ -236,6 +240,23 @@ constexpr Option kOptions[] = {
      1e9, {},
      [](const Scene& s) { return number(s.resolution); },
      [](Scene& s, const Value& v) { s.resolution = v.number; }},
+    {"picture", "sheet", "--sheet", "Map sheet",
+     "Map on paper with stamps around it, instead of --size: a4 to a0, which lies or stands as the DEM "
+     "does, or a4-portrait, a4-landscape, ...; png, tif and jpg say its dpi; pdf has text as text", Kind::Word, 0, 0, kSheets,
+     [](const Scene& s) { return text(s.sheet.is_on() ? s.sheet.paper : "none"); },
+     [](Scene& s, const Value& v) {
+         s.sheet.paper = v.text == "none" ? "" : v.text;
+         if (s.sheet.is_on()) s.ortho = s.stamps.margin = true;
+     }},
+    {"picture", "map_scale", "--map-scale", "Map sheet",
+     "n of the sheet's scale 1 : n at the middle of the map, 25000; cut about the middle of the DEM; "
+     "default: the roundest at which all of the DEM fits", Kind::Number, 1, 1e9, {},
+     [](const Scene& s) { return number(s.sheet.scale); },
+     [](Scene& s, const Value& v) { s.sheet.scale = v.number; }},
+    {"picture", "dpi", "--dpi", "Map sheet",
+     "Pixels per inch of the sheet", Kind::Number, 20, 2400, {},
+     [](const Scene& s) { return number(s.sheet.dpi); },
+     [](Scene& s, const Value& v) { s.sheet.dpi = v.number; }},
 };
 // clang-format on
 

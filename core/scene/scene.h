@@ -79,6 +79,16 @@ struct Stamps {
     bool operator==(const Stamps&) const = default;
 };
 
+/// Paper that a map is printed on (scene/sheet.h). Scenes with one have `ortho` and Stamps::margin.
+struct Sheet {
+    std::string paper;  ///< a word of --sheet, "a3-landscape"; empty: none
+    double scale = 0;   ///< n of 1 : n; 0: the roundest at which all of the DEM fits
+    double dpi = 300;   ///< pixels per inch
+
+    bool is_on() const { return !paper.empty(); }
+    bool operator==(const Sheet&) const = default;
+};
+
 /// Background of the DEM in the picture.
 enum class Backdrop {
     Auto,     ///< Horizon in aerial views, else Studio
@@ -123,6 +133,7 @@ struct Scene {
     bool transparent = false;     ///< what shows no ground of the DEM
     bool ortho = false;           ///< pictures are maps (scene/map_view.h), and `view` is not used
     double resolution = 0;  ///< of a map: side of a pixel [units of the DEM's CRS]; 0: by size
+    Sheet sheet;            ///< then the picture's size follows from it
 
     bool operator==(const Scene&) const = default;
 };

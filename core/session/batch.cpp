@@ -31,7 +31,7 @@ struct Outputs {
     OutputFile picture;
     std::optional<OutputFile> sidecar{};
     std::vector<OutputFile> beside{};  ///< of a map: files_beside()
-    std::optional<output::Georeference> where{};
+    FileParts parts{};
 };
 
 /// @throws Error (BadInput) for a picture that is too large for memory
@@ -92,7 +92,7 @@ class Batch {
         session.show(shot.scene, shot.utc);
         auto picture = std::make_shared<image::Picture>(session.make_picture());
         if (!options_.allow_blank && !session.shows_ground()) return blank(shot);
-        outputs->where = georeference_of(session);
+        outputs->parts = file_parts_of(session);
         std::optional<ShadowAudit> audit;
         if (options_.audit) audit = audit_shadows(session);
         if (audit) options_.audited(shot, *audit);
@@ -112,11 +112,11 @@ class Batch {
     void write_files(const scene::Shot& shot, Outputs& outputs, const image::Metadata& metadata,
                      const image::Picture& picture) {
         try {
-            write_picture(outputs.picture, picture, metadata, options_.encoding, outputs.where);
+            write_picture(outputs.picture, picture, metadata, options_.encoding, outputs.parts);
             std::vector<OutputFile*> all;
             for (OutputFile& file : outputs.beside)
                 all.push_back(&file);
-            if (outputs.where) write_beside(all, *outputs.where);
+            if (outputs.parts.where) write_beside(all, *outputs.parts.where);
             all.push_back(&outputs.picture);
             if (outputs.sidecar) all.push_back(&*outputs.sidecar);
             OutputFile::finish_all(all);

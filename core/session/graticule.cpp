@@ -5,8 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "base/parallel_for.h"
@@ -18,6 +21,7 @@ namespace {
 constexpr int kMostLines = 7;
 constexpr double kNarrow = 6, kWide = 14;  // distance of lines, in stamp units: invisible, opaque
 constexpr double kHalf = 0.55, kHalfEdge = 1.3;  // half widths in stamp units
+constexpr double kOnPaper = 0.8;  // width of a line in half widths: thinner than on screens
 constexpr float kLineOpacity = 0.85f, kEdgeOpacity = 0.35f;
 
 constexpr std::array<int, 18> kSteps_s = {1,   2,   5,    10,   15,   30,    60,    120,   300,
@@ -145,7 +149,107 @@ void name(const Courses& courses, double step_deg, std::string (*text)(double, d
     }
 }
 
+/// Latitudes and longitudes of a map [degrees], from a sample of its places. Longitudes are within
+/// 180 degrees of its middle.
+struct MapRange {
+    glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-low};
+    double middle_deg;
+
+    explicit MapRange(const scene::MapView& map) {
+        constexpr int kSamples = 64;
+        const auto place = [&](double across, double down) {
+            const glm::dvec2 post = map.post(glm::dvec2(across, down) * map.size_px());
+            return map.grid().place(post.x, post.y);
+        };
+        middle_deg = degrees(place(0.5, 0.5).lon_rad);
+        for (int i = 0; i <= kSamples; ++i)
+            for (int j = 0; j <= kSamples; ++j) {
+                const geo::Geodetic at = place(double(i) / kSamples, double(j) / kSamples);
+                const glm::dvec2 here(
+                    degrees(at.lat_rad),
+                    middle_deg + std::remainder(degrees(at.lon_rad) - middle_deg, 360));
+                if (std::isnan(here.x + here.y)) continue;
+                low = glm::min(low, here);
+                high = glm::max(high, here);
+            }
+    }
+};
+
+/// The part of a line that is in a map. Source: Y.-D. Liang and B. Barsky, ACM Transactions on
+/// Graphics 3 (1984), 1.
+std::optional<std::pair<glm::dvec2, glm::dvec2>> within(const glm::dvec2& from,
+                                                        const glm::dvec2& to,
+                                                        const glm::dvec2& size_px) {
+    double begin = 0, end = 1;
+    const glm::dvec2 way = to - from;
+    for (const int axis : {0, 1})
+        for (const bool is_high : {false, true}) {
+            const double step = is_high ? way[axis] : -way[axis];
+            const double room = is_high ? size_px[axis] - from[axis] : from[axis];
+            if (step == 0 && room < 0) return std::nullopt;
+            if (step > 0) end = std::min(end, room / step);
+            if (step < 0) begin = std::max(begin, room / step);
+        }
+    if (!(begin < end)) return std::nullopt;
+    return std::pair(from + begin * way, from + end * way);
+}
+
+/// A parallel or a meridian in a map: its pieces, with NaN between them.
+/// @param place_at  from 0 to 1
+template <typename PlaceAt>
+std::vector<glm::dvec2> line_of(const scene::MapView& map, const PlaceAt& place_at) {
+    constexpr int kPoints = 512;
+    const glm::dvec2 size = map.size_px(), none(std::numeric_limits<double>::quiet_NaN());
+    std::vector<glm::dvec2> line;
+    glm::dvec2 before = none;
+    for (int k = 0; k <= kPoints; ++k) {
+        const glm::dvec2 at = map.pixel(map.grid().post(place_at(double(k) / kPoints)));
+        // Where the map's ends meet the line goes from one to the other.
+        const bool leaps = glm::distance(at, before) > 0.5 * std::max(size.x, size.y);
+        const auto part = leaps ? std::nullopt : within(before, at, size);
+        before = at;
+        if (!part || !(part->first.x + part->second.y < 1e300)) continue;
+        if (line.empty() || line.back() != part->first) {
+            line.push_back(none);
+            line.push_back(part->first);
+        }
+        line.push_back(part->second);
+    }
+    return line;
+}
+
 }  // namespace
+
+MapGraticule make_graticule(const scene::MapView& map, double unit_px) {
+    const glm::dvec2 size = map.size_px();
+    MapGraticule result{chart::Drawing(size.x, size.y), {}};
+    const MapRange range(map);
+    if (!(range.low.x < range.high.x && range.low.y < range.high.y)) return result;
+    std::vector<std::vector<glm::dvec2>> lines;
+    const auto add = [&](int axis, auto text) {
+        const double step_deg = graticule_step_deg(range.high[axis] - range.low[axis], kMostLines);
+        Courses courses;
+        const auto first = static_cast<long>(std::ceil(range.low[axis] / step_deg));
+        for (long k = first; static_cast<double>(k) * step_deg <= range.high[axis]; ++k) {
+            const auto place_at = [&](double part) {
+                glm::dvec2 deg = glm::mix(range.low, range.high, 1.02 * part - 0.01);
+                deg[axis] = static_cast<double>(k) * step_deg;
+                return geo::Geodetic{radians(std::clamp(deg.x, -90.0, 90.0)), radians(deg.y), 0};
+            };
+            lines.push_back(line_of(map, place_at));
+            for (const glm::dvec2& at : lines.back())
+                if (!std::isnan(at.x)) note(courses, k, glm::ivec2(glm::min(at, size - 1.0)));
+        }
+        name(courses, step_deg, text, result.labels);
+    };
+    add(0, latitude_text);
+    add(1, longitude_text);
+    for (const auto& [half, color] : {std::pair(kHalfEdge, chart::Color{0x000000, kEdgeOpacity}),
+                                      std::pair(kHalf, chart::Color{0xffffff, kLineOpacity})})
+        for (const std::vector<glm::dvec2>& line : lines)
+            result.drawing.path(line, {.stroke = color, .width = kOnPaper * half * unit_px});
+    return result;
+}
 
 double graticule_step_deg(double range_deg, int most) {
     for (const int step_s : kSteps_s)

@@ -7,6 +7,7 @@
 #include "base/array2d.h"
 #include "chart/stamps.h"
 #include "geo/local_frame.h"
+#include "scene/map_view.h"
 #include "session/seen_ground.h"
 
 namespace relevo::session {
@@ -26,6 +27,16 @@ struct Graticule {
 /// @param is_ground  true if a point in `frame` [m] is ground, not a wall below the DEM's edge
 Graticule make_graticule(const SeenGround& seen, const geo::LocalFrame& frame,
                          const std::function<bool(const glm::dvec3& point_m)>& is_ground);
+
+/// The same of a map, as lines.
+struct MapGraticule {
+    chart::Drawing drawing;  ///< of the map's size [px]
+    std::vector<chart::Stamps::Label> labels;
+};
+
+/// Draws the lines all over a map, also where it has no ground. @param unit_px  as
+/// chart::stamp_scale()
+MapGraticule make_graticule(const scene::MapView& map, double unit_px);
 
 /// The smallest step of 1", 2", 5", ... 30 degrees that divides a range by at most `most` lines.
 double graticule_step_deg(double range_deg, int most);

@@ -13,6 +13,7 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "scene/sheet.h"
 #include "session/picture_file.h"
 #include "session/record.h"
 
@@ -66,6 +67,7 @@ std::string fault_of_picture(const scene::Shot& shot, const Wanted& wanted) {
         if (std::string why = difference(text(kInputsKeyword), wanted.record); !why.empty())
             return why;
         if (text(kFormatKeyword) != wanted.format) return "it has other bits, quality or layers";
+        if (scene::is_pdf(shot.output)) return {};  // files appear only when they are whole
         const image::Image8 picture = image::read(file.path());
         if (picture.width == shot.scene.width_px && picture.height == shot.scene.height_px)
             return {};

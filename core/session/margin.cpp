@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/map_view.h"
+#include "scene/sheet.h"
 #include "session/annotations.h"
 #include "session/image_parts.h"
 #include "session/picture_maker.h"
@@ -48,11 +50,11 @@ glm::ivec2 ground_size(const dem::Grid& grid, const glm::ivec2& room) {
 
 /// A white picture with the view in it and a line around that.
 template <typename T>
-image::Pixels<T> framed(const image::Pixels<T>& view, const Place& place, const glm::ivec2& whole) {
+image::Pixels<T> framed(const image::Pixels<T>& view, const Place& place, const glm::ivec2& whole,
+                        int line) {
     constexpr T kMost = std::numeric_limits<T>::max();
     image::Pixels<T> picture(whole.x, whole.y, view.channels);
     std::ranges::fill(picture.values, kMost);
-    const int line = std::max(1, static_cast<int>(chart::stamp_scale(whole.x, whole.y)));
     image::Pixels<T> edge(place.size.x + 2 * line, place.size.y + 2 * line, view.channels);
     for (std::size_t i = 0; i < edge.values.size(); ++i)
         edge.values[i] =
@@ -61,6 +63,41 @@ image::Pixels<T> framed(const image::Pixels<T>& view, const Place& place, const 
     put(view, place.corner, picture);
     return picture;
 }
+
+void frame(image::Picture& picture, const Place& place, const glm::ivec2& whole, double unit_px) {
+    const int line = std::max(1, static_cast<int>(unit_px));
+    if (auto* const view = std::get_if<image::Image8>(&picture.pixels))
+        picture.pixels = framed(*view, place, whole, line);
+    else
+        picture.pixels = framed(std::get<image::Image16>(picture.pixels), place, whole, line);
+}
+
+chart::Rect rect_of(const Place& place) {
+    return {double(place.corner.x), double(place.corner.y), double(place.size.x),
+            double(place.size.y)};
+}
+
+/// Puts back size, view and scale of the whole picture.
+template <typename Impl>
+struct Sized {
+    Impl& impl;
+    glm::ivec2 whole;
+    scene::View view;
+    scene::Sheet sheet;
+    Sized(Impl& of, const glm::ivec2& view_px)
+        : impl(of),
+          whole(of.state.scene.width_px, of.state.scene.height_px),
+          view(of.state.scene.view),
+          sheet(of.state.scene.sheet) {
+        impl.resize(view_px.x, view_px.y);
+    }
+    ~Sized() {
+        impl.state.scene.width_px = whole.x;
+        impl.state.scene.height_px = whole.y;
+        impl.state.scene.view = view;
+        impl.state.scene.sheet = sheet;
+    }
+};
 
 }  // namespace
 
@@ -74,20 +111,7 @@ image::Picture Session::Impl::make_with_margin(const Session& session, render::P
                                             : from_above   ? ground_size(grid, room)
                                                            : room;
                                  });
-    struct Sized {  // puts back size and view of the whole picture
-        Impl& impl;
-        glm::ivec2 whole;
-        scene::View view;
-        Sized(Impl& of, const glm::ivec2& whole_px, const glm::ivec2& view_px)
-            : impl(of), whole(whole_px), view(of.state.scene.view) {
-            impl.resize(view_px.x, view_px.y);
-        }
-        ~Sized() {
-            impl.state.scene.width_px = whole.x;
-            impl.state.scene.height_px = whole.y;
-            impl.state.scene.view = view;
-        }
-    } const sized(*this, whole, place.size);
+    const Sized sized(*this, place.size);
     scene::View seen = state.scene.view;
     if (from_above) seen.orbit.zoom = 1 / scene::kFill;  // the ground ends at the line around it
     look(seen);
@@ -96,19 +120,68 @@ image::Picture Session::Impl::make_with_margin(const Session& session, render::P
     image::Picture picture = maker.whole(times);
     picture_shows_ground = maker.shows_ground();
     map_corner_px = place.corner;
-    if (auto* const view = std::get_if<image::Image8>(&picture.pixels))
-        picture.pixels = framed(*view, place, whole);
-    else
-        picture.pixels = framed(std::get<image::Image16>(picture.pixels), place, whole);
+    frame(picture, place, whole, chart::stamp_scale(whole.x, whole.y));
     const std::vector<float>* const depths_m = maker.is_tiled() ? &maker.depths_m() : nullptr;
-    const chart::Rect map{double(place.corner.x), double(place.corner.y), double(place.size.x),
-                          double(place.size.y)};
     annotate(picture, [&](image::Image8& on) {
         std::vector<chart::Rect> taken;
-        stamp_notes = add_stamps(session, session.legends(), on, taken, depths_m, map);
+        stamp_notes = add_stamps(session, session.legends(), on, taken, depths_m, rect_of(place));
         image::Image8 view = cut_out(on, place.corner, place.size);
         draw_marks_on(view, {}, depths_m);
         put(view, place.corner, on);
+    });
+    return picture;
+}
+
+image::Picture Session::Impl::make_sheet(const Session& session, render::PassTimes* times) {
+    const scene::Sheet sheet = state.scene.sheet;
+    const dem::Grid& grid = session.dem()->source->grid();
+    const glm::ivec2 whole(state.scene.width_px, state.scene.height_px);
+    const glm::ivec2 edge(static_cast<int>(std::lround(scene::sheet_edge_px(sheet))));
+    SheetRoom room{
+        .sheet_px = whole, .room_px = whole - 2 * edge, .unit_px = scene::sheet_unit_px(sheet)};
+    room.margins = chart::margins_for(planned_stamps(session), room.room_px.x, room.unit_px);
+    scene::Sheet settled = sheet;
+    double fitting = 0;
+    room.map_px = place_of(room.margins, room.room_px, [&](const glm::ivec2& left_px) {
+                      fitting = scene::fitting_scale(grid, sheet.dpi, left_px);
+                      if (!(sheet.scale > 0)) settled.scale = fitting;
+                      return scene::sheet_map_px(grid, settled.scale, sheet.dpi, left_px);
+                  }).size;
+    const Sized sized(*this, room.map_px);
+    state.scene.sheet = settled;
+    look(state.scene.view);
+    PictureMaker maker(*this);
+    if (maker.is_tiled() && has_marks()) maker.keep_depths();
+    image::Picture picture = maker.whole(times);
+    picture.dpi = sheet.dpi;
+    picture_shows_ground = maker.shows_ground();
+    SheetStamps stamps = lay_out_sheet(session, room);
+    map_corner_px = {static_cast<int>(stamps.map.x), static_cast<int>(stamps.map.y)};
+    if (has_marks())
+        for (chart::Drawing& marks :
+             mark_drawings(room.map_px, {}, maker.is_tiled() ? &maker.depths_m() : nullptr))
+            stamps.drawings.push_back({std::move(marks), glm::dvec2(map_corner_px), 1});
+    stamp_notes = std::move(stamps.notes);
+    if (settled.scale < fitting * (1 - 1e-9))
+        stamp_notes.push_back(fmt::format("sheet: {} has the middle of the DEM; {} has all of it",
+                                          scene::scale_text(settled.scale),
+                                          scene::scale_text(fitting)));
+    if (options.format->map_alone) {
+        paper_sheet = std::make_shared<const chart::PaperSheet>(
+            chart::PaperSheet{.size_mm = scene::sheet_mm(sheet, grid),
+                              .dpi = sheet.dpi,
+                              .picture = stamps.map,
+                              .line_px = room.unit_px,
+                              .drawings = std::move(stamps.drawings),
+                              .taken = std::move(stamps.taken),
+                              .title = stamps.title,
+                              .author = state.scene.stamps.attribution_text});
+        return picture;
+    }
+    frame(picture, {map_corner_px, room.map_px}, whole, room.unit_px);
+    annotate(picture, [&](image::Image8& on) {
+        for (const chart::Placed& placed : stamps.drawings)
+            chart::paint(placed, on);
     });
     return picture;
 }

@@ -231,14 +231,16 @@ Marks marks_of(const LoadedMarks& loaded, std::shared_ptr<const StandingMarks> s
     constexpr double kHaloOpacity = 0.85;
     const effect::MarksSpec& spec = *loaded.spec;
     const auto number = [&](const effect::MarkValue& value) { return value.of(values)[0]; };
+    // On paper a pixel of a parameter is a 96th of an inch, as it is on screens.
+    const double px = scene.sheet.is_on() ? scene.sheet.dpi / 96 : 1;
     return {.standing = std::move(standing),
-            .style = {.size = number(spec.size_px),
+            .style = {.size = px * number(spec.size_px),
                       .color = color_of(spec.colour.of(values), 1),
                       .halo = color_of(spec.halo.of(values), kHaloOpacity),
                       .symbol = static_cast<chart::Symbol>(number(spec.symbol)),
-                      .leader = number(spec.leader_px),
-                      .distance = number(spec.distance_px),
-                      .repeat = number(spec.repeat_px),
+                      .leader = px * number(spec.leader_px),
+                      .distance = px * number(spec.distance_px),
+                      .repeat = px * number(spec.repeat_px),
                       .most = static_cast<std::size_t>(number(spec.most))},
             .order = static_cast<effect::MarksSpec::Order>(number(spec.order)),
             .above_m = number(spec.above_m),

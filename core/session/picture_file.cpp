@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "scene/map_view.h"
+#include "scene/sheet.h"
 
 namespace relevo::session {
 
@@ -20,9 +21,13 @@ std::optional<output::Georeference> georeference_of(const Session& session) {
     return output::Georeference{area.geotransform(), map->grid().crs().text()};
 }
 
+FileParts file_parts_of(const Session& session) {
+    return {georeference_of(session), session.paper_sheet()};
+}
+
 std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
                                                 const std::filesystem::path& picture) {
-    if (!scene.ortho) return {};
+    if (!scene.ortho || scene::is_pdf(picture)) return {};
     return output::georeference_files(picture);
 }
 
@@ -39,8 +44,15 @@ void warn_of_files_beside(const scene::Scene& scene, const std::filesystem::path
 }
 
 void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,
-                   const image::Encoding& encoding,
-                   const std::optional<output::Georeference>& where) {
+                   const image::Encoding& encoding, const FileParts& parts) {
+    if (parts.paper) {
+        chart::PaperSheet paper = *parts.paper;
+        if (const auto software = metadata.find("Software"); software != metadata.end())
+            paper.creator = software->second;
+        return chart::write_pdf(paper, image::encoded(file.path(), picture, metadata, encoding),
+                                file);
+    }
+    const std::optional<output::Georeference>& where = parts.where;
     const bool is_tiff = encoding.format.empty()
                              ? output::holds_georeference(file.path())
                              : output::holds_georeference("picture." + encoding.format);
@@ -50,7 +62,7 @@ void write_picture(OutputFile& file, const image::Picture& picture, const image:
 
 void write_picture(Session& session, const std::optional<image::Picture>& picture, OutputFile& file,
                    const image::Metadata& metadata, const image::Encoding& encoding) {
-    if (picture) return write_picture(file, *picture, metadata, encoding, georeference_of(session));
+    if (picture) return write_picture(file, *picture, metadata, encoding, file_parts_of(session));
     const scene::Scene& scene = session.scene();
     image::BandWriter writer(
         file,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,11 +24,17 @@ std::vector<std::filesystem::path> files_beside(const scene::Scene& scene,
 /// Warns of files that georeference another picture of this name, if the scene's is no map.
 void warn_of_files_beside(const scene::Scene& scene, const std::filesystem::path& picture);
 
-/// Writes a picture to a file, all of it but finish(). @param where  of a map
-/// @throws Error as image::write() and output::write_geotiff()
+/// What the file of a picture has besides its pixels.
+struct FileParts {
+    std::optional<output::Georeference> where;       ///< of a map
+    std::shared_ptr<const chart::PaperSheet> paper;  ///< of a pdf
+};
+FileParts file_parts_of(const Session& session);
+
+/// Writes a picture to a file, all of it but finish().
+/// @throws Error as image::write(), output::write_geotiff() and chart::write_pdf()
 void write_picture(OutputFile& file, const image::Picture& picture, const image::Metadata& metadata,
-                   const image::Encoding& encoding,
-                   const std::optional<output::Georeference>& where);
+                   const image::Encoding& encoding, const FileParts& parts);
 
 /// Writes a session's picture to a file, all of it but finish().
 /// @param picture  of Session::make_picture(); nullopt: it is too large for memory (needs_bands())

@@ -322,9 +322,11 @@ void Session::Impl::annotate(image::Picture& picture,
 image::Picture Session::Impl::make_picture(const Session& session, render::PassTimes* times) {
     stamp_notes.clear();
     map_corner_px = {0, 0};
+    paper_sheet.reset();
     if (state.scene.view.panorama != scene::Panorama::None) return make_panorama(session, times);
     if (state.scene.view.stereo != scene::Stereo::None) return make_stereo(session, times);
     const bool annotated = is_annotated(session);
+    if (state.scene.sheet.is_on() && state.is_map()) return make_sheet(session, times);
     if (annotated && state.scene.stamps.margin) return make_with_margin(session, times);
     PictureMaker maker(*this);
     if (maker.is_tiled() && annotated) maker.keep_depths();

@@ -10,6 +10,7 @@
 #include "light/point/refraction_at.h"
 #include "scene/exaggeration.h"
 #include "scene/map_view.h"
+#include "scene/sheet.h"
 #include "scene/stereo.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
@@ -100,9 +101,16 @@ void SceneState::look(scene::View view, const DrawnShape& shape) {
         framing_.reset();
         inputs.in_the_air = false;
         scene.view = view;
+        const glm::ivec2 size_px(scene.width_px, scene.height_px);
+        const scene::Sheet& sheet = scene.sheet;
+        const auto on_sheet = [&] {
+            const double scale =
+                sheet.scale > 0 ? sheet.scale : scene::fitting_scale(grid, sheet.dpi, size_px);
+            return scene::sheet_area(grid, scale, sheet.dpi, size_px);
+        };
         inputs.camera = scene::map_camera(
             grid, ground_->frame,
-            scene::map_area(grid, scene.resolution, {scene.width_px, scene.height_px}));
+            sheet.is_on() ? on_sheet() : scene::map_area(grid, scene.resolution, size_px));
         return;
     }
     if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {

@@ -169,6 +169,10 @@ glm::ivec2 Session::map_corner_px() const {
     return impl_->map_corner_px;
 }
 
+std::shared_ptr<const chart::PaperSheet> Session::paper_sheet() const {
+    return impl_->paper_sheet;
+}
+
 bool Session::shows_ground() const {
     if (impl_->picture_shows_ground) return *impl_->picture_shows_ground;
     std::vector<float> depths_m;

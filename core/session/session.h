@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/files_in_use.h"
+#include "chart/drawing.h"
 #include "chart/legend.h"
 #include "dem/fill_holes.h"
 #include "dem/heightfield.h"
@@ -76,6 +77,9 @@ struct PictureFormat {
     int bits = 8;                         ///< of a channel of display-referred colour: 8 or 16
     std::vector<DataLayer> layers{};      ///< needs Options::radiance
     double frame_px = render::kFrame_px;  ///< pictures with more pixels are drawn in tiles
+    /// Of a map sheet the map alone, without what stands around it: Session::paper_sheet() has
+    /// that.
+    bool map_alone = false;
 };
 
 /// True if a scene's picture takes more than kMaxPictureBytes: Session::make_bands().
@@ -215,6 +219,8 @@ class Session {
     /// Where the upper left corner of the view is in the last make_picture() [px]: not (0, 0) of
     /// one with a margin.
     glm::ivec2 map_corner_px() const;
+    /// What the last make_picture() left out by PictureFormat::map_alone; else null.
+    std::shared_ptr<const chart::PaperSheet> paper_sheet() const;
     /// The same of a picture that is too large for memory, in bands of rows from the top.
     /// @param take  called with each band
     /// @throws Error (BadInput) for marks, stamps and layers, which need the whole

@@ -436,20 +436,20 @@ bool Session::Impl::has_marks() const {
     return any(drawn->marks()) || any(drawn->other_marks());
 }
 
-void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
-                                  const std::vector<float>* given_m) {
-    const double width = picture.width, height = picture.height;
+std::vector<chart::Drawing> Session::Impl::mark_drawings(const glm::ivec2& size_px,
+                                                         std::span<const chart::Rect> taken,
+                                                         const std::vector<float>* given_m) {
+    const double width = size_px.x, height = size_px.y;
+    std::vector<chart::Drawing> drawings;
     const auto draw = [&](const std::vector<Marks>& lists, const render::Renderer& renderer,
                           const chart::Rect& within) {
         if (lists.empty()) return;
         std::vector<float> depths_m;
         if (!given_m) renderer.read_depths(depths_m);
-        chart::Drawing drawing(width, height);
-        draw_marks(lists,
-                   view_of(state.inputs.camera, picture.width, picture.height,
-                           given_m ? *given_m : depths_m),
-                   within, taken, drawing);
-        chart::paint(drawing, 0, 0, 1, picture);
+        draw_marks(
+            lists,
+            view_of(state.inputs.camera, size_px.x, size_px.y, given_m ? *given_m : depths_m),
+            within, taken, drawings.emplace_back(width, height));
     };
     const render::Renderer* const without = drawn->without();
     const double half = without ? std::floor((width - kDivider_px) / 2) : width;
@@ -458,6 +458,14 @@ void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart:
     if (without)
         draw(marks(drawn->other_marks(), drawn->others(), *without), *without,
              {half + kDivider_px, 0, width - half - kDivider_px, height});
+    return drawings;
+}
+
+void Session::Impl::draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
+                                  const std::vector<float>* given_m) {
+    for (const chart::Drawing& drawing :
+         mark_drawings({picture.width, picture.height}, taken, given_m))
+        chart::paint(drawing, 0, 0, 1, picture);
 }
 
 FaultyPicture Session::Impl::faulty(const ActiveEffects& shown, int count) {

@@ -73,9 +73,10 @@ struct Session::Impl {
     EffectFields fields;
     std::vector<std::string> stamp_notes;
     MarksOnGround marks_on_ground;
-    std::optional<render::PicturePart> part;   // of the scene's picture, that frames show
-    glm::ivec2 map_corner_px{0, 0};            // Session::map_corner_px()
-    std::optional<bool> picture_shows_ground;  // of the last picture in several frames
+    std::optional<render::PicturePart> part;  // of the scene's picture, that frames show
+    glm::ivec2 map_corner_px{0, 0};           // Session::map_corner_px()
+    std::shared_ptr<const chart::PaperSheet> paper_sheet;  // Session::paper_sheet()
+    std::optional<bool> picture_shows_ground;              // of the last picture in several frames
 
     Impl(scene::Scene given, Options o, FilesInUse& files);
     bool is_seen_from_outside() const;  ///< as a block, or as a map
@@ -124,9 +125,13 @@ struct Session::Impl {
     /// Marks of the effects of a half.
     std::vector<Marks> marks(const std::vector<LoadedMarks>& loaded, const ActiveEffects& effects,
                              const render::Renderer& renderer);
-    /// Draws the marks of both halves on the frame's picture.
+    /// The marks of both halves of the frame's picture, as they are drawn on it.
     /// @param taken     has none of them
     /// @param depths_m  of the picture, if it is not the last frame
+    std::vector<chart::Drawing> mark_drawings(const glm::ivec2& size_px,
+                                              std::span<const chart::Rect> taken,
+                                              const std::vector<float>* depths_m = nullptr);
+    /// The same on the picture.
     void draw_marks_on(image::Image8& picture, std::span<const chart::Rect> taken,
                        const std::vector<float>* depths_m = nullptr);
     /// The same of the places of files, on a panorama.
@@ -139,6 +144,8 @@ struct Session::Impl {
     image::Picture make_picture(const Session& session, render::PassTimes* times);
     /// The same with the scene's stamps in a margin around the picture (Stamps::margin).
     image::Picture make_with_margin(const Session& session, render::PassTimes* times);
+    /// The same of a map sheet (Scene::sheet).
+    image::Picture make_sheet(const Session& session, render::PassTimes* times);
     image::Picture make_panorama(const Session& session, render::PassTimes* times);
     /// @throws Error (BadInput) for what a panorama cannot have
     void check_panorama() const;

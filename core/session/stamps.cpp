@@ -1,7 +1,9 @@
 #include "session/stamps.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "base/text.h"
 #include "names/ground_name.h"
 #include "scene/map_view.h"
+#include "scene/sheet.h"
 #include "session/graticule.h"
 #include "session/image_parts.h"
 #include "session/seen_ground.h"
@@ -33,6 +36,18 @@ std::string name_of(const scene::Scene& scene, const dem::Grid& grid) {
     return scene.dems.empty()
                ? std::string()
                : printable(std::filesystem::path(scene.dems.front()).stem().string());
+}
+
+std::string title_of(const Stamped& of) {
+    const std::string& given = of.scene.stamps.title_text;
+    if (!given.empty()) return given;
+    const auto& map = of.camera.map;
+    if (!of.scene.sheet.is_on() || !map) return name_of(of.scene, of.dem.source->grid());
+    // A sheet may have a part of the DEM only.
+    const scene::MapArea& area = map->area();
+    return name_of(of.scene,
+                   dem::Grid(area.width_px, area.height_px,
+                             dem::Affine::of_geotransform(area.geotransform()), map->grid().crs()));
 }
 
 std::string length_text(double length_m) {
@@ -61,7 +76,7 @@ class Stamper {
     chart::Stamps planned(const std::vector<chart::Legend>& legends) {
         chart::Stamps stamps = words(legends);
         if (wanted_.scale)
-            stamps.scale = {1, "across the view, at the picture's middle, 000 km away"};
+            stamps.scale = {1, "across the view, at the picture's middle, 000 km away", {}};
         if (wanted_.north) stamps.north = glm::dvec2(0, -1);
         if (wanted_.graticule) stamps.graticule.push_back({.words = "000°00'00\"W"});
         return stamps;
@@ -70,9 +85,7 @@ class Stamper {
     chart::Stamps words(const std::vector<chart::Legend>& legends) {
         chart::Stamps stamps;
         if (wanted_.legend) stamps.legends = legends;
-        if (wanted_.title)
-            stamps.title = wanted_.title_text.empty() ? name_of(of_.scene, of_.dem.source->grid())
-                                                      : wanted_.title_text;
+        if (wanted_.title) stamps.title = title_of(of_);
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
         if (wanted_.date) add_line("", of_.clock, "date", stamps);
         if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);
@@ -204,6 +217,21 @@ std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
 
 namespace {
 
+std::string no_room_text(const std::string& name, const glm::ivec2& picture_px) {
+    return fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
+                       picture_px.x, picture_px.y);
+}
+
+/// Where true north is at the middle of a map.
+glm::dvec2 north_of(const scene::MapView& map, const geo::LocalFrame& frame) {
+    const glm::dvec2 middle = 0.5 * map.size_px();
+    const glm::dvec3 point = map.point_m(middle, 0);
+    const geo::Geodetic place = frame.to_geodetic(point);
+    const double step_m = map.pixel_m(middle).y;
+    const glm::dvec3 north = frame.axes(place.lat_rad, place.lon_rad).north;
+    return normalize(map.pixel_of(point + step_m * glm::dvec3(north)) - middle);
+}
+
 /// Without depths.
 Stamped stamped_of(const Session& session) {
     const scene::Stamps& wanted = session.scene().stamps;
@@ -250,10 +278,51 @@ std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Le
     for (chart::Stamps::Label& label : stamps.graticule)
         label.at_px += glm::dvec2(corner);
     for (const std::string& name : chart::stamp(stamps, picture, &taken, map))
-        stamper.notes().push_back(
-            fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
-                        picture.width, picture.height));
+        stamper.notes().push_back(no_room_text(name, {picture.width, picture.height}));
     return std::move(stamper.notes());
+}
+
+SheetStamps lay_out_sheet(const Session& session, const SheetRoom& room) {
+    const Stamped stamped = stamped_of(session);
+    const scene::Stamps& wanted = stamped.scene.stamps;
+    const scene::MapView& map = *stamped.camera.map;
+    Stamper stamper(stamped);
+    chart::Stamps stamps = stamper.words(session.legends());
+    if (wanted.scale)
+        stamps.scale = {1 / map.pixel_m(0.5 * map.size_px()).x, scene::projection_text(map.grid()),
+                        scene::scale_text(stamped.scene.sheet.scale)};
+    if (wanted.north) stamps.north = north_of(map, stamped.frame);
+    // As tall as map and stamps are, in the middle of the sheet.
+    const chart::Margins& margins = room.margins;
+    const glm::ivec2 all(room.room_px.x, room.map_px.y + margins.top + margins.bottom);
+    const glm::ivec2 corner = (room.sheet_px - all) / 2;
+    const int free_px = all.x - margins.left - margins.right - room.map_px.x;
+    const chart::Rect at{double(margins.left + free_px / 2), double(margins.top),
+                         double(room.map_px.x), double(room.map_px.y)};
+    SheetStamps result{.map = at, .title = title_of(stamped)};
+    if (wanted.graticule) {
+        MapGraticule lines = make_graticule(map, room.unit_px);
+        result.drawings.push_back({std::move(lines.drawing), {at.x, at.y}, 1});
+        for (chart::Stamps::Label& label : lines.labels)
+            label.at_px += glm::dvec2(at.x, at.y);
+        stamps.graticule = std::move(lines.labels);
+    }
+    chart::LaidStamps laid = chart::lay_out(stamps, all, room.unit_px, at);
+    std::ranges::move(laid.drawings, std::back_inserter(result.drawings));
+    result.taken = std::move(laid.taken);
+    result.notes = std::move(stamper.notes());
+    for (const std::string& name : laid.missing)
+        result.notes.push_back(no_room_text(name, room.sheet_px));
+    for (chart::Placed& placed : result.drawings)
+        placed.corner_px += glm::dvec2(corner);
+    result.taken.push_back(result.map);
+    for (chart::Rect& rect : result.taken) {
+        rect.x += corner.x;
+        rect.y += corner.y;
+    }
+    result.map = result.taken.back();
+    result.taken.pop_back();
+    return result;
 }
 
 }  // namespace relevo::session

@@ -44,6 +44,27 @@ std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Le
                                     image::Image8& picture, std::vector<chart::Rect>& taken,
                                     const std::optional<chart::Rect>& map = std::nullopt);
 
+/// What stands around the map of a sheet, and the lines of its graticule. Places are pixels of the
+/// sheet.
+struct SheetStamps {
+    chart::Rect map;  ///< where it lies, at whole pixels
+    std::vector<chart::Placed> drawings;
+    std::vector<chart::Rect> taken;  ///< as chart::LaidStamps
+    std::string title;               ///< also if it is not stamped
+    std::vector<std::string> notes;  ///< sentences on what was omitted
+};
+
+/// What a sheet has within its white edge.
+struct SheetRoom {
+    glm::ivec2 sheet_px, room_px;
+    double unit_px;          ///< as chart::stamp_scale()
+    chart::Margins margins;  ///< of planned_stamps()
+    glm::ivec2 map_px;       ///< size of the map, which is the session's camera
+};
+
+/// Puts the map in the middle, and the stamps around it.
+SheetStamps lay_out_sheet(const Session& session, const SheetRoom& room);
+
 /// The eye's position if the sun is described as seen from there, with its height not exaggerated.
 /// nullopt above 100 km, where sun::position() is undefined.
 std::optional<geo::Geodetic> observer_of(const geo::LocalFrame& frame, const scene::Camera& camera,
