@@ -59,6 +59,7 @@ Differences differences(const Grid& grid, const Source& around,
 /// @throws Error (BadInput) where a place of the site's outline is not on the other grid
 void check_is_around(const Grid& around, const Grid& site, const std::string& path) {
     constexpr int kSteps = 16;
+    constexpr double kNear = 1e-6;  // posts: a part of a DEM may end where that does
     for (int i = 0; i <= kSteps; ++i) {
         const double column = double(site.columns() - 1) * i / kSteps,
                      row = double(site.rows() - 1) * i / kSteps;
@@ -66,8 +67,11 @@ void check_is_around(const Grid& around, const Grid& site, const std::string& pa
                                      glm::dvec2(0, row), glm::dvec2(site.columns() - 1, row)}) {
             const geo::Geodetic place = site.place(at.x, at.y);
             const glm::dvec2 post = around.post(place);
-            if (post.y >= 0 && post.y <= around.rows() - 1 &&
-                (around.columns_per_turn() || (post.x >= 0 && post.x <= around.columns() - 1)))
+            const auto is_on = [](double position, int posts) {
+                return position >= -kNear && position <= posts - 1 + kNear;
+            };
+            if (is_on(post.y, around.rows()) &&
+                (around.columns_per_turn() || is_on(post.x, around.columns())))
                 continue;
             bad_input(fmt::format(
                 "surroundings: {}: end within the DEM, at {}; expected a DEM in which it lies",

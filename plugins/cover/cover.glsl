@@ -193,6 +193,7 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
 vec3 cover_plot(in Surface s, in cover_Shape shape) {
     const mat2 per_m = mat2(0.7986 / 320.0, 0.6018 / 190.0, -0.6018 / 320.0, 0.7986 / 190.0);
     float single = 1.0 - smoothstep(40.0, 140.0, shape.across_m), seen = 1.0 - smoothstep(200.0, 700.0, shape.across_m);
+    seen *= 1.0 - 0.85 * smoothstep(0.04, 0.16, shape.steep);  // steep ground is no field
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m + 120.0 * shape.broad.rg, per_m, within), large = cell >> 1;
     float around = noise_random(cell >> 2, 2u);

@@ -213,6 +213,15 @@ TEST(Surroundings, ChangeNothingWithMemoryForNeither) {
     EXPECT_LT(off, 0.02);
 }
 
+TEST(Surroundings, MayEndRightBesideTheSite) {
+    // 21 x 21 posts of 30 m: the rim goes on beyond them.
+    const std::string small = dem("small.tif", kCoarse_m, 21);
+    const Array2d<float> nested = raster({"sky-view", site(), "--surroundings", small}, "sky.tif"),
+                         alone = raster({"sky-view", site()}, "sky.tif");
+    for (std::size_t i = 0; i < nested.size(); ++i)
+        ASSERT_LE(nested.data()[i], alone.data()[i] + 0.01) << i;
+}
+
 TEST(Surroundings, ASummitOutsideOfTheSiteIsSeen) {
     // The ridge in the south, of which both have the same height.
     const std::vector<std::string> over{"--at",           "46.9515,8.9995", "--over",

@@ -96,6 +96,12 @@ class Backend(unittest.TestCase):
         self.raster("sky_view", {"directions": 8, "level": True})
         self.expect_same(self.path("a.tif"), "sun", "sky-view", DEM, "--directions", 8, "--level")
 
+    def test_surroundings_shade_a_part(self):
+        crop = "--crop=-84.3,36.2,-84.2,36.3"
+        self.raster("sky_view", {"directions": 8}, Dem(DEM, options=[crop], surroundings=DEM))
+        self.expect_same(self.path("a.tif"), "sun", "sky-view", DEM, crop, "--surroundings", DEM, "--directions", 8)
+        self.assertTrue(any(text.startswith("surroundings: ") for text in self.watch.infos), self.watch.infos)
+
     def test_progress_rises(self):
         self.raster("hours", {"date": "2026-06-21", "bands": ["hours"], "step": 30})
         self.assertGreater(len(self.watch.shares), 1)

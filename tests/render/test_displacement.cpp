@@ -33,7 +33,8 @@ int sky_pixels_below_horizon(Drawn& drawn, double from_deg) {
 }
 
 effect::Effect shipped(const std::string& id) {
-    return effect::load_effect(test::source_dir() / "plugins" / id, test::source_dir() / "data");
+    return effect::load_effect(test::source_dir() / "plugins" / id,
+                               test::build_dir() / "share/relevo/data");
 }
 
 TEST(Displacement, BoundsOfSeveralEffectsAddUp) {

@@ -64,7 +64,7 @@ class FeedbackWatch(Watch):
 class RelevoAlgorithm(QgsProcessingAlgorithm):
     """An algorithm over a DEM. Subclasses have `word`, `title`, `group_title`, `help`, and compute()."""
 
-    DEM, BAND, UNIT, OPTIONS = "INPUT", "BAND", "UNIT", "OPTIONS"
+    DEM, BAND, UNIT, OPTIONS, SURROUNDINGS = "INPUT", "BAND", "UNIT", "OPTIONS", "SURROUNDINGS"
     TIME, EVENT, ZONE = "TIME", "EVENT", "ZONE"
     OUTPUT = "OUTPUT"
 
@@ -129,15 +129,26 @@ class RelevoAlgorithm(QgsProcessingAlgorithm):
 
         self.add_text(self.OPTIONS, "More options of the program (--nodata 0 --highest 3000)", advanced=True)
 
+    def add_surroundings(self) -> None:
+        self.addParameter(
+            QgsProcessingParameterRasterLayer(
+                self.SURROUNDINGS, "Wider, coarser elevation raster around it: its ground shades, too", optional=True
+            )
+        )
+
     def dem(self, parameters, context) -> Dem:
         layer = self.parameterAsRasterLayer(parameters, self.DEM, context)
         if layer is None or not layer.isValid():
             raise QgsProcessingException(self.invalidRasterError(parameters, self.DEM))
         unit = self.parameterAsEnumString(parameters, self.UNIT, context)
         band = None if parameters.get(self.BAND) is None else self.parameterAsInt(parameters, self.BAND, context)
-        return dem_of(
-            layer, band, None if unit == _UNITS[0] else unit, self.text(parameters, self.OPTIONS, context)
-        )
+        wider = None
+        if parameters.get(self.SURROUNDINGS):
+            wider = self.parameterAsRasterLayer(parameters, self.SURROUNDINGS, context)
+            if wider is None or not wider.isValid():
+                raise QgsProcessingException(self.invalidRasterError(parameters, self.SURROUNDINGS))
+        options = self.text(parameters, self.OPTIONS, context)
+        return dem_of(layer, band, None if unit == _UNITS[0] else unit, options, wider)
 
     def add_time(self, optional: bool) -> None:
         self.addParameter(

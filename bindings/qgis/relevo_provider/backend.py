@@ -27,6 +27,7 @@ class Dem:
     band: Optional[int] = None  # from 1; None: Relevo chooses
     unit: Optional[str] = None  # of the heights, instead of the file's
     options: Sequence[str] = ()  # more words of the program's command line
+    surroundings: Optional[str] = None  # the file of a wider DEM around it, whose ground shades, too
 
 
 @dataclass(frozen=True)

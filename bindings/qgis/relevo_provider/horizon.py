@@ -48,6 +48,7 @@ class HorizonAtPoints(RelevoAlgorithm):
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
+        self.add_surroundings()
         real = QgsProcessingParameterNumber.Double
         self.addParameter(
             QgsProcessingParameterFeatureSource(self.POINTS, "Points", [QgsProcessing.TypeVectorPoint])

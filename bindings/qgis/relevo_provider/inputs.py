@@ -34,7 +34,10 @@ def crs_text(crs: QgsCoordinateReferenceSystem) -> str:
     return crs.authid() or crs.toWkt(QgsCoordinateReferenceSystem.WKT2_2019)
 
 
-def dem_of(layer: QgsRasterLayer, band: Optional[int] = None, unit: Optional[str] = None, options: str = "") -> Dem:
+def dem_of(
+    layer: QgsRasterLayer, band: Optional[int] = None, unit: Optional[str] = None, options: str = "",
+    surroundings: Optional[QgsRasterLayer] = None,
+) -> Dem:
     """@param band, unit  of the heights; None: as Relevo finds them
     @param options     of the program, as a shell takes them"""
     crs = None
@@ -42,7 +45,8 @@ def dem_of(layer: QgsRasterLayer, band: Optional[int] = None, unit: Optional[str
     if layer.crs().isValid() and layer.crs() != layer.dataProvider().crs():
         crs = crs_text(layer.crs())
     try:
-        return Dem(file_of(layer), crs, band, unit, shlex.split(options))
+        wider = file_of(surroundings) if surroundings else None
+        return Dem(file_of(layer), crs, band, unit, shlex.split(options), wider)
     except ValueError as error:
         raise RelevoError(f"options: {options}: {error}") from error
 

@@ -101,7 +101,8 @@ class Library(Backend):
             raise RelevoError("options: need the program relevo, which is not installed; leave them empty")
         try:
             with _heard(watch, self._relevo.Warning):
-                with self._relevo.open(dem.file, crs=dem.crs, band=dem.band, unit=dem.unit) as opened:
+                how = {"crs": dem.crs, "band": dem.band, "unit": dem.unit, "surroundings": dem.surroundings}
+                with self._relevo.open(dem.file, **how) as opened:
                     yield opened
         except self._relevo.Cancelled as error:
             raise Cancelled() from error

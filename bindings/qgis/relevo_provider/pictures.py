@@ -175,6 +175,7 @@ class Carpet(RelevoAlgorithm):
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
+        self.add_surroundings()
         self.addParameter(QgsProcessingParameterPoint(self.POINT, "Point"))
         self.addParameter(QgsProcessingParameterNumber(self.YEAR, "Year", _WHOLE, 2026, False, 1900, 2100))
         self.add_zone()

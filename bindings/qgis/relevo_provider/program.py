@@ -175,6 +175,8 @@ def _dem_words(dem: Dem) -> List[str]:
         words += ["--crs", dem.crs]
     if dem.band:
         words += ["--band", str(dem.band)]
+    if dem.surroundings:
+        words += ["--surroundings", dem.surroundings]
     return words + (["--unit", dem.unit] if dem.unit else []) + list(dem.options)
 
 

@@ -71,6 +71,7 @@ class Shadow(RasterAlgorithm):
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
+        self.add_surroundings()
         self.add_time(optional=False)
         self.addParameter(
             QgsProcessingParameterBoolean(self.SOFT, "Visible fraction of the solar disc instead of a mask", False)
@@ -104,6 +105,7 @@ class SunHours(RasterAlgorithm):
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
+        self.add_surroundings()
         date = QgsProcessingParameterDateTime.Date
         self.addParameter(QgsProcessingParameterDateTime(self.FROM, "Day, or first day", date, optional=True))
         self.addParameter(QgsProcessingParameterDateTime(self.TO, "Last day (empty: one day)", date, optional=True))
@@ -176,6 +178,7 @@ class SkyView(RasterAlgorithm):
 
     def initAlgorithm(self, configuration=None):  # noqa: N802
         self.add_dem()
+        self.add_surroundings()
         whole = QgsProcessingParameterNumber.Integer
         self.addParameter(
             QgsProcessingParameterNumber(self.DIRECTIONS, "Azimuths around each cell", whole, 36, False, 4, 3600)

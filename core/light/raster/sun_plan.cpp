@@ -41,7 +41,9 @@ SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& w
                         *posts.surroundings(), path, with_discs,
                         SunTerrain::Nesting{.around = nullptr, .site = &terrain_->posts()})
                   : nullptr),
-      window_(terrain_->window_of(window)) {}
+      window_(terrain_->window_of(window)) {
+    if (around_) window_over(around_->grid(), terrain_->grid(), window_);  // or it throws
+}
 
 void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {
     parallel_for(static_cast<int>(first), static_cast<int>(suns_.size()), 1,

@@ -29,6 +29,7 @@ class SunPlan {
     /// @param posts   outlive this. All ground of their Posts::surroundings() shades them, too, but
     ///     for what lies on their own DEM
     /// @param window  posts that will be asked for; without columns: all
+    /// @throws Error (BadInput) where the surroundings do not contain all of them
     SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
             bool with_discs = false);
 

@@ -66,11 +66,41 @@ Array2d<std::uint8_t> hidden_posts(const dem::Posts& site, const dem::Grid& wide
     return hidden;
 }
 
+/// Where a window of a grid lies on another one, its middle as it is nearest.
+struct Box {
+    glm::dvec2 low, high;
+
+    /// Its posts and those around it, as far as the grid goes.
+    Window window(const dem::Grid& grid) const {
+        // Sides of a window are bent between the samples.
+        const glm::ivec2 first = glm::ivec2(low) - 2, last = glm::ivec2(high) + 3;
+        return common({first.x, first.y, last.x - first.x + 1, last.y - first.y + 1},
+                      {0, 0, grid.columns(), grid.rows()});
+    }
+};
+
+Box box_over(const dem::Grid& grid, const dem::Grid& of, const Window& window) {
+    constexpr int kSteps = 16;
+    const glm::dvec2 middle = grid.post(of.center());
+    Box box{middle, middle};
+    for (int i = 0; i <= kSteps; ++i)
+        for (int k = 0; k <= kSteps; ++k) {
+            const glm::dvec2 post =
+                grid.post(of.place(window.column + double(window.columns - 1) * i / kSteps,
+                                   window.row + double(window.rows - 1) * k / kSteps),
+                          middle);
+            if (i == 0 && k == 0) box = {post, post};
+            box = {glm::min(box.low, post), glm::max(box.high, post)};
+        }
+    return box;
+}
+
 /// Of the ground around a site: its own posts are holes here.
 Sweep sweep_around(const dem::Posts& site, const dem::Posts& posts) {
     const dem::Grid& grid = posts.grid();
+    // A rim may go on beyond the wider DEM.
     const Window box =
-        window_over(grid, site.grid(), {0, 0, site.grid().columns(), site.grid().rows()});
+        box_over(grid, site.grid(), {0, 0, site.grid().columns(), site.grid().rows()}).window(grid);
     const auto hidden =
         std::make_shared<const Array2d<std::uint8_t>>(hidden_posts(site, grid, box));
     const auto read = [&posts, box, hidden](const Window& window, std::vector<float>& buffer) {
@@ -140,24 +170,10 @@ double shade_reach_m(double relief_m, double curvature, double apparent_rad) {
 }
 
 Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window) {
-    constexpr int kSteps = 16;
-    const glm::dvec2 middle = grid.post(of.center());
-    glm::dvec2 low = middle, high = middle;
-    for (int i = 0; i <= kSteps; ++i)
-        for (int k = 0; k <= kSteps; ++k) {
-            const glm::dvec2 post =
-                grid.post(of.place(window.column + double(window.columns - 1) * i / kSteps,
-                                   window.row + double(window.rows - 1) * k / kSteps),
-                          middle);
-            if (i == 0 && k == 0) low = high = post;
-            low = glm::min(low, post), high = glm::max(high, post);
-        }
-    if (!is_on(grid, low) || !is_on(grid, high))
+    const Box box = box_over(grid, of, window);
+    if (!is_on(grid, box.low) || !is_on(grid, box.high))
         bad_input("sun: the wider DEM does not contain all of the DEM in it");
-    // Sides of a window are bent between the samples.
-    const glm::ivec2 first = glm::ivec2(low) - 2, last = glm::ivec2(high) + 3;
-    return common({first.x, first.y, last.x - first.x + 1, last.y - first.y + 1},
-                  {0, 0, grid.columns(), grid.rows()});
+    return box.window(grid);
 }
 
 SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs,
