@@ -186,7 +186,8 @@ int rim_of(const Grid& site, const Grid& surroundings, const MemoryBudget& memor
     // (columns + 2 r) (rows + 2 r) = most
     const double half = (columns + rows) / 4;
     const double fitting = std::sqrt(half * half - (columns * rows - most) / 4) - half;
-    return static_cast<int>(std::max(0.0, std::min(kCells * std::max(ratio.x, ratio.y), fitting)));
+    const double wanted = std::round(kCells * std::max(ratio.x, ratio.y));
+    return static_cast<int>(std::max(0.0, std::min(wanted, std::floor(fitting))));
 }
 
 Heightfield rimmed(const Posts& site) {
