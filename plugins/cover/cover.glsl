@@ -440,7 +440,7 @@ void cover_on_albedo(inout Surface s) {
 
     // Patches are for the eye that is near: none of them is seen from afar, and the broad ones from nowhere but there.
     float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
-    float wide = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.000002);
+    float wide = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
     float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r) + wide * (0.4 * shape.broad.a + 0.3 * shape.broad.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     open = mix(open, cover_land(land, s, ground, growth, shape), land.known);

@@ -321,8 +321,7 @@ void sea_on_material(inout Surface s) {
     vec3 albedo = sea_albedo(sea_level_m != 0.0 ? s.diffuse : sea_sand, water.seen_m);
     float pixel_m = s.pixel_posts / frame.normal_texels_per_m;
     vec3 map = albedo - sea_scattered + sea_map_albedo(water.seen_m);
-    // Light that water scatters itself knows nothing of the floor's slopes.
-    map *= mix(1.0, sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m)), 0.45 + 0.55 * exp(-water.depth_m / sea_feet_m));
+    map *= sea_shade(s.geometric_normal, s.up, to_sun, sea_steeper(pixel_m));
     float rim = seen > 0.0 ? sea_at_rim(s.post) : 0.0;
     albedo = mix(albedo * sea_gusts(s), mix(map, surround_sea_albedo, rim), seen);
 
