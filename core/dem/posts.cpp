@@ -74,8 +74,7 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& given,
         around = load_surroundings(*impl->own_source, impl->own_field ? &*impl->own_field : nullptr,
                                    options);
     impl->take_own(options, facts);
-    const int rim =
-        around && impl->field ? rim_of(impl->grid(), around->grid(), options.memory) : 0;
+    const int rim = around ? rim_of(impl->grid(), around->grid(), options.memory) : 0;
     return Posts(std::move(impl)).in(std::move(around), rim);
 }
 

@@ -125,7 +125,7 @@ void say(const Joint& joint, const Differences& found, const std::string& path,
          std::int64_t filled) {
     const std::string said = fmt::format(
         "surroundings: {}: heights {}{}", path, joint.how,
-        filled > 0 ? fmt::format("; {} posts without a height get that of it", filled) : "");
+        filled > 0 ? fmt::format("; {} voids of the DEM take its heights", filled) : "");
     const bool is_far =
         std::abs(found.median_m) > kMuch_m || found.scatter_m > kMuch_m || found.places == 0;
     if (is_far)
@@ -174,6 +174,8 @@ std::shared_ptr<const Posts> load_surroundings(const Source& site, Heightfield* 
     around.raise(joint.shift_m, joint.how);
     const auto posts = std::make_shared<const Posts>(Posts::load(std::move(around), own));
     say(joint, found, path, heights ? fill_from(*posts, *heights) : 0);
+    if (!heights)
+        log::warning("surroundings: memory has no room for all of the DEM: its voids stay voids");
     return posts;
 }
 
@@ -181,13 +183,20 @@ int rim_of(const Grid& site, const Grid& surroundings, const MemoryBudget& memor
     constexpr double kCells = 64, kMostPosts = 16e6;
     const glm::dvec2 ratio = surroundings.post_spacing_m() / site.post_spacing_m();
     const double columns = site.columns(), rows = site.rows();
-    const double most =
-        std::min(std::max(kMostPosts, 2 * columns * rows), static_cast<double>(memory.whole_posts));
-    // (columns + 2 r) (rows + 2 r) = most
-    const double half = (columns + rows) / 4;
-    const double fitting = std::sqrt(half * half - (columns * rows - most) / 4) - half;
-    const double wanted = std::round(kCells * std::max(ratio.x, ratio.y));
-    return static_cast<int>(std::max(0.0, std::min(wanted, std::floor(fitting))));
+    const auto fitting = [&](double most) {  // (columns + 2 r) (rows + 2 r) = most
+        const double half = (columns + rows) / 4;
+        const double r = std::sqrt(std::max(0.0, half * half - (columns * rows - most) / 4)) - half;
+        return std::max(0, static_cast<int>(r));
+    };
+    const int wanted = std::min(static_cast<int>(std::lround(kCells * std::max(ratio.x, ratio.y))),
+                                fitting(std::max(kMostPosts, 2 * columns * rows)));
+    const int room = fitting(static_cast<double>(memory.whole_posts));
+    if (room < wanted)
+        log::warning(
+            fmt::format("surroundings: memory has room for {} of {} posts beyond the DEM's edge: "
+                        "rasters are less exact near it; use a larger --memory",
+                        room, wanted));
+    return std::min(wanted, room);
 }
 
 Heightfield rimmed(const Posts& site) {

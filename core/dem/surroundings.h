@@ -23,9 +23,10 @@ namespace relevo::dem {
 std::shared_ptr<const Posts> load_surroundings(const Source& site, Heightfield* heights,
                                                const LoadOptions& options);
 
-/// How many posts beyond the edges of a site are to be of its own spacing in rasters of light, so
-/// that ground of the surroundings is so many of their posts away from all of it: 64, or less where
-/// these were more than 16 million posts and twice the site's, or than memory has room for.
+/// The width of a rim of the site's own spacing that rasters of light have around it [posts]. It
+/// covers 64 posts of the surroundings, or less: the site with its rim has at most 16 million posts
+/// or twice the site's, whichever is more, and no more than memory has room for, which is a
+/// warning.
 int rim_of(const Grid& site, const Grid& surroundings, const MemoryBudget& memory);
 
 /// A site with Posts::rim() posts more on each side, whose heights are the surroundings'.

@@ -22,7 +22,8 @@ output::RasterMetadata metadata_of(const Figure& figure, const dem::Posts& posts
         {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", figure.terrestrial_refraction)},
         {"HOLES", fmt::format("{}", made.holes)}};
     if (const std::string around = dem::surroundings_text(posts, ""); !around.empty())
-        about.emplace_back("SURROUNDINGS", around);
+        about.emplace_back("SURROUNDINGS", fmt::format("{}; {} posts of its spacing around the DEM",
+                                                       around, posts.rim()));
     const dem::TileReport& tiles = posts.about().tiles;
     if (tiles.missing.count > 0)
         about.emplace_back("TILES_MISSING",

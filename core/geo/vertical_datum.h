@@ -7,8 +7,8 @@
 
 namespace relevo::geo {
 
-/// What has to be added to heights of one vertical CRS to have those of another at a place, in
-/// metres both, as PROJ finds it from the grids that are installed.
+/// Added to a height in one vertical CRS it gives the height in another, at a place, in metres
+/// both, as PROJ finds it from the grids that are installed.
 /// @param from, to  with a code, or ellipsoidal ("ellipsoidal height")
 /// @returns none where PROJ knows no way between them but a guess, or lacks its grid
 std::optional<double> vertical_step_m(const VerticalCrs& from, const VerticalCrs& to,

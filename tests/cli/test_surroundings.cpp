@@ -190,7 +190,7 @@ TEST(Surroundings, AnswerTheVoidsOfTheSite) {
     std::string said;
     const Array2d<float> nested =
         raster({"sky-view", holed, "--surroundings", coarse()}, "holed_sky.tif", &said);
-    EXPECT_TRUE(has(said, " posts without a height get that of it")) << said;
+    EXPECT_TRUE(has(said, " voids of the DEM take its heights")) << said;
     const Array2d<float> expected =
         raster({"sky-view", site(), "--surroundings", coarse()}, "whole_sky.tif");
     double worst = 0;
@@ -201,12 +201,14 @@ TEST(Surroundings, AnswerTheVoidsOfTheSite) {
     EXPECT_LT(worst, 0.02);
 }
 
-TEST(Surroundings, ChangeNothingWithMemoryForNeither) {
+TEST(Surroundings, SayWhatLittleMemoryChanges) {
     const std::vector<std::string> hours{"hours",  site(),   "--surroundings",
                                          coarse(), "--date", "2026-12-21"};
-    std::vector<std::string> little = hours, tiles = hours;
+    std::vector<std::string> little = hours;
+    std::string said;
     little.insert(little.end(), {"--memory", "1"});
-    const Array2d<float> all = raster(hours, "all.tif"), some = raster(little, "some.tif");
+    const Array2d<float> all = raster(hours, "all.tif"), some = raster(little, "some.tif", &said);
+    EXPECT_TRUE(has(said, "warning: surroundings: memory has room for ")) << said;
     double off = 0;
     for (std::size_t i = 0; i < all.size(); ++i)
         off += std::abs(all.data()[i] - some.data()[i]) / double(all.size());
