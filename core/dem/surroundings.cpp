@@ -193,8 +193,8 @@ int rim_of(const Grid& site, const Grid& surroundings, const MemoryBudget& memor
     const int room = fitting(static_cast<double>(memory.whole_posts));
     if (room < wanted)
         log::warning(
-            fmt::format("surroundings: memory has room for {} of {} posts beyond the DEM's edge: "
-                        "rasters are less exact near it; use a larger --memory",
+            fmt::format("surroundings: memory has room for a rim of {} of {} posts around the DEM: "
+                        "rasters are less exact near its edge; use a larger --memory",
                         room, wanted));
     return std::min(wanted, room);
 }

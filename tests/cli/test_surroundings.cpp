@@ -208,7 +208,7 @@ TEST(Surroundings, SayWhatLittleMemoryChanges) {
     std::string said;
     little.insert(little.end(), {"--memory", "1"});
     const Array2d<float> all = raster(hours, "all.tif"), some = raster(little, "some.tif", &said);
-    EXPECT_TRUE(has(said, "warning: surroundings: memory has room for ")) << said;
+    EXPECT_TRUE(has(said, "warning: surroundings: memory has room for a rim of ")) << said;
     double off = 0;
     for (std::size_t i = 0; i < all.size(); ++i)
         off += std::abs(all.data()[i] - some.data()[i]) / double(all.size());
