@@ -44,9 +44,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     const Area& side = state.layout.side;
     ImGui::SetNextWindowPos({side.at.x, side.at.y});
     ImGui::SetNextWindowSize({side.size.x, side.size.y});
-    // As wide as the window of the layout: of one that has changed since, the panel would count as
-    // narrowed by hand.
-    ImGui::SetNextWindowSizeConstraints({1, side.size.y}, {state.layout.bar.size.x, side.size.y});
+    ImGui::SetNextWindowSizeConstraints({1, side.size.y}, {size_px.x, side.size.y});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::Begin("Relevo", nullptr,
                  ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoTitleBar |

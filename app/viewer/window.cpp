@@ -142,6 +142,8 @@ GLFWwindow* create(const std::string& title) {
 
 struct Window::Impl {
     GLFWwindow* handle = nullptr;
+    glm::ivec2 size_px{1};
+    glm::vec2 size{1};
     std::optional<gl::Context> context;
     Shown shown, before;
     float line = 0.5f;
@@ -202,6 +204,7 @@ struct Window::Impl {
         context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(handle, this);
+        measure();
         // ImGui's callbacks chain to these.
         glfwSetScrollCallback(
             handle, [](GLFWwindow* window, double, double) { of(window).has_input = true; });
@@ -258,6 +261,15 @@ struct Window::Impl {
         style.ScaleAllSizes(scale);
         style.WindowRounding = 6 * scale;
         style.FrameRounding = 3 * scale;
+    }
+
+    /// GLFW asks the display, where a window changes its size at any moment.
+    void measure() {
+        glm::ivec2 now(1);
+        glfwGetWindowSize(handle, &now.x, &now.y);
+        size = glm::vec2(glm::max(now, glm::ivec2(1)));
+        glfwGetFramebufferSize(handle, &now.x, &now.y);
+        size_px = glm::max(now, glm::ivec2(1));
     }
 
     void close() {
@@ -330,9 +342,7 @@ void Window::set_title(const std::string& title) {
 }
 
 glm::ivec2 Window::size_px() const {
-    glm::ivec2 size(0);
-    glfwGetFramebufferSize(impl_->handle, &size.x, &size.y);
-    return {std::max(size.x, 1), std::max(size.y, 1)};
+    return impl_->size_px;
 }
 
 float Window::scale() const {
@@ -346,6 +356,7 @@ void Window::wait(double at_most_s) {
         glfwWaitEventsTimeout(at_most_s);
     else
         glfwPollEvents();
+    impl_->measure();
 }
 
 bool Window::take_input() {
@@ -468,9 +479,7 @@ int Window::buttons() const {
 }
 
 glm::vec2 Window::size() const {
-    glm::ivec2 size(1);
-    glfwGetWindowSize(impl_->handle, &size.x, &size.y);
-    return glm::vec2(glm::max(size, glm::ivec2(1)));
+    return impl_->size;
 }
 
 bool Window::is_down(int key) const {

@@ -43,8 +43,8 @@ class Window {
     /// Hides the window; the program continues.
     void hide();
     void set_title(const std::string& title);
-    glm::ivec2 size_px() const;  ///< of the framebuffer
-    glm::vec2 size() const;      ///< in units of mouse and panels
+    glm::ivec2 size_px() const;  ///< of the framebuffer, at the end of the last wait()
+    glm::vec2 size() const;      ///< then, too: in units of mouse and panels
     /// Pixels per unit of the mouse, for legible text.
     float scale() const;
 
