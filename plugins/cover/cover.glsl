@@ -192,15 +192,15 @@ vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in floa
 /// @returns two numbers, and how far plots are seen
 vec3 cover_plot(in Surface s, in cover_Shape shape) {
     const mat2 per_m = mat2(0.7986 / 320.0, 0.6018 / 190.0, -0.6018 / 320.0, 0.7986 / 190.0);
-    float single = 1.0 - smoothstep(40.0, 140.0, shape.across_m), seen = 1.0 - smoothstep(200.0, 700.0, shape.across_m);
+    float single = 1.0 - smoothstep(70.0, 260.0, shape.across_m), seen = 1.0 - smoothstep(150.0, 500.0, shape.across_m);
     seen *= 1.0 - 0.85 * smoothstep(0.04, 0.16, shape.steep);  // steep ground is no field
     vec2 within;
     ivec2 cell = ground_cell(s.anchored_m + 120.0 * shape.broad.rg, per_m, within), large = cell >> 1;
     float around = noise_random(cell >> 2, 2u);
     if (fract(61.0 * around) < 0.5) cell = 2 * large;
     float one = noise_random(cell, 0u);
-    vec2 number = 0.5 + (0.8 - 0.45 * single) * (vec2(around, fract(257.0 * around)) - 0.5) +
-                  0.85 * single * (vec2(one, fract(257.0 * one)) - 0.5);
+    vec2 number = 0.5 + 0.35 * (vec2(around, fract(257.0 * around)) - 0.5) + 1.2 * shape.broad.ga +
+                  0.75 * single * (vec2(one, fract(257.0 * one)) - 0.5);
     return vec3(clamp(number, 0.0, 1.0), seen);
 }
 
@@ -440,7 +440,8 @@ void cover_on_albedo(inout Surface s) {
 
     // Patches are for the eye that is near: none of them is seen from afar, and the broad ones from nowhere but there.
     float near = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
-    float wide = 1.0 / (1.0 + shape.across_m * shape.across_m * 0.00005);
+    float level = 1.0 - smoothstep(0.015, 0.08, shape.steep);
+    float wide = 1.0 / (1.0 + shape.across_m * shape.across_m * mix(5e-5, 1e-6, level));
     float tone = near * (0.7 * shape.small.a + 0.45 * shape.small.r) + wide * (0.4 * shape.broad.a + 0.3 * shape.broad.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep, map.known);
     open = mix(open, cover_land(land, s, ground, growth, shape), land.known);

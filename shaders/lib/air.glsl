@@ -22,10 +22,10 @@ float air_over_sea() {
 /// The same for a distance beyond the DEM: towards its far side the air becomes the true one.
 float air_scale_beyond(in float distance_m) {
     float widths = distance_m * sqrt(frame.ground_extent.z * frame.ground_extent.w);
-    float whole = min(4.0 * frame.air_scale, 1.0);  // over more than 100 km true air would be all that is seen
+    float whole = min(1.8 * frame.air_scale, 1.0);  // over more than 100 km true air would be all that is seen
     float sea = air_over_sea();  // all of it is seen from afar
     return max(mix(air_scale_at(distance_m), whole, smoothstep(0.5 + 0.4 * sea, 1.3 + 1.7 * sea, widths)),
-               smoothstep(2.0, 8.0, widths));
+               smoothstep(2.5, 10.0, widths));
 }
 
 /// How far ground of the DEM goes over into what is beyond: 1 on the DEM's rim, and everywhere of a sea.
