@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "base/units.h"
 #include "climate/land_classes.h"
+#include "climate/rivers.h"
 
 namespace relevo::render {
 namespace {
@@ -93,16 +95,35 @@ climate::Box widened(climate::Box box, double least_deg) {
     return box;
 }
 
-void write(gl::Texture& texture, const std::vector<std::vector<Texel>>& levels) {
-    for (int level = 0; level < texture.levels(); ++level)
-        texture.write(level, {0, 0, 0}, texture.level_extent(level),
-                      std::as_bytes(std::span(levels[static_cast<std::size_t>(level)])));
+/// As lib/rivers.glsl reads them. Only the last number has a mean: how much of a texel is river.
+std::vector<Texel> river_texels(const climate::LandSites& sites) {
+    const auto apart_m = static_cast<float>(std::sqrt(sites.apart_m.x * sites.apart_m.y));
+    const auto reach_m = static_cast<float>(climate::kRiverReach) * apart_m;
+    const Array2d<climate::RiverSite> rivers = climate::rivers(sites);
+    std::vector<Texel> texels;
+    texels.reserve(rivers.size());
+    for (const climate::RiverSite& river : rivers) {
+        const float half_m = 0.5F * river.width_m, away_m = std::abs(river.off_m);
+        const float inside_m =
+            std::min(half_m, away_m + 0.5F * apart_m) - std::max(-half_m, away_m - 0.5F * apart_m);
+        texels.push_back({byte_of(river.normal_rad / std::numbers::pi_v<float>),
+                          byte_of(0.5F + 0.5F * river.off_m / reach_m),
+                          byte_of(std::sqrt(river.width_m / (4 * apart_m))),
+                          byte_of(inside_m / apart_m)});
+    }
+    return texels;
 }
 
 /// Of a texel of what is around.
 geo::Geodetic place_in(const climate::Box& box, double column, double row) {
     return geo::geodetic_deg(box.south_deg + (box.north_deg - box.south_deg) * row / (kAround - 1),
                              box.west_deg + (box.east_deg - box.west_deg) * column / (kAround - 1));
+}
+
+/// Adds a layer to each level.
+void append(const std::vector<std::vector<Texel>>& layer, std::vector<std::vector<Texel>>& levels) {
+    for (std::size_t level = 0; level < levels.size(); ++level)
+        levels[level].insert(levels[level].end(), layer[level].begin(), layer[level].end());
 }
 
 /// A layer of what is around, of texels by latitude and longitude [deg].
@@ -174,44 +195,51 @@ void NaturalGround::begin_land() {
     const climate::Box box = widened(box_of(grid_, frame_.origin()), kLeastAround_deg);
     if (!climate_alone_) map = std::make_shared<const climate::LandMap>(climate_map(), box);
     knows_land_ = map && map->is_known();
-    if (!knows_land_) {
-        upload({.classes = {{Texel{}}}, .around = {{Texel{}, Texel{}, Texel{}}}}, {1, 1}, 1);
-        return;
-    }
-    land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
+    if (!knows_land_) map = nullptr;
+    if (map) land_place_ = place_of(box, frame_.origin(), {kAround, kAround});
     making_ = std::async(std::launch::async | std::launch::deferred,
-                         [this, map, box] { return make_land(*map, box); });
+                         [this, map, box] { return make_land(map.get(), box); });
 }
 
-LandTexels NaturalGround::make_land(const climate::LandMap& map, const climate::Box& box) const {
-    LandTexels land{
-        .classes = mipmaps_of(texels_of(classes_of_sites(map)), pyramid_.size(level_of_sites())),
-        .around = mipmaps_of(classes_around(map, box), {kAround, kAround})};
-    const auto looks = layer_around(
-        box, [&](double lat_deg, double lon_deg) { return looks_at(map, lat_deg, lon_deg); });
-    const auto water = layer_around(box, [&](double lat_deg, double lon_deg) {
-        return Texel{byte_of(map.water(lat_deg, lon_deg)), 0, 0, 0};
-    });
-    for (std::size_t level = 0; level < land.around.size(); ++level)
-        for (const auto& layer : {looks[level], water[level]})
-            land.around[level].insert(land.around[level].end(), layer.begin(), layer.end());
+LandTexels NaturalGround::make_land(const climate::LandMap* map, const climate::Box& box) const {
+    const glm::ivec2 size = pyramid_.size(level_of_sites());
+    const climate::LandSites all = sites();
+    LandTexels land{.classes = mipmaps_of(map ? texels_of(climate::land_classes(*map, all))
+                                              : std::vector<Texel>(all.height_m.size()),
+                                          size),
+                    .around = {{Texel{}, Texel{}, Texel{}}}};
+    append(mipmaps_of(river_texels(all), size), land.classes);
+    if (!map) return land;
+    land.around = mipmaps_of(classes_around(*map, box), {kAround, kAround});
+    append(layer_around(box, [&](double lat_deg,
+                                 double lon_deg) { return looks_at(*map, lat_deg, lon_deg); }),
+           land.around);
+    append(layer_around(box,
+                        [&](double lat_deg, double lon_deg) {
+                            return Texel{byte_of(map->water(lat_deg, lon_deg)), 0, 0, 0};
+                        }),
+           land.around);
     return land;
 }
 
 void NaturalGround::finish_land() const {
     if (!making_.valid()) return;
-    upload(making_.get(), pyramid_.size(level_of_sites()), kAround);
+    const LandTexels made = making_.get();
+    const int around = knows_land_ ? kAround : 1;
+    land_classes_ =
+        texture_of(made.classes, {pyramid_.size(level_of_sites()), 2}, kLandClassesTexture);
+    land_around_ = texture_of(made.around, {around, around, 3}, kLandAroundTexture);
 }
 
-void NaturalGround::upload(const LandTexels& made, const glm::ivec2& size, int around) const {
-    land_classes_ = gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, {size.x, size.y, 1}, 0,
-                                kLandClassesTexture);
-    land_classes_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
-    write(land_classes_, made.classes);
-    land_around_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {around, around, 3}, 0,
-                               kLandAroundTexture);
-    land_around_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
-    write(land_around_, made.around);
+gl::Texture NaturalGround::texture_of(const std::vector<std::vector<Texel>>& levels,
+                                      const glm::ivec3& extent, const char* name) {
+    gl::Texture texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {extent.x, extent.y, extent.z},
+                        0, name);
+    texture.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
+    for (int level = 0; level < texture.levels(); ++level)
+        texture.write(level, {0, 0, 0}, texture.level_extent(level),
+                      std::as_bytes(std::span(levels[static_cast<std::size_t>(level)])));
+    return texture;
 }
 
 int NaturalGround::level_of_sites() const {
@@ -227,16 +255,15 @@ int NaturalGround::level_of_sites() const {
     return level;
 }
 
-Array2d<LandShares> NaturalGround::classes_of_sites(const climate::LandMap& map) const {
+climate::LandSites NaturalGround::sites() const {
     const int level = level_of_sites();
     const double posts = 1 << level;  // to a site
-    return climate::land_classes(
-        map, {.height_m = pyramid_.heights(level),
-              .apart_m = posts * grid_.post_spacing_m(),
-              .place = [&](double column,
-                           double row) { return grid_.place(posts * column, posts * row); },
-              .growing = [&](const geo::Geodetic& place,
-                             float height_m) { return climate_->growing(place, height_m); }});
+    return {.height_m = pyramid_.heights(level),
+            .apart_m = posts * grid_.post_spacing_m(),
+            .place = [this, posts](double column,
+                                   double row) { return grid_.place(posts * column, posts * row); },
+            .growing = [this](const geo::Geodetic& place,
+                              float height_m) { return climate_->growing(place, height_m); }};
 }
 
 std::vector<Texel> NaturalGround::classes_around(const climate::LandMap& map,

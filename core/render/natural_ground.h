@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "climate/climate_map.h"
+#include "climate/land_classes.h"
 #include "climate/land_map.h"
 #include "dem/pyramid.h"
 #include "geo/local_frame.h"
@@ -22,7 +23,7 @@ inline constexpr const char* kLandClassesTexture = "land_classes";
 inline constexpr const char* kLandAroundTexture = "land_around";
 
 using LandTexel = std::array<std::uint8_t, 4>;
-/// Of both textures, by level.
+/// Of the textures, by level.
 struct LandTexels {
     std::vector<std::vector<LandTexel>> classes, around;
 };
@@ -43,7 +44,8 @@ class NaturalGround {
 
     /// Updates the climate's tables to the snow of a day, 0 to 364, and writes where they are.
     void update_climate(int day, GroundBlock& block);
-    /// Begins to make the textures of land cover, in the background, and writes where they are.
+    /// Begins to make the textures of land cover and rivers, in the background, and writes where
+    /// they are.
     void update_land(GroundBlock& block);
     /// By the sampler's name; null for others, and before the updates. Waits for the background.
     const gl::Texture* texture(std::string_view name) const;
@@ -53,14 +55,16 @@ class NaturalGround {
     float mean_height_m(const geo::Geodetic& place) const;
     void make_climate();
     int level_of_sites() const;
-    Array2d<climate::LandShares> classes_of_sites(const climate::LandMap& map) const;
+    climate::LandSites sites() const;
     std::vector<LandTexel> classes_around(const climate::LandMap& map,
                                           const climate::Box& box) const;
-    LandTexels make_land(const climate::LandMap& map, const climate::Box& box) const;
+    /// @param map  null: land cover is not known
+    LandTexels make_land(const climate::LandMap* map, const climate::Box& box) const;
     void begin_land();
     void finish_land() const;
-    /// @param size, around  of land_classes, and of the sides of land_around [px]
-    void upload(const LandTexels& made, const glm::ivec2& size, int around) const;
+    /// An array with all of its levels. @param extent  of the first; layers as z
+    static gl::Texture texture_of(const std::vector<std::vector<LandTexel>>& levels,
+                                  const glm::ivec3& extent, const char* name);
 
     const dem::Grid& grid_;
     const geo::LocalFrame& frame_;

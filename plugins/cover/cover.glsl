@@ -9,6 +9,7 @@
 //@ include lib/land.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
+//@ include lib/rivers.glsl
 
 uniform sampler2DArray cover_albedo;
 uniform sampler2D cover_patches;
@@ -24,6 +25,7 @@ uniform int cover_snow = 0; //@ enum(climate, line, none) static label("Snow") d
 uniform float cover_snow_line_m = 2500.0; //@ range(-1000, 9000) unit(m) label("Snow line") description("Height of the given snow line, on level ground")
 uniform float cover_snow_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Snow line shift") description("Added to the climate's snow line; negative in a snowy year")
 uniform bool cover_ice = true; //@ static label("Permanent ice")
+uniform float cover_rivers = 8.0; //@ range(0, 20) label("Rivers") description("Rivers where water runs by the heights and the rain: from afar at most so much wider than they are, so that they are seen; 0: none")
 
 // What shape does to it.
 uniform float cover_aspect_m = 480.0; //@ range(0, 3000) unit(m) label("Aspect") description("Rise of the snow line on walls that face the noon sun, relative to level ground")
@@ -52,6 +54,7 @@ uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, r
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
 uniform vec3 cover_town = vec3(0.165, 0.148, 0.114); //@ colour label("Towns")
 uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
+uniform vec3 cover_water = vec3(0.070, 0.125, 0.175); //@ colour label("Rivers' water")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.62, 0.73, 0.82); //@ colour label("Ice")
 uniform vec3 cover_white = vec3(0.75, 0.79, 0.855); //@ colour label("Snow")
@@ -466,6 +469,11 @@ void cover_on_albedo(inout Surface s) {
     }
 #endif
     albedo = mix(albedo, forest, trees);
+    vec2 river = river_at(s.post, shape.across_m, 0.6 * level * shape.broad.ra, cover_rivers);
+    // On the banks plants have water when the country around is dry.
+    vec3 bank = mix(mix(cover_grass, cover_broadleaf, 0.6), cover_tundra, 1.0 - smoothstep(0.5, 1.2, growth));
+    albedo = mix(albedo, bank, 0.7 * max(river.y - river.x, 0.0) * (1.0 - smoothstep(0.1, 0.4, shape.steep)));
+    albedo = mix(albedo, cover_water, river.x);
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
     // Ice that the wind has swept is bluer and darker than what lies in its lee.

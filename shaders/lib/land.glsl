@@ -6,7 +6,7 @@
 //@ include lib/climate.glsl
 //@ include lib/water.glsl
 
-uniform sampler2D land_classes;       // of the DEM: shares of trees, fields, bare ground and towns
+uniform sampler2DArray land_classes;  // of the DEM: shares of trees, fields, bare ground and towns, then its rivers
 uniform sampler2DArray land_around;   // of the DEM and the country around it: the same, then tint and shrubs, then water
 
 /// What covers the ground of a pixel: shares of it, 0..1. The rest is bare.
@@ -56,9 +56,9 @@ LandClasses land_classes_at(in vec2 post, in float pixel_posts, in vec3 up) {
 #ifdef BEYOND_PX
     vec4 shares = textureLod(land_around, vec3(place.xy, 0.0), place.z);
 #else
-    vec2 texels = vec2(textureSize(land_classes, 0));
+    vec2 texels = vec2(textureSize(land_classes, 0).xy);
     float level = floor(log2(max(pixel_posts * frame.land_cover.z, 1.0)) + 0.5);
-    vec4 shares = textureLod(land_classes, (post * frame.land_cover.zw + 0.5) / texels, level);
+    vec4 shares = textureLod(land_classes, vec3((post * frame.land_cover.zw + 0.5) / texels, 0.0), level);
     place.z = 0.0;  // the DEM is in the middle
 #endif
     vec4 looks = textureLod(land_around, vec3(place.xy, 1.0), place.z);
