@@ -36,8 +36,8 @@ constexpr std::array<std::string_view, 65> kReserved = {
 constexpr std::size_t kMaxInstanceSets = 16;
 
 // Capabilities that core provides itself: render/core_passes.h.
-constexpr std::array<std::string_view, 5> kCoreWords = {"mapped", "near", "night", "outside",
-                                                        "water"};
+constexpr std::array<std::string_view, 6> kCoreWords = {"houses", "mapped",  "near",
+                                                        "night",  "outside", "water"};
 
 constexpr std::array<std::string_view, 5> kGroups = {"ground", "light", "air", "water", "maps"};
 constexpr std::array<std::string_view, 3> kGroundWords = {"water", "marked_holes", "covered_voids"};

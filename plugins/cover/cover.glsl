@@ -6,6 +6,9 @@
 
 //@ include lib/climate.glsl
 //@ include lib/ground.glsl
+#if HAS_houses
+//@ include lib/houses.glsl
+#endif
 //@ include lib/land.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
@@ -51,6 +54,9 @@ uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, g
 uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
 uniform vec3 cover_town = vec3(0.165, 0.148, 0.114); //@ colour label("Towns")
+uniform vec3 cover_roof = vec3(0.135, 0.128, 0.125); //@ colour label("Roofs") description("Of a surface model; some houses have others")
+uniform vec3 cover_wall = vec3(0.275, 0.250, 0.212); //@ colour label("Walls")
+uniform vec3 cover_street = vec3(0.165, 0.162, 0.155); //@ colour label("Streets")
 uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.62, 0.73, 0.82); //@ colour label("Ice")
@@ -394,6 +400,22 @@ void cover_take_map(in LandCover map, inout cover_Shares shares, inout float rai
     rain = mix(rain, watered, map.known * (1.0 - rock));
 }
 
+#if HAS_houses
+/// Of a surface model the heights say what stands where: trees nowhere else, and no rock at the foot of walls.
+void cover_take_houses(in Surface s, in Houses houses, inout cover_Shares shares, inout LandClasses land) {
+    Houses around = houses_at(s.post, 4.0 * max(s.pixel_posts, 1.0));
+    shares.rock *= 1.0 - smoothstep(0.05, 0.3, around.built + around.street + around.trees);
+    shares.forest = land.trees = land.towns = 0.0;
+    shares.snow *= 1.0 - 0.7 * houses.trees;
+}
+
+/// Clumps of leaves on crowns shade each other.
+float cover_leaves(in Surface s) {
+    vec4 clumps = cover_turned_patch(s, cover_turn / 9.0), boughs = cover_turned_patch(s, cover_turn / 37.0);
+    return max(0.9 + 2.2 * clumps.a + 1.5 * clumps.r + 1.2 * boughs.a, 0.25);
+}
+#endif
+
 /// The grain of the heaviest materials, as a factor of mean 1, and their gloss; fades by itself.
 vec4 cover_grain_of(in Surface s) {
     vec4 grain = vec4(0.0);
@@ -435,6 +457,10 @@ void cover_on_albedo(inout Surface s) {
     land.known *= cover_rain == 1 || cover_rain_factor != 1.0 ? 0.0 : 1.0 - map.known;
     cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
     cover_take_map(map, shares, rain);
+#if HAS_houses
+    Houses houses = houses_at(s.post, s.pixel_posts);
+    cover_take_houses(s, houses, shares, land);
+#endif
     s.forest = shares.forest * (1.0 - shares.rock);
     cover_part(shares, land, shape);
 
@@ -465,6 +491,11 @@ void cover_on_albedo(inout Surface s) {
     }
 #endif
     albedo = mix(albedo, forest, trees);
+#if HAS_houses
+    albedo = mix(albedo, cover_street, smoothstep(0.2, 0.8, houses.street));
+    albedo = mix(albedo, forest * cover_leaves(s), smoothstep(0.15, 0.6, houses.trees));
+    albedo = houses_over(albedo, houses, shape.steep, cover_roof, cover_wall);
+#endif
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
     // Ice that the wind has swept is bluer and darker than what lies in its lee.
@@ -485,6 +516,9 @@ void cover_on_albedo(inout Surface s) {
 #if HAS_near
     if (pixel_m < min(cover_texture_m, cover_near_m)) {
         vec4 grain = cover_grain_of(s);
+#if HAS_houses
+        grain = mix(grain, vec4(1.0, 1.0, 1.0, 0.5), min(houses.built + houses.street, 1.0));
+#endif
         albedo *= grain.rgb;
         s.gloss = grain.a;
     }

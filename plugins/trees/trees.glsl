@@ -125,6 +125,9 @@ float trees_crown_sunlight(in trees_Stand stand, in float per_m2) {
 
 /// A map of land cover, and where it tells nothing the shares that come with the program.
 LandCover trees_map(in VertexFrame ground) {
+#if HAS_houses
+    return LandCover(0.0, 0.0, 0.0, 1.0);  // the heights have all trees
+#endif
     LandCover map = land_cover_at(ground.post, 1.0);
     LandClasses land = land_classes_at(ground.post, 1.0, ground.up);
     float growth = climate_ground(climate_place(ground.up), ground.height_m).growth + trees_line_m / 450.0;
