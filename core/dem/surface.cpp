@@ -54,7 +54,7 @@ class Finder {
 
     Surface find() {
         find_high();
-        drop_hills();
+        drop_hills(Kind::Canopy);
         tell_roofs();
         number_houses();
         find_walls();
@@ -70,6 +70,7 @@ class Finder {
     static constexpr double kRim = 0.5;     // of a rim rises so
     static constexpr double kTop_m = 2.5, kTopsAround_m = 7.5;
     static constexpr float kMostUneven_m = 4, kEven_m = 1.3F;  // of tops
+    static constexpr float kSmooth_m = 0.36F;                  // mean roughness
     static constexpr double kRoofAround_m = 5;                 // over which they are even
     static constexpr double kLeastRoof_m2 = 40, kLone_m2 = 700, kPeaked_m2 = 300, kFull = 0.66;
     static constexpr double kAloneAround_m = 80;
@@ -179,15 +180,15 @@ class Finder {
     }
 
     /// Hills and the tops of cliffs go over into the ground on some side.
-    void drop_hills() {
+    void drop_hills(Kind kind) {
         const int reach = posts(3);
-        each_piece(Kind::Canopy, [&](const std::vector<Post>& piece) {
+        each_piece(kind, [&](const std::vector<Post>& piece) {
             double rim = 0, rises = 0;
             for (const Post post : piece) {
                 const int x = post % columns_, y = post / columns_;
                 for (std::size_t k = 0; k < 4; ++k) {
                     const int nx = x + kNext[k][0], ny = y + kNext[k][1];
-                    if (!has(nx, ny) || kind_.at(nx, ny) == Kind::Canopy) continue;
+                    if (!has(nx, ny) || kind_.at(nx, ny) != Kind::Ground) continue;
                     const int ix = x - (reach - 1) * kNext[k][0],
                               iy = y - (reach - 1) * kNext[k][1];
                     ++rim;
@@ -214,8 +215,23 @@ class Finder {
         return std::min(room[room.size() * 9 / 10] - room[room.size() / 3], kMostUneven_m);
     }
 
+    /// How far a post is off the line between two opposite ones, where that is least [m].
+    float roughness(int x, int y) const {
+        float least_m = kMostUneven_m;
+        for (const std::size_t i : {0, 1, 4, 5}) {
+            const auto [dx, dy] = kNext[i];
+            if (!has(x + dx, y + dy) || !has(x - dx, y - dy)) continue;
+            const float off_m =
+                std::abs(h_.at(x + dx, y + dy) + h_.at(x - dx, y - dy) - 2 * h_.at(x, y));
+            if (off_m < least_m) least_m = off_m;
+        }
+        return least_m;
+    }
+
+    /// Even tops, or what is smooth like the roofs of halls of several heights.
     void tell_roofs() {
         Array2d<float> tops_m = h_, uneven(columns_, rows_, 0), high(columns_, rows_, 0);
+        Array2d<float> rough(columns_, rows_, 0);
         std::vector<float> room;
         for (float& height : tops_m)
             height = std::isnan(height) ? 1e6F : -height;
@@ -226,15 +242,19 @@ class Finder {
             for (int x = 0; x < columns_; ++x) {
                 if (kind_.at(x, y) != Kind::Canopy) continue;
                 uneven.at(x, y) = unevenness(tops_m, x, y, room);
+                rough.at(x, y) = roughness(x, y);
                 high.at(x, y) = 1;
             }
+        rough = mean_of(std::move(rough), kRoofAround_m);
         uneven = mean_of(std::move(uneven), kRoofAround_m);
         high = mean_of(std::move(high), kRoofAround_m);
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x)
-                if (kind_.at(x, y) == Kind::Canopy && uneven.at(x, y) < kEven_m * high.at(x, y))
+                if (kind_.at(x, y) == Kind::Canopy && (uneven.at(x, y) < kEven_m * high.at(x, y) ||
+                                                       rough.at(x, y) < kSmooth_m * high.at(x, y)))
                     kind_.at(x, y) = Kind::Roof;
         drop_small();
+        drop_hills(Kind::Roof);
         drop_alone();
     }
 

@@ -32,8 +32,8 @@ inline constexpr double kSurfacePosts_m = 4;
 /// What is narrower than 80 m, above the ground around it and steep along half of its rim at least
 /// stands on the ground (morphological opening, K. Zhang et al. 2003): crests and cliffs go over
 /// into it on some side. Of that roofs are where the highest heights near each post are even, since
-/// ridges are level and crowns are not; small ones that stand alone are crowns. Streets are ground
-/// with houses around.
+/// ridges are level and crowns are not, or where heights are smooth; small ones that stand alone
+/// are crowns. Streets are ground with houses around.
 /// @param heights_m  NaN for holes
 /// @param grid       of as many posts, at most kSurfacePosts_m apart
 Surface find_surface(const Array2d<float>& heights_m, const Grid& grid);
