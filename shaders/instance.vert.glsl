@@ -16,6 +16,7 @@ layout(location = 13) in vec4 instance_cells;   // xy: first cell; z: kind; w: i
 layout(location = 14) in vec4 instance_detail;  // xy: distances between which this mesh is drawn [m], x: or a shadow map; zw: cells per post
 layout(location = 15) in vec4 instance_packed;  // xyz: unit; w: colour, 8 bits each
 
+const float kRagged = 0.12;  // as in instance.frag.glsl
 const float kDetailJitter = 0.2;  // share of the distance by which instances change their meshes sooner or later
 
 flat out vec4 instance_crown;  // of a shadow map, as instance_shadow.frag.glsl has them
@@ -26,6 +27,8 @@ out vec3 instance_normal;
 out vec4 instance_reflectance;  // a: share of the sun's light past instances whose shadows are not drawn
 out vec4 instance_shape;  // of a sprite; xy: the point's side over its width and height, z: taper, w: flatness
 flat out float instance_half_width_m;
+flat out vec4 instance_clumps;  // xy: random numbers; z: ragged, w: taper
+out vec3 instance_within;       // place in a mesh, as shares of half its width and height
 
 /// The rectangle of posts whose sites this draw has: first and last, half open.
 vec4 instance_rectangle() {
@@ -88,7 +91,7 @@ vec4 instance_sprite(in InstanceSite site, in Instance it, in float flatness, ou
     vec4 position = clipped(middle_m);
     // As seen by the eye: an ellipsoid of the crown's height and width.
     float high = sqrt(it.height_m * it.height_m * sine2 + it.width_m * it.width_m * cosine * cosine);
-    float across = max(it.width_m, high);
+    float across = max(it.width_m, high) * (1.0 + kRagged * it.ragged);
     position_m = middle_m;
     gl_PointSize = max(across / (position.w * length(frame.pixel_ray_dx.xyz)), 1.0);
     instance_shape = vec4(across / it.width_m, across / high, it.taper * sine2, flatness);
@@ -106,6 +109,8 @@ vec4 instance_mesh(in InstanceSite site, in Instance it, in float flatness, out 
     vec3 right = cosine * east + sine * north, ahead = cosine * north - sine * east;
     vec3 size = vec3(it.width_m, it.width_m, it.height_m);
     vec3 local = instance_vertex.xyz * size;
+    instance_within = instance_vertex.xyz * 2.0 - vec3(0.0, 0.0, 1.0);
+    instance_half_width_m = 0.5 * it.width_m;
     vec3 turned = instance_packed.xyz / max(size, vec3(1e-3));
     instance_normal = normalize(mix(normalize(turned.x * right + turned.y * ahead + turned.z * foot.up), site.normal,
                                     flatness));
@@ -131,7 +136,7 @@ void main() {
     float coverage;
     site.ground = ground_of(clamp(vertex, vec2(0.0), net_quads()), site.normal, coverage);
     site.random = instances_random(cell, 1u);
-    Instance it = Instance(1.0, 0.0, 0.0, 6.2831853 * site.random.x, vec3(0.3), 0, 0.0, 1.0);
+    Instance it = Instance(1.0, 0.0, 0.0, 6.2831853 * site.random.x, vec3(0.3), 0, 0.0, 1.0, 0.0);
     place_instance(site, it);
 
     float away_m = site.ground.distance_m;
@@ -158,6 +163,7 @@ void main() {
 #else
     vec4 position = instance_mesh(site, it, flatness, v.position_m);
 #endif
+    instance_clumps = vec4(site.random.yz, it.ragged, it.taper);
     v.distance_m = length(v.position_m);
     v.drawn_height_m += dot(v.position_m - site.ground.position_m, v.up);
     hook_vertex(v);

@@ -118,10 +118,10 @@ def blob(mesh, centre, radius, half, rings, sides, rough=0.0, low=1.6, high=12.0
 
 
 def broadleaf(detailed):
-    """A crown on a trunk, 12 m high and 9 m wide: boughs of leaves, or one ellipsoid."""
+    """A crown on a trunk, 12 m high and 9 m wide: boughs of leaves, or one rough ellipsoid."""
     mesh = Mesh()
     if not detailed:
-        blob(mesh, (0.0, 6.8, 0.0), 4.5, 5.2, 3, 6)
+        blob(mesh, (0.0, 6.8, 0.0), 4.4, 5.1, 5, 10, rough=0.17)
         return mesh
     mesh.trunk(0.3, 4.0)
     blob(mesh, (0.0, 8.2, 0.0), 3.0, 3.8, 3, 8, rough=0.1)
@@ -134,7 +134,7 @@ def broadleaf(detailed):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    for level, (tiers, sides, trunk) in enumerate([(7, 10, True), (3, 6, False)]):
+    for level, (tiers, sides, trunk) in enumerate([(7, 10, True), (4, 8, False)]):
         conifer(tiers, sides, trunk).write(folder / f"conifer_{level}.obj")
     for level, detailed in enumerate([True, False]):
         broadleaf(detailed).write(folder / f"broadleaf_{level}.obj")

@@ -21,23 +21,23 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
-constexpr std::array<std::string_view, 65> kReserved = {
-    "air",      "all",       "antialias", "backdrop", "background", "beyond",  "camera",
-    "climate",  "colour",    "copy",      "core",     "crown",      "data",    "depth",
-    "east",     "edge",      "edges",     "end",      "field",      "floor",   "footprint",
-    "frame",    "gbuffer",   "geometry",  "gl",       "ground",     "height",  "hook",
-    "instance", "instances", "land",      "light",    "lines",      "load",    "moon",
-    "net",      "neutral",   "noise",     "none",     "normal",     "overlay", "page",
-    "picture",  "pixel",     "place",     "post",     "raster",     "scene",   "screen",
-    "select",   "side",      "slope",     "srgb",     "steps",      "store",   "stored",
-    "sun",      "surface",   "surround",  "tangent",  "terrain",    "up",      "varyings",
-    "vertex",   "water"};
+constexpr std::array<std::string_view, 68> kReserved = {
+    "air",     "all",     "antialias", "backdrop",  "background", "beyond",   "camera",
+    "climate", "colour",  "copy",      "core",      "crown",      "data",     "depth",
+    "east",    "edge",    "edges",     "end",       "field",      "floor",    "footprint",
+    "frame",   "gbuffer", "geometry",  "gl",        "ground",     "height",   "hook",
+    "house",   "houses",  "instance",  "instances", "land",       "light",    "lines",
+    "load",    "moon",    "net",       "neutral",   "noise",      "none",     "normal",
+    "overlay", "page",    "picture",   "pixel",     "place",      "post",     "raster",
+    "river",   "scene",   "screen",    "select",    "side",       "slope",    "srgb",
+    "steps",   "store",   "stored",    "sun",       "surface",    "surround", "tangent",
+    "terrain", "up",      "varyings",  "vertex",    "water"};
 
 constexpr std::size_t kMaxInstanceSets = 16;
 
 // Capabilities that core provides itself: render/core_passes.h.
-constexpr std::array<std::string_view, 5> kCoreWords = {"mapped", "near", "night", "outside",
-                                                        "water"};
+constexpr std::array<std::string_view, 6> kCoreWords = {"houses", "mapped",  "near",
+                                                        "night",  "outside", "water"};
 
 constexpr std::array<std::string_view, 5> kGroups = {"ground", "light", "air", "water", "maps"};
 constexpr std::array<std::string_view, 3> kGroundWords = {"water", "marked_holes", "covered_voids"};

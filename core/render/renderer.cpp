@@ -243,6 +243,7 @@ struct Renderer::Impl : FrameServices {
     void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) {
         if (reads("surface_pages")) terrain.require_surface_pages();
         if (reads("water_pages")) terrain.require_water_pages();
+        if (reads("house_pages")) terrain.require_house_pages();
         terrain.write(block);
         write_places(terrain);
         if (reads(kLightByHeightTexture)) light.update(inputs, block);

@@ -104,6 +104,12 @@ double coarser(double tolerance) {
     return tolerance > 0 ? tolerance * kCoarser : 1e-5;
 }
 
+gl::Texture nothing_to_tell(const char* label) {
+    gl::Texture texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {1, 1, 1}, 1, label);
+    texture.write(0, {0, 0, 0}, {1, 1, 1}, std::vector<std::byte>(4));
+    return texture;
+}
+
 }  // namespace
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
@@ -180,6 +186,12 @@ void Terrain::update_surface_layers() {
         layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
                           [this](const TileKey& key) { return make_water(key); },
                           options_.land_cover ? 2 : 1});
+    if (options_.houses)
+        layers.push_back({"house_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
+                          [this](const TileKey& key) {
+                              return bytes_of(
+                                  overlay_page(*options_.houses, pyramid_, key.level, key.at));
+                          }});
     const std::int64_t slices = std::ssize(layers) + (water_ && options_.land_cover ? 1 : 0);
     surface_bytes_ = slices * kNormalPageBytes;
     const int in_memory = normal_slots_in(options_.memory, slices);
@@ -228,12 +240,15 @@ void Terrain::require_water_pages() {
     if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
     const dem::Water& water = options_.water ? *options_.water : *own_water_;
     if (!water.any() && !options_.filled && !options_.land_cover) {
-        dry_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA8, {1, 1, 1}, 1, "dry ground");
-        dry_.write(0, {0, 0, 0}, {1, 1, 1}, std::vector<std::byte>(4));
+        dry_ = nothing_to_tell("dry ground");
         return;
     }
     water_.emplace(*drawn_m_, water, options_.filled, reduction_);
     surface_ = PageCache();
+}
+
+void Terrain::require_house_pages() {
+    if (!options_.houses && bare_.name() == 0) bare_ = nothing_to_tell("ground without houses");
 }
 
 void Terrain::require_surface_pages() {
@@ -247,6 +262,7 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == kHeightMeansTexture) return height_means_.texture();
     if (name == "page_table") return &page_table_.texture();
     if (name == "water_pages" && dry_.name() != 0) return &dry_;
+    if (name == "house_pages" && bare_.name() != 0) return &bare_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     if (const gl::Texture* const light = light_.texture(name)) return light;
     if (const gl::Texture* const raster = overlay_.texture(name)) return raster;

@@ -52,6 +52,8 @@ struct TerrainOptions {
     /// Shares of the ground for lib/land.glsl: red trees, green low plants, blue ice, alpha
     /// where they are known. Null: none.
     std::shared_ptr<const overlay::Photo> land_cover{};
+    /// What stands on the heightfield's posts, for lib/houses.glsl. Null: nothing.
+    std::shared_ptr<const OverlayRaster> houses{};
     bool climate_alone = false;  ///< lib/land.glsl knows nothing but that map
     SkyViewFuture sky{};         ///< sky-view factor of the heightfield, if being computed
     ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
@@ -157,6 +159,8 @@ class Terrain {
     /// an effect off and on does not remake the pages.
     void require_surface_pages();
     void require_water_pages();
+    void
+    require_house_pages();  ///< of TerrainOptions::houses; without them nothing stands anywhere
 
     /// Sets the overlay for programs that read it; null: none. Another one discards its pages.
     void set_overlay(std::shared_ptr<const OverlayRaster> raster);
@@ -237,7 +241,8 @@ class Terrain {
     std::optional<dem::Water> own_water_;  // unless one was given
     std::optional<WaterField> water_;
     std::optional<WetPosts> wet_posts_;  // made when first asked for
-    gl::Texture dry_;  // for programs that read "water_pages" where there is nothing to tell
+    gl::Texture dry_;   // for programs that read "water_pages" where there is nothing to tell
+    gl::Texture bare_;  // as that, "house_pages"
     bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
     bool complete_ = true;
     PageTable page_table_;

@@ -107,6 +107,11 @@ constexpr Option kOptions[] = {
      Kind::Text, 0, 0, {},
      [](const Scene& s) { return text(s.land_cover.classes); },
      [](Scene& s, const Value& v) { s.land_cover.classes = v.text; }},
+    {"", "surface", "--surface", "Options",
+     "Heights of a surface model, posts at most 4 m apart: pictures show its roofs, walls, streets "
+     "and trees, which are found by their shape", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.land_cover.surface); },
+     [](Scene& s, const Value& v) { s.land_cover.surface = v.boolean; }},
     {"", "refraction", "--refraction", "Options",
      "Refraction of the sun: standard (integrated ICAO atmosphere), saemundsson (as JPL Horizons), "
      "none", Kind::Word, 0, 0, kRefractions,

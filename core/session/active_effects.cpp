@@ -113,6 +113,7 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.values = &values;
     inputs.stitch.constants = constants;
     if (mapped) inputs.stitch.capabilities.emplace_back("mapped");
+    if (houses) inputs.stitch.capabilities.emplace_back("houses");
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
     for (const effect::LoadedTexture& texture : loaded.textures) {

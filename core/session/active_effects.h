@@ -46,6 +46,7 @@ struct ActiveEffects : InstalledEffects {
     effect::LoadedSelection loaded;    // points into registry
     bool constants = false;            ///< StitchInput::constants
     bool mapped = false;               ///< a map of land cover has been given: HAS_mapped
+    bool houses = false;               ///< they are found by heights: HAS_houses
     std::vector<std::string> notices;  ///< notices of apply_settings(), already logged
 
     using InstalledEffects::InstalledEffects;

@@ -175,10 +175,11 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
     for (const scene::Shot& shot : shots) {
         const std::size_t dem = dems.try_emplace(dem_key(shot.scene), dems.size()).first->second;
         const scene::LandCover& cover = shot.scene.land_cover;
-        const std::size_t map = maps.try_emplace(fmt::format("{}\n{}\n{}", cover.file,
-                                                             cover.classes, cover.climate_alone),
-                                                 maps.size())
-                                    .first->second;
+        const std::size_t map =
+            maps.try_emplace(fmt::format("{}\n{}\n{}\n{}", cover.file, cover.classes,
+                                         cover.climate_alone, cover.surface),
+                             maps.size())
+                .first->second;
         const std::size_t effect =
             effects.try_emplace(effects_key(shot.scene.effects), effects.size()).first->second;
         order.push_back(places.size());

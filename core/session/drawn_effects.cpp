@@ -14,8 +14,9 @@ bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
     return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
            effects.plugin_path == other.effects.plugin_path &&
            effects.weather == other.effects.weather && compared == other.compared &&
-           constants == other.constants && mapped == other.mapped && ground == other.ground &&
-           overlay_raster == other.overlay_raster && hides_shadows == other.hides_shadows;
+           constants == other.constants && mapped == other.mapped && houses == other.houses &&
+           ground == other.ground && overlay_raster == other.overlay_raster &&
+           hides_shadows == other.hides_shadows;
 }
 
 DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
@@ -42,6 +43,7 @@ DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
     for (const Half& half : drawn.halves()) {
         half.effects.constants = asked.constants;
         half.effects.mapped = asked.mapped;
+        half.effects.houses = asked.houses;
     }
     drawn.stamp_files();
     return drawn;

@@ -26,6 +26,7 @@ struct EffectsRequest {
     bool allow_unmet = false;  ///< as in Options
     bool constants = false;    ///< StitchInput::constants
     bool mapped = false;       ///< by a map of land cover
+    bool houses = false;       ///< found by heights
 
     /// True if only parameter values may differ.
     bool has_selection_of(const EffectsRequest& other) const;

@@ -1,5 +1,8 @@
 #include "session/land_cover.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,6 +10,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "climate/land_cover.h"
+#include "dem/surface.h"
 
 namespace relevo::session {
 namespace {
@@ -47,6 +51,13 @@ LandCoverTable table_of(const scene::LandCover& asked) {
     return table;
 }
 
+std::uint32_t texel_of(dem::SurfaceKind kind, std::uint8_t house) {
+    using enum dem::SurfaceKind;
+    if (kind == Street) return 0xff00;
+    if (kind == Canopy) return 0xff0000;
+    return kind == Roof || kind == Wall ? 0xff | std::uint32_t{house} << 24 : 0;
+}
+
 }  // namespace
 
 std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& asked,
@@ -57,6 +68,27 @@ std::shared_ptr<const overlay::Photo> open_land_cover(const scene::LandCover& as
         return nullptr;
     }
     return overlay::Photo::open_classes(asked.file, grid, table_of(asked).texels());
+}
+
+void check_houses(const LoadedDem& dem) {
+    const glm::dvec2 posts_m = dem.to_draw().grid.post_spacing_m();
+    const double apart_m = std::sqrt(posts_m.x * posts_m.y);
+    if (apart_m > dem::kSurfacePosts_m)
+        bad_input(fmt::format(
+            "--surface: heights are {:.3g} m apart in memory; houses show where "
+            "they are at most {:g} m apart{}",
+            apart_m, dem::kSurfacePosts_m,
+            dem.to_draw().reduction > 1 ? "; --memory or --crop has more of them" : ""));
+}
+
+std::shared_ptr<const render::OverlayRaster> houses_on(const LoadedDem& dem) {
+    check_houses(dem);
+    const dem::Heightfield& field = dem.to_draw();
+    const dem::Surface found = dem::find_surface(field.height_m, field.grid);
+    auto raster = std::make_shared<render::OverlayRaster>();
+    raster->rgba = Array2d<std::uint32_t>(field.height_m.width(), field.height_m.height());
+    std::ranges::transform(found.kind, found.house, raster->rgba.begin(), texel_of);
+    return raster;
 }
 
 }  // namespace relevo::session

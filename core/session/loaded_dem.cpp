@@ -8,6 +8,7 @@
 #include "dem/collar.h"
 #include "dem/level_cache.h"
 #include "dem/load.h"
+#include "dem/surface.h"
 #include "render/ground.h"
 #include "session/session.h"
 #include "session/stopwatch.h"
@@ -53,6 +54,8 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, const scene::Scene& sce
     drawn.water =
         known ? std::move(*known)
               : dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
+    drawn.has_houses =
+        dem::looks_like_surface(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
     return drawn;
 }
 

@@ -216,6 +216,9 @@ std::vector<std::string> Session::ground_notes() const {
     if (!drawn.holes_text.empty()) notes.push_back(drawn.holes_text);
     for (const std::string& assumption : drawn.water.assumptions)
         notes.push_back(assumption);
+    if (drawn.has_houses && !scene().land_cover.surface)
+        notes.emplace_back(
+            "houses seem to be in the heights; --surface draws them and their streets");
     for (std::string& detail :
          impl_->state.synthetic_detail(effects(), impl_->terrain->grid().post_spacing_m()))
         notes.push_back(std::move(detail));

@@ -43,6 +43,7 @@ struct LoadedDem {
         bool has_covers = false;     ///< voids too wide to fill are covered
         dem::Water water;            ///< found in the drawn heights
         std::string holes_text;      ///< summary of voids; empty without voids
+        bool has_houses = false;     ///< it looks like a surface model: dem/surface.h
         bool has_no_collar = false;  ///< a frame of fill around `field` is left out of `filled`
     };
     Drawn drawn{};

@@ -126,6 +126,7 @@ EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
     // By the scene alone, so that each picture can be made again with the same bytes.
     request.constants = options.format && effects.settings.empty();
     request.mapped = !state.scene.land_cover.file.empty();
+    request.houses = state.scene.land_cover.surface;
     request.effects.weather = state.weather ? state.weather->facts : weather::Facts{};
     if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
     request.overlay_raster = has_overlay_raster();
@@ -241,6 +242,7 @@ void Session::Impl::show(const scene::Scene& next, sun::Instant utc, const Hints
     const bool other_cover = next.land_cover != state.scene.land_cover;
     const std::shared_ptr<const overlay::Photo> cover =
         other_cover ? open_land_cover(next.land_cover, state.dem()->source->grid()) : land_cover;
+    if (next.land_cover.surface) check_houses(*state.dem());
     const bool other_air = show_weather(next) || next.refraction != state.scene.refraction;
     const bool other_effects = show_effects(next, hints);
     state.inputs.deterministic = hints.exact;
@@ -289,6 +291,7 @@ bool Session::Impl::show_effects(const scene::Scene& next, const Hints& hints) {
     lay(other);
     EffectsRequest wanted = request(next.effects);
     wanted.mapped = !next.land_cover.file.empty();
+    wanted.houses = next.land_cover.surface;
     if (!hints.reload_effects && wanted == drawn->request()) return false;
     const bool other_effects = hints.reload_effects || !wanted.has_selection_of(drawn->request());
     try {
@@ -314,7 +317,12 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
         fields = {};
         if (!state.dem() || state.dem()->source != dem->source)
             land_cover = open_land_cover(state.scene.land_cover, dem->source->grid());
+        houses = nullptr;
     }
+    if (!state.scene.land_cover.surface)
+        houses = nullptr;
+    else if (!houses)
+        houses = houses_on(*dem);
     terrain.reset();  // refers to the previous DEM
     state.take_dem(dem);
     terrain.emplace(dem->to_draw(), state.ground().frame,
@@ -326,6 +334,7 @@ void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
                         .water = &dem->drawn.water,
                         .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
                         .land_cover = land_cover,
+                        .houses = houses,
                         .climate_alone = state.scene.land_cover.climate_alone,
                         .sky = std::exchange(sky_view, {}),
                         .shadows_on = context->info().device.software ? render::ShadowsOn::Processor

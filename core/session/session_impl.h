@@ -68,6 +68,8 @@ struct Session::Impl {
     LaidOverlay laid;
     std::optional<Overlay> overlay;                    // of the scene
     std::shared_ptr<const overlay::Photo> land_cover;  // of the scene; null: none
+    std::shared_ptr<const render::OverlayRaster>
+        houses;  // of the scene's surface model; null: none
     std::optional<OverlayTime> overlay_time;
     EffectRasters rasters;  // of the drawn effects
     EffectFields fields;

@@ -9,6 +9,9 @@
 
 //@ include lib/ground.glsl
 //@ include lib/repeats.glsl
+#if HAS_houses
+//@ include lib/houses.glsl
+#endif
 
 uniform sampler2DArray bump_normals;
 
@@ -167,8 +170,15 @@ void bump_on_normal(inout Surface s) {
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
     vec3 ground = s.normal;
+#if HAS_houses
+    Houses houses = houses_at(s.post, s.pixel_posts);
+    float open = 1.0 - min(houses.built + houses.street + 0.8 * houses.trees, 1.0);  // roofs and walls are plain
+    map = vec3(open * map.xy, map.z);
+#else
+    const float open = 1.0;
+#endif
 #if !HAS_outside
-    vec2 slope = bump_invented_slope(s);
+    vec2 slope = open * bump_invented_slope(s);
     ground -= slope.x * s.tangent + slope.y * s.bitangent;
 #endif
     s.normal = bump_normal(map, s.tangent, s.bitangent, ground);

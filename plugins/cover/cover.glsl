@@ -6,13 +6,15 @@
 
 //@ include lib/climate.glsl
 //@ include lib/ground.glsl
+#if HAS_houses
+//@ include lib/houses.glsl
+#endif
 //@ include lib/land.glsl
 //@ include lib/noise.glsl
 //@ include lib/repeats.glsl
 //@ include lib/rivers.glsl
 
 uniform sampler2DArray cover_albedo;
-uniform sampler2D cover_patches;
 
 // Where the climate's word is not taken.
 uniform int cover_trees = 0; //@ enum(climate, line, none) static label("Trees") description("Up to the climate's tree line, up to a given line, or none")
@@ -53,6 +55,9 @@ uniform vec3 cover_crop = vec3(0.054, 0.088, 0.027); //@ colour label("Fields, g
 uniform vec3 cover_ripe = vec3(0.245, 0.192, 0.085); //@ colour label("Fields, ripe")
 uniform vec3 cover_soil = vec3(0.150, 0.112, 0.076); //@ colour label("Soil and bare ground")
 uniform vec3 cover_town = vec3(0.165, 0.148, 0.114); //@ colour label("Towns")
+uniform vec3 cover_roof = vec3(0.135, 0.128, 0.125); //@ colour label("Roofs") description("Of a surface model; some houses have others")
+uniform vec3 cover_wall = vec3(0.275, 0.250, 0.212); //@ colour label("Walls")
+uniform vec3 cover_street = vec3(0.165, 0.162, 0.155); //@ colour label("Streets")
 uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
 uniform vec3 cover_water = vec3(0.070, 0.125, 0.175); //@ colour label("Rivers' water")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
@@ -63,7 +68,6 @@ uniform vec3 cover_white = vec3(0.75, 0.79, 0.855); //@ colour label("Snow")
 uniform vec4 cover_specular = vec4(0.02, 0.012, 0.025, 0.08); //@ range(0, 1) label("Specular")
 uniform vec4 cover_shininess = vec4(12.0, 10.0, 16.0, 24.0); //@ range(1, 1000) label("Shininess")
 
-const float cover_near_m = 24.0;  // HAS_near: wider pixels have neither crowns nor grain
 const int cover_last_level = 10;  // of the albedo textures, 1 x 1: their mean
 
 /// Shares of the ground, 0..1.
@@ -94,18 +98,6 @@ float cover_sunniness(in Surface s) {
     vec3 north = frame.polar_axis.xyz - sine * s.up;
     return -dot(s.ground_normal, north) * inversesqrt(max(dot(north, north), 1e-6)) *
            clamp(2.4 * sine, -1.0, 1.0);
-}
-
-/// Turns by 37 degrees: patterns read both ways do not line up.
-const mat2 cover_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
-
-vec4 cover_patch(in vec2 at, in vec2 dx, in vec2 dy) {
-    return textureGrad(cover_patches, at, dx, dy) - vec4(0.5, 0.5, 0.0, 0.5);
-}
-
-/// @param per_m  from metres east and north to repeats
-vec4 cover_turned_patch(in Surface s, in mat2 per_m) {
-    return cover_patch(ground_repeats(s.anchored_m, per_m), per_m * s.ground_dx_m.xy, per_m * s.ground_dy_m.xy);
 }
 
 cover_Shape cover_shape(in Surface s, in float pixel_m) {
@@ -250,102 +242,8 @@ vec3 cover_forest(in ClimateGround ground, in float growth) {
     return mix(forest, cover_leafless, 0.5 * falls * (1.0 - ground.green));
 }
 
-/// A forest from above or from afar.
-struct cover_Canopy {
-    vec2 slope;   // of the crowns, east and north
-    vec3 light;   // factor on the forest's colour: it is dark between crowns
-};
 // Of this pixel, for the hook normal.
 vec2 cover_canopy_slope = vec2(0.0);
-
-/// The crown that a point of the canopy is on.
-struct cover_Crown {
-    vec2 slope;   // of its surface
-    float height;  // above the mean of their middles, in cells; below -1 between crowns
-    float random;  // of the tree, 0..1
-};
-
-/// One tree stands in a cell: a conifer is a cone, a broadleaf tree an ellipsoid.
-/// @param cell, within  of a grid of trees
-cover_Crown cover_crown_at(in ivec2 cell, in vec2 within, in float conifers) {
-    ivec2 corner = cell + ivec2(floor(within - 0.5));
-    cover_Crown highest = cover_Crown(vec2(0.0), -2.0, 0.5);
-    for (int i = 0; i < 4; ++i) {
-        ivec2 near = corner + ivec2(i & 1, i >> 1);
-        vec3 random = vec3(noise_random(near, 0u), noise_random(near, 1u), noise_random(near, 2u));
-        float size = fract(random.z * 7.0);
-        bool cone = random.z < conifers;
-        float radius = (cone ? 0.38 : 0.46) + 0.3 * size;
-        vec2 from = (within - vec2(near - cell) - 0.16 - 0.68 * random.xy) / radius;
-        float off2 = dot(from, from);
-        float rise = cone ? 1.9 * (1.0 - sqrt(off2)) : sqrt(max(1.0 - off2, 0.0));
-        float height = off2 < 1.0 ? radius * rise + size - 0.9 : -2.0;
-        if (height > highest.height) {
-            vec2 slope = cone ? 1.9 * from * inversesqrt(max(off2, 0.04)) : from * inversesqrt(max(1.0 - off2, 0.1));
-            highest = cover_Crown(slope, height, random.z);
-        }
-    }
-    return highest;
-}
-
-/// Towards the eye over the ground, for a metre of height above it [m]. No more than for 6 degrees.
-vec2 cover_slant(in Surface s) {
-    vec3 east = east_at(s.up), to_eye = -s.position_m;
-    vec3 north = cross(s.up, east), ground = s.ground_normal / max(dot(s.ground_normal, s.up), 0.2);
-    vec2 level = vec2(dot(to_eye, east), dot(to_eye, north));
-    float rise = dot(to_eye, s.up) + dot(level, vec2(dot(ground, east), dot(ground, north)));
-    return level / max(rise, 0.1 * s.distance_m);
-}
-
-const int cover_down_steps = 4, cover_all_steps = 7;  // along a ray, until it is in a crown and to its surface
-
-/// The crown that a point of the ground is seen through: the first one that the ray to the eye leaves, from above.
-cover_Crown cover_crown_seen(in Surface s, in float size_m, in vec2 wander, in float conifers) {
-    const float top = 0.8, down = 0.4;  // in cells: crowns are from -0.9 to 0.9
-    vec2 slant_m = size_m * cover_slant(s);
-    cover_Crown crown = cover_Crown(vec2(0.0), -2.0, 0.5), found = crown;
-    float height = top, next = down;
-    for (int i = 0; i < cover_all_steps; ++i) {
-        vec2 within;
-        ivec2 cell = ground_cell(s.anchored_m + height * slant_m, cover_turn * (1.0 / size_m), within);
-        crown = cover_crown_at(cell, within + wander, conifers);
-        bool inside = crown.height >= height;
-        if (inside) found = crown;
-        if (!inside && next == down && i + 1 >= cover_down_steps) break;  // through to the ground
-        // Down until inside, then half of the step before, up or down.
-        if (inside || next < down) next *= 0.5;
-        height += inside ? next : -next;
-    }
-    return found;
-}
-
-/// Near the eye, where one stands between the trees, and from so far that they are smaller than pixels, none.
-cover_Canopy cover_canopy_at(in Surface s, in float pixel_m, in float across_m, in float conifers) {
-    const float size_m = 7.5, stand_m = 96.0;
-    cover_Canopy canopy = cover_Canopy(vec2(0.0), vec3(1.0));
-    float crowns = cover_crowns * (1.0 - smoothstep(0.0, 0.8 * size_m, across_m)) *
-                   (1.0 - smoothstep(0.3 * size_m, 2.0 * size_m, pixel_m)) * smoothstep(25.0, 90.0, s.distance_m) *
-                   smoothstep(0.03, 0.12, -dot(s.position_m, s.geometric_normal) / s.distance_m);
-    float stands = 1.0 - smoothstep(0.4 * cover_near_m, cover_near_m, across_m);
-    if (stands == 0.0) return canopy;
-    // Clumps of trees, and where they are smaller than pixels groups of clumps.
-    float larger = max(log2(across_m / 1.5), 0.0), by = fract(larger);
-    mat2 per_m = mat2(cover_turn[1], cover_turn[0]) * (exp2(by - larger) / stand_m);  // east and north change places
-    vec4 stand = mix(cover_turned_patch(s, per_m), cover_turned_patch(s, 0.5 * per_m), by);
-    canopy.light += stands * (1.4 * stand.a + 0.5 * stand.r + 0.4 * stand.g * vec3(1.0, 0.3, -0.4));
-    if (crowns == 0.0) return canopy;
-    cover_Crown crown = cover_crown_seen(s, size_m, 0.5 * stand.ar, conifers);
-    bool between = crown.height < -1.0;
-    canopy.slope = between ? vec2(0.0) : 0.5 * crowns * crowns * (crown.slope * cover_turn);
-    float depth = between ? 0.42 : mix(0.6, 1.2, smoothstep(-0.9, 0.7, crown.height));
-    vec3 tree = 1.0 + (crown.random - 0.5) * vec3(0.42, 0.3, 0.2);
-    // Clumps of leaves on a crown, of a metre, shade each other.
-    const float clump_m = 9.0;
-    vec4 clump = cover_turned_patch(s, cover_turn / clump_m);
-    float leaves = between ? 0.0 : 1.6 * clump.a + 1.2 * clump.r;
-    canopy.light *= mix(vec3(1.0), 1.25 * depth * tree * (1.0 + leaves), crowns);  // 1.25: as bright in the mean
-    return canopy;
-}
 
 cover_Shares cover_shares(in ClimateGround ground, in LandClasses land, in vec2 white, in float rain, in float growth,
                           in cover_Shape shape) {
@@ -397,6 +295,22 @@ void cover_take_map(in LandCover map, inout cover_Shares shares, inout float rai
     rain = mix(rain, watered, map.known * (1.0 - rock));
 }
 
+#if HAS_houses
+/// Of a surface model the heights say what stands where: trees nowhere else, and no rock at the foot of walls.
+void cover_take_houses(in Surface s, in Houses houses, inout cover_Shares shares, inout LandClasses land) {
+    Houses around = houses_at(s.post, 4.0 * max(s.pixel_posts, 1.0));
+    shares.rock *= 1.0 - smoothstep(0.05, 0.3, around.built + around.street + around.trees);
+    shares.forest = land.trees = land.towns = 0.0;
+    shares.snow *= 1.0 - 0.7 * houses.trees;
+}
+
+/// Clumps of leaves on crowns shade each other.
+float cover_leaves(in Surface s) {
+    vec4 clumps = cover_turned_patch(s, cover_turn / 9.0), boughs = cover_turned_patch(s, cover_turn / 37.0);
+    return max(0.9 + 2.2 * clumps.a + 1.5 * clumps.r + 1.2 * boughs.a, 0.25);
+}
+#endif
+
 /// The grain of the heaviest materials, as a factor of mean 1, and their gloss; fades by itself.
 vec4 cover_grain_of(in Surface s) {
     vec4 grain = vec4(0.0);
@@ -438,6 +352,10 @@ void cover_on_albedo(inout Surface s) {
     land.known *= cover_rain == 1 || cover_rain_factor != 1.0 ? 0.0 : 1.0 - map.known;
     cover_Shares shares = cover_shares(ground, land, white, rain, growth, shape);
     cover_take_map(map, shares, rain);
+#if HAS_houses
+    Houses houses = houses_at(s.post, s.pixel_posts);
+    cover_take_houses(s, houses, shares, land);
+#endif
     s.forest = shares.forest * (1.0 - shares.rock);
     cover_part(shares, land, shape);
 
@@ -463,7 +381,8 @@ void cover_on_albedo(inout Surface s) {
     float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
 #if HAS_near
     if (trees > 0.02) {
-        cover_Canopy canopy = cover_canopy_at(s, pixel_m, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature));
+        cover_Canopy canopy = cover_canopy_at(s, pixel_m, shape.across_m, 1.0 - smoothstep(3.0, 11.0, ground.temperature),
+                                               cover_crowns);
         cover_canopy_slope = trees * canopy.slope;
         forest *= max(canopy.light, 0.2);
     }
@@ -473,7 +392,13 @@ void cover_on_albedo(inout Surface s) {
     // On the banks plants have water when the country around is dry.
     vec3 bank = mix(mix(cover_grass, cover_broadleaf, 0.6), cover_tundra, 1.0 - smoothstep(0.5, 1.2, growth));
     albedo = mix(albedo, bank, 0.7 * max(river.y - river.x, 0.0) * (1.0 - smoothstep(0.1, 0.4, shape.steep)));
-    albedo = mix(albedo, cover_water, river.x);
+    // Near by one looks into the water, from afar at the sky in it.
+    albedo = mix(albedo, cover_water * (0.4 + 0.6 * smoothstep(2.0, 30.0, shape.across_m)), river.x);
+#if HAS_houses
+    albedo = mix(albedo, cover_street, smoothstep(0.2, 0.8, houses.street));
+    albedo = mix(albedo, forest * cover_leaves(s), smoothstep(0.15, 0.6, houses.trees));
+    albedo = houses_over(albedo, houses, shape.steep, cover_roof, cover_wall);
+#endif
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
     // Ice that the wind has swept is bluer and darker than what lies in its lee.
@@ -494,6 +419,9 @@ void cover_on_albedo(inout Surface s) {
 #if HAS_near
     if (pixel_m < min(cover_texture_m, cover_near_m)) {
         vec4 grain = cover_grain_of(s);
+#if HAS_houses
+        grain = mix(grain, vec4(1.0, 1.0, 1.0, 0.5), min(houses.built + houses.street, 1.0));
+#endif
         albedo *= grain.rgb;
         s.gloss = grain.a;
     }

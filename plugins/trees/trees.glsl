@@ -18,11 +18,14 @@ uniform float trees_clearings = 0.6; //@ range(0, 1) label("Clearings") descript
 uniform vec2 trees_slope_deg = vec2(38.0, 52.0); //@ range(0, 90) unit(deg) label("Slopes from, to") description("Slopes between which trees become rare")
 uniform vec3 trees_needles = vec3(0.030, 0.048, 0.024); //@ colour label("Needles")
 uniform vec3 trees_leaves = vec3(0.055, 0.088, 0.026); //@ colour label("Leaves")
+uniform vec3 trees_scrub = vec3(0.066, 0.075, 0.038); //@ colour label("Scrub") description("Leaves where it is warm and dry")
 uniform vec3 trees_autumn = vec3(0.125, 0.082, 0.034); //@ colour label("Leaves when they fall")
 
 const float trees_spacing_m = 10.0;   // plugin.json
 const float trees_highest_m = 28.0;  // plugin.json
 const float trees_light = 0.2;       // plugin.json: light_through
+const float trees_conifer_width = 0.34;  // over the height
+const float trees_broadleaf_width = 0.72;
 
 /// What stands at a place.
 struct trees_Stand {
@@ -30,6 +33,7 @@ struct trees_Stand {
     float conifers;    // share of them
     float height_m;    // mean
     vec3 leaves;       // reflectance of broadleaf trees
+    float width;       // of broadleaf trees over their height
 };
 
 /// Smooth noise of cells of the ground, 0..1, of mean 0.5.
@@ -73,16 +77,18 @@ trees_Stand trees_stand(in vec3 up, in float height_m, in vec3 normal, in vec2 a
     float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature)) *
                   smoothstep(1.2, 1.8, ground.dryness);
     stand.leaves = mix(trees_leaves, trees_autumn, falls * (1.0 - ground.green));
+    // Where it is warm and dry they are evergreen scrub, wider than high.
+    float scrub = smoothstep(11.0, 15.0, ground.temperature) * (1.0 - smoothstep(1.2, 1.8, ground.dryness));
+    stand.height_m *= 1.0 - 0.5 * scrub;
+    stand.leaves = mix(stand.leaves, trees_scrub, scrub);
+    stand.width = mix(trees_broadleaf_width, 1.2, scrub);
     return stand;
 }
-
-const float trees_conifer_width = 0.34;  // over the height
-const float trees_broadleaf_width = 0.72;
 
 /// Crowns of the mean tree of a kind.
 Crown trees_crown(in trees_Stand stand, in bool conifer) {
     float height_m = (conifer ? 1.0 : 0.8) * stand.height_m;
-    return Crown(height_m, height_m * (conifer ? trees_conifer_width : trees_broadleaf_width), trees_light);
+    return Crown(height_m, height_m * (conifer ? trees_conifer_width : stand.width), trees_light);
 }
 
 float trees_range_m() {
@@ -114,7 +120,7 @@ float trees_lit(in trees_Stand stand, in float per_m2, in float cosine, in float
 float trees_apart(in trees_Stand stand, in vec3 to_eye, in vec3 up) {
     vec3 to_sun = frame.sun_direction.xyz;
     float apart = length(to_sun / max(dot(to_sun, up), 0.05) - to_eye / max(dot(to_eye, up), 0.05));
-    return min(apart / mix(trees_broadleaf_width, trees_conifer_width, stand.conifers), 1.0);
+    return min(apart / mix(stand.width, trees_conifer_width, stand.conifers), 1.0);
 }
 
 /// Share of the sun's light that reaches the sunny side of crowns past others.
@@ -125,11 +131,21 @@ float trees_crown_sunlight(in trees_Stand stand, in float per_m2) {
 
 /// A map of land cover, and where it tells nothing the shares that come with the program.
 LandCover trees_map(in VertexFrame ground) {
+#if HAS_houses
+    return LandCover(0.0, 0.0, 0.0, 1.0);  // the heights have all trees
+#endif
     LandCover map = land_cover_at(ground.post, 1.0);
     LandClasses land = land_classes_at(ground.post, 1.0, ground.up);
     float growth = climate_ground(climate_place(ground.up), ground.height_m).growth + trees_line_m / 450.0;
     float known = land.known * (1.0 - map.known), trees = land.trees * smoothstep(0.55, 1.05, growth);
     return LandCover(mix(map.trees, trees, known), map.plants, map.ice, max(map.known, known));
+}
+
+/// Species differ in their green, and stand in groups. Of mean 1.
+vec3 trees_hue(in InstanceSite at) {
+    float group = trees_noise(at.ground.anchored_m, 55.0, 10u), own = fract(7.0 * at.random.y + 3.0 * at.random.w);
+    float kind = clamp(0.55 * group + 0.45 * own, 0.0, 1.0) - 0.5;
+    return (1.0 + 0.5 * (at.random.w - 0.5)) * (1.0 + kind * vec3(0.75, 0.3, -0.1));
 }
 
 void trees_place_tree(in InstanceSite at, inout Instance it) {
@@ -143,7 +159,8 @@ void trees_place_tree(in InstanceSite at, inout Instance it) {
     it.height_m = crown.height_m * (0.65 + 0.7 * at.random.z);
     it.width_m = crown.width_m * (0.65 + 0.7 * at.random.z) * (0.85 + 0.3 * at.random.w);
     it.sun = trees_crown_sunlight(stand, trees_per_m2(stand) * (1.0 - instances_shadow_share(at.ground.position_m, trees_range_m())));
-    it.colour = (conifer ? trees_needles : stand.leaves) * (0.8 + 0.4 * at.random.w);
+    it.ragged = 1.0;
+    it.colour = (conifer ? trees_needles : stand.leaves) * trees_hue(at);
 }
 
 void trees_on_material(inout Surface s) {

@@ -79,6 +79,7 @@ struct Instance {
     int kind;        // which of the meshes, from 0
     float taper;     // of its sprite and its shadow: 0 an ellipse, 1 a cone
     float sun;       // share of the sun's light that passes the instances whose shadows are not drawn, 0..1; at first 1
+    float ragged;    // how far its surface and the edge of its sprite are broken into clumps, as of leaves, 0..1
 };
 
 /// A texel of a plugin's pass.

@@ -159,5 +159,51 @@ TEST_F(LandCover, SaysWhatIsWrongWithAMap) {
     EXPECT_THAT(fault({.file = elsewhere, .classes = ""}), HasSubstr("does not cover this DEM"));
 }
 
+/// A town on a plain, of posts so far apart.
+std::string town(const std::string& name, double apart_m) {
+    return test::write_raster(test::folder() / name,
+                              {.type = "Float32",
+                               .columns = 120,
+                               .rows = 120,
+                               .geotransform = {{500000, apart_m, 0, 5600000, 0, -apart_m}},
+                               .crs = "EPSG:32632",
+                               .value = [](int column, int row, int) {
+                                   return column % 12 < 6 && row % 12 < 6 ? 110.0 : 100.0;
+                               }});
+}
+
+TEST_F(LandCover, HousesOfASurfaceModelAreGrey) {
+    scene::Scene scene = map_of("");
+    scene.dems = {town("town.tif", 2)};
+    const auto greenness = [](const image::Image8& picture) {
+        double sum = 0;
+        for (int y = 40; y < 120; ++y)
+            for (int x = 40; x < 120; ++x)
+                sum += picture.at(x, y, 1) - 0.5 * (picture.at(x, y, 0) + picture.at(x, y, 2));
+        return sum / 6400;
+    };
+    const image::Image8 meadow = picture(scene);
+    EXPECT_THAT(session_->ground_notes(), testing::Contains(HasSubstr("--surface")));
+    scene::Scene with = scene;
+    with.land_cover.surface = true;
+    session_->show(with, session_->time());
+    session_->draw();
+    const image::Image8 city = session_->picture();
+    EXPECT_THAT(session_->ground_notes(), testing::Not(testing::Contains(HasSubstr("--surface"))));
+    EXPECT_GT(greenness(meadow), greenness(city) + 5);
+    EXPECT_LT(greenness(city), 2);
+    session_->show(scene, session_->time());
+    session_->draw();
+    EXPECT_EQ(session_->picture().values, meadow.values);
+    EXPECT_EQ(picture(with).values, city.values);
+}
+
+TEST_F(LandCover, HousesAreNotInPostsFarApart) {
+    scene::Scene scene = map_of("");
+    scene.dems = {town("coarse.tif", 30)};
+    scene.land_cover.surface = true;
+    EXPECT_THAT(error_of([&] { picture(scene); }), HasSubstr("30 m apart"));
+}
+
 }  // namespace
 }  // namespace relevo::session::test_land_cover

@@ -73,6 +73,7 @@ _MEMBERS: Final = {
     "sheet": "picture.sheet",
     "station-height": "station_height",
     "stereo": "camera.stereo",
+    "surface": "surface",
     "title": "stamps.title",
     "transparent": "picture.transparent",
     "view": "camera.orbit",

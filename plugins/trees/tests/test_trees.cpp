@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/text.h"
 #include "effect/effect.h"
@@ -110,7 +111,8 @@ TEST(Trees, LevelsAreEquallyBright) {
     const double sprites_m = kHighest_m / (80 * pixel_rad);
     const std::array<double, 3> meshes = colour_from(drawn, 0.88 * sprites_m),
                                 sprites = colour_from(drawn, 1.15 * sprites_m);
-    fmt::print("[ trees ] from meshes to sprites: {:.1f} of 255\n", step(meshes, sprites));
+    fmt::print("[ trees ] from meshes to sprites: {:.1f} of 255; {::.1f} {::.1f}\n",
+               step(meshes, sprites), meshes, sprites);
     EXPECT_LT(step(meshes, sprites), 4);
 }
 
