@@ -14,7 +14,7 @@
 namespace relevo::climate {
 namespace {
 
-constexpr float kNarrowest = 0.015F;  // rivers that are drawn, in sites
+constexpr float kNarrowest = 0.004F;  // rivers that are drawn, in sites
 constexpr int kNobody = -1;
 
 /// Water that the climate leaves of the rain [mm a year]: CoverColumn::dryness() is rain over what
@@ -225,7 +225,8 @@ class Lines {
                 if (std::abs(way_m - t_m) > 0.75F * apart_m_) continue;
                 const float width_m = width_m_[static_cast<std::size_t>(from)];
                 const float away_m = glm::length(site - a - t_m * along);
-                const float outside_m = away_m - 0.5F * width_m;
+                // A site within one of several rivers has the widest, or creeks would cut it up.
+                const float outside_m = std::max(away_m, apart_m_) - 0.5F * width_m;
                 if (away_m > reach_m || !(outside_m < nearest.at(column, row))) continue;
                 nearest.at(column, row) = outside_m;
                 near.at(column, row) = {std::atan2(normal.y, normal.x), glm::dot(a - site, normal),

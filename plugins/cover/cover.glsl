@@ -27,7 +27,7 @@ uniform int cover_snow = 0; //@ enum(climate, line, none) static label("Snow") d
 uniform float cover_snow_line_m = 2500.0; //@ range(-1000, 9000) unit(m) label("Snow line") description("Height of the given snow line, on level ground")
 uniform float cover_snow_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Snow line shift") description("Added to the climate's snow line; negative in a snowy year")
 uniform bool cover_ice = true; //@ static label("Permanent ice")
-uniform float cover_rivers = 8.0; //@ range(0, 20) label("Rivers") description("Rivers where water runs by the heights and the rain: from afar at most so much wider than they are, so that they are seen; 0: none")
+uniform float cover_rivers = 5.0; //@ range(0, 20) label("Rivers") description("Rivers where water runs by the heights and the rain: from afar at most so much wider than they are, so that they are seen; 0: none")
 
 // What shape does to it.
 uniform float cover_aspect_m = 480.0; //@ range(0, 3000) unit(m) label("Aspect") description("Rise of the snow line on walls that face the noon sun, relative to level ground")
@@ -59,7 +59,7 @@ uniform vec3 cover_roof = vec3(0.135, 0.128, 0.125); //@ colour label("Roofs") d
 uniform vec3 cover_wall = vec3(0.275, 0.250, 0.212); //@ colour label("Walls")
 uniform vec3 cover_street = vec3(0.165, 0.162, 0.155); //@ colour label("Streets")
 uniform vec3 cover_rock = vec3(0.202, 0.200, 0.192); //@ colour label("Rock")
-uniform vec3 cover_water = vec3(0.070, 0.125, 0.175); //@ colour label("Rivers' water")
+uniform vec3 cover_water = vec3(0.055, 0.102, 0.145); //@ colour label("Rivers' water")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.62, 0.73, 0.82); //@ colour label("Ice")
 uniform vec3 cover_white = vec3(0.75, 0.79, 0.855); //@ colour label("Snow")

@@ -74,9 +74,9 @@ TEST(Rivers, RunAlongTheFloorOfAValleyAndGrow) {
     // 96 x 160 sites of 0.04 km2, of which nearly all drain to the last row's river: 614 km2 with
     // 3 x 300 mm of rain, of which exp(-2/3) runs off, are 9.0 m3/s.
     EXPECT_NEAR(before_m, 7 * std::sqrt(9.0), 1.5);
-    // Slopes have none.
+    // Slopes have brooks at most.
     for (int row = 20; row < Valley::kRows - 3; ++row)
-        EXPECT_EQ(rivers.at(static_cast<int>(Valley::floor(row)) - 20, row).width_m, 0) << row;
+        EXPECT_LT(rivers.at(static_cast<int>(Valley::floor(row)) - 20, row).width_m, 3) << row;
 }
 
 TEST(Rivers, LeaveHollowsOverTheirRim) {
@@ -98,7 +98,7 @@ TEST(Rivers, NeedRainAndEndInTheSeaAndInVoids) {
     const auto at = [](int row) { return static_cast<int>(std::lround(Valley::floor(row))); };
     EXPECT_GT(sea.at(at(50), 50).width_m, 0);
     for (int row = 64; row < Valley::kRows; ++row)
-        EXPECT_EQ(sea.at(at(row), row).width_m, 0) << row;
+        EXPECT_LT(sea.at(at(row), row).width_m, 3) << row;  // of brooks beside it
     Valley holed;
     for (int column = 0; column < Valley::kWidth; ++column)
         holed.heights().at(column, 100) = NAN;
@@ -153,17 +153,18 @@ TEST(Rivers, OfTyrolAreWhereTheyAre) {
     SKIP_WITHOUT_TEST_DATA(data);
     const Thinned dem(data / "dem/tyrol_aw3d30_n47e011_1s_cog.tif", 8);
     const ClimateMap climate = ClimateMap::shipped();
-    const CoverColumn column(climate.at(geo::geodetic_deg(47.3, 11.5)));
+    const CoverColumn climate_there(climate.at(geo::geodetic_deg(47.3, 11.5)));
     const glm::dvec2 apart_m(8 * kDegree_m / 3600 * std::cos(radians(47.5)), 8 * kDegree_m / 3600);
-    const Array2d<RiverSite> found = rivers(
-        {.height_m = dem.heights,
-         .apart_m = apart_m,
-         .place = [&](double c, double r) { return dem.place(c, r); },
-         .growing =
-             [&](const geo::Geodetic&, float height_m) {
-                 return Growing{.dryness = static_cast<float>(column.dryness(height_m)),
-                                .temperature_c = static_cast<float>(column.mean_c(height_m))};
-             }});
+    const Array2d<RiverSite> found =
+        rivers({.height_m = dem.heights,
+                .apart_m = apart_m,
+                .place = [&](double c, double r) { return dem.place(c, r); },
+                .growing =
+                    [&](const geo::Geodetic&, float height_m) {
+                        return Growing{
+                            .dryness = static_cast<float>(climate_there.dryness(height_m)),
+                            .temperature_c = static_cast<float>(climate_there.mean_c(height_m))};
+                    }});
     struct Known {
         const char* name;
         double lat, lon;
@@ -176,11 +177,14 @@ TEST(Rivers, OfTyrolAreWhereTheyAre) {
           Known{"Sill, Matrei", 47.1290, 11.4510, 8}, Known{"Ziller, Zell", 47.2330, 11.8810, 8},
           Known{"Isar, Lenggries", 47.6820, 11.5690, 10},
           Known{"Isar, Bad Toelz", 47.7610, 11.5560, 10}}) {
-        const glm::dvec2 at = dem.site(known.lat, known.lon);
-        const RiverSite& river =
-            found.at(static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)));
-        fmt::print("[ rivers ] {}: {:.0f} m wide, {:.0f} m away\n", known.name, river.width_m,
-                   std::abs(river.off_m));
+        // Valley floors are 2 km wide and more, and level.
+        const glm::ivec2 at(round(dem.site(known.lat, known.lon)));
+        RiverSite river;
+        for (int row = at.y - 2; row <= at.y + 2; ++row)
+            for (int column = at.x - 2; column <= at.x + 2; ++column)
+                if (const RiverSite& one = found.at(column, row); one.width_m > river.width_m)
+                    river = one;
+        fmt::print("[ rivers ] {}: {:.0f} m wide\n", known.name, river.width_m);
         EXPECT_GT(river.width_m, known.least_m) << known.name;
     }
 }
