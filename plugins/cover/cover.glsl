@@ -300,7 +300,9 @@ void cover_take_map(in LandCover map, inout cover_Shares shares, inout float rai
 void cover_take_houses(in Surface s, in Houses houses, inout cover_Shares shares, inout LandClasses land) {
     Houses around = houses_at(s.post, 4.0 * max(s.pixel_posts, 1.0));
     shares.rock *= 1.0 - smoothstep(0.05, 0.3, around.built + around.street + around.trees);
+#ifndef BEYOND_PX
     shares.forest = land.trees = land.towns = 0.0;
+#endif
     shares.snow *= 1.0 - 0.7 * houses.trees;
 }
 

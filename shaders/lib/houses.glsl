@@ -14,11 +14,15 @@ struct Houses {
 /// @param post         column and row of the DEM
 /// @param pixel_posts  posts that a pixel is wide
 Houses houses_at(in vec2 post, in float pixel_posts) {
+#ifdef BEYOND_PX
+    return Houses(0.0, 0.0, 0.0, 0.0);  // heights are the DEM's
+#else
     int most = textureQueryLevels(page_table) - 1;
     PagePlace at = page_place(post, clamp(int(log2(max(pixel_posts, 1.0)) + 0.5), 0, most));
     if (at.layer == kNoPage) return Houses(0.0, 0.0, 0.0, 0.0);
     vec4 read = textureLod(house_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer)), 0.0);
     return Houses(read.r, read.g, read.b, read.a / max(read.r, 1.0 / 255.0));
+#endif
 }
 
 /// The ground with houses on it: walls are what is steep there. Some roofs are of tiles.

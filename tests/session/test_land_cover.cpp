@@ -198,6 +198,24 @@ TEST_F(LandCover, HousesOfASurfaceModelAreGrey) {
     EXPECT_EQ(picture(with).values, city.values);
 }
 
+TEST_F(LandCover, HousesEndWithTheirDem) {
+    scene::Scene scene = map_of("");
+    scene.dems = {town("rim.tif", 2)};
+    scene.view = {};  // over the near edge, to the horizon
+    const image::Image8 meadow = picture(scene);
+    scene.land_cover.surface = true;
+    const image::Image8 city = picture(scene);
+    const auto differs = [&](int from, int to) {
+        int most = 0;
+        for (int y = from; y < to; ++y)
+            for (int x = 0; x < kSide_px; ++x)
+                most = std::max(most, std::abs(int{meadow.at(x, y, 0)} - int{city.at(x, y, 0)}));
+        return most;
+    };
+    EXPECT_GT(differs(80, 160), 20);  // the DEM
+    EXPECT_LE(differs(0, 30), 4);     // sky and country
+}
+
 TEST_F(LandCover, HousesAreNotInPostsFarApart) {
     scene::Scene scene = map_of("");
     scene.dems = {town("coarse.tif", 30)};
