@@ -3,6 +3,7 @@
 //!           instance_look: in rg four numbers of 8 bits, square root of the reflectance and the share of the sun's light,
 //!           above 0; in ba the normal
 
+//@ include lib/instances.glsl
 //@ include lib/octahedral.glsl
 //@ include lib/pixel.glsl
 
@@ -21,20 +22,6 @@ layout(location = INSTANCE_LOOK) out vec4 instance_look_out;
 const float kRagged = 0.12;  // share of the width by which sprites have clumps beyond their edge, or gaps
 const float kClump_m = 1.1;  // a clump of leaves
 
-/// Three numbers of 0..1 for a cell.
-/// source: M. Jarzynski and M. Olano, Hash functions for GPU rendering, J. Computer Graphics Techniques 9(3), 2020, pcg3d
-vec3 instance_chance(in uvec3 v) {
-    v = v * 1664525u + 1013904223u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v ^= v >> 16u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    return vec3(v >> 8u) * (1.0 / 16777216.0);
-}
-
 /// Clumps of leaves shade each other and face all ways, where they are larger than pixels.
 /// @param within  place in the crown, as shares of half its width and height
 void instance_clumped(in vec3 within, in float depth_m, inout vec3 normal, inout vec3 reflectance) {
@@ -47,14 +34,15 @@ void instance_clumped(in vec3 within, in float depth_m, inout vec3 normal, inout
     vec3 off = vec3(0.0);
     for (int i = 0; i < 8; ++i) {
         ivec3 cell = low + ivec3(i & 1, i >> 1 & 1, i >> 2);
-        vec3 chance = instance_chance(uvec3(cell));
+        vec3 chance = instances_random(cell.xy, uint(cell.z)).xyz;
         vec3 from = p - vec3(cell) - 0.5 - 0.8 * (chance.yzx - 0.5);
         float weight = exp2(-9.0 * dot(from, from));
         clump += weight * vec4(chance - 0.5, 1.0);
         off += weight * from;
     }
     clump.xyz /= clump.w + 1e-4;
-    vec3 leaves = instance_chance(uvec3(9.0 * p)) - 0.5;
+    ivec3 leaf = ivec3(9.0 * p);
+    vec3 leaves = instances_random(leaf.xy, uint(leaf.z)).xyz - 0.5;
     float leafy = smoothstep(0.01, 0.04, pixel_m / kClump_m) * (1.0 - smoothstep(0.04, 0.2, pixel_m / kClump_m));
     normal = normalize(normal + strength * (1.5 * clump.xyz + off / (clump.w + 0.1) + 0.9 * leafy * leaves));
     reflectance *= 1.0 + strength * (0.8 * clump.y + 0.25 * (min(clump.w, 0.8) - 0.5) + 0.6 * leafy * leaves.x);
@@ -101,8 +89,8 @@ void main() {
 #else
     // Leaves stand out over the edge of a mesh, with gaps between them.
     float facing = abs(dot(normal, normalize(pixel_ray_at(gl_FragCoord.xy))));
-    vec3 leaf = instance_chance(uvec3(2.5 * instance_half_width_m * instance_within + 512.0 + 64.0 * instance_clumps.xyx));
-    if (facing < 0.5 * instance_clumps.z * leaf.x) discard;
+    ivec3 leaf = ivec3(2.5 * instance_half_width_m * instance_within + 512.0 + 64.0 * instance_clumps.xyx);
+    if (facing < 0.5 * instance_clumps.z * instances_random(leaf.xy, uint(leaf.z)).x) discard;
     instance_clumped(instance_within, depth_m, normal, reflectance);
 #endif
     vec2 direction = normal_octahedral(normal);

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include "base/parallel_for.h"
+#include "base/sliding_window.h"
 #include "base/units.h"
 #include "climate/land_noise.h"
 #include "climate/smooth.h"

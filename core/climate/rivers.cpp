@@ -55,6 +55,8 @@ class Drainage {
     /// The next site downstream; kNobody: a mouth.
     int to(int index) const { return to_[static_cast<std::size_t>(index)]; }
     bool is_land(int index) const { return height_m_.data()[index] > 0; }  // not of NaN
+    /// Of the water, which is level in hollows.
+    float level_m(int index) const { return level_m_[static_cast<std::size_t>(index)]; }
 
   private:
     static constexpr float kFar_m = 1e6F;
@@ -154,7 +156,7 @@ class Lines {
           width_m_(sites.height_m.size()) {
         const std::vector<float> discharge = discharges(drainage_, sites);
         for (std::size_t i = 0; i < discharge.size(); ++i)
-            width_m_[i] = 7 * std::sqrt(discharge[i]);
+            width_m_[i] = 7 * std::sqrt(discharge[i]) * calm(static_cast<int>(i));
         for (const int index : drainage_.upwards())
             if (is_river(index)) rivers_.push_back(index);
         bend();
@@ -172,6 +174,21 @@ class Lines {
     bool is_river(int index) const {
         return width_m_[static_cast<std::size_t>(index)] > kNarrowest * apart_m_ &&
                drainage_.is_land(index);
+    }
+
+    /// How far water runs on a valley's floor, 0 to 1: torrents lie under trees and boulders.
+    float calm(int index) const {
+        constexpr int kSites = 6;  // heights in whole metres have steps
+        constexpr float kCalm = 0.01F, kSteep = 0.03F;
+        int down = index, steps = 0;
+        for (; steps < kSites; ++steps) {
+            const int next = drainage_.to(down);
+            if (next == kNobody || !drainage_.is_land(next)) break;
+            down = next;
+        }
+        const float fall_m = drainage_.level_m(index) - drainage_.level_m(down);
+        const float steep = fall_m / (apart_m_ * static_cast<float>(std::max(steps, 1)));
+        return 1 - std::clamp((steep - kCalm) / (kSteep - kCalm), 0.0F, 1.0F);
     }
 
     glm::vec2 step_m() const { return glm::vec2(sites_.apart_m); }
@@ -221,7 +238,7 @@ class Lines {
                 const glm::vec2 site = step_m() * glm::vec2(column, row);
                 const float way_m = glm::dot(site - a, along);
                 const float t_m = glm::clamp(way_m, 0.0F, long_m);
-                // A line has no end: a site beyond that of a river would go on with it.
+                // A site past the end of this stretch does not have it: its line would go on.
                 if (std::abs(way_m - t_m) > 0.75F * apart_m_) continue;
                 const float width_m = width_m_[static_cast<std::size_t>(from)];
                 const float away_m = glm::length(site - a - t_m * along);
@@ -246,6 +263,8 @@ class Lines {
 }  // namespace
 
 Array2d<RiverSite> rivers(const LandSites& sites) {
+    if (std::max(sites.apart_m.x, sites.apart_m.y) > kRiverSites_m)
+        return {sites.height_m.width(), sites.height_m.height()};
     return Lines(sites).drawn();
 }
 

@@ -15,10 +15,13 @@ struct RiverSite {
 
 /// Within so many sites of a river its line is known.
 inline constexpr double kRiverReach = 2.5;
+/// Sites farther apart do not know valleys, and have no rivers [m].
+inline constexpr double kRiverSites_m = 1000;
 
-/// Rivers where water runs by the heights: from each site to the lowest beside it, out of hollows
-/// over their rims, to the sea (0 m), a void or the raster's edge. What comes from beyond the edge
-/// is not known.
+/// Rivers, found by following water downhill: from each site the steepest way, out of hollows over
+/// their rims, to the sea (0 m), a void or the raster's edge. What comes from beyond the edge is
+/// not known. Where the water falls by 1 to 3 % rivers become narrower, and steeper ones are left
+/// out: torrents lie under trees and boulders.
 ///
 /// They carry what the climate leaves of the rain, P exp(-E / P) with E as what the warmth takes
 /// (P. Schreiber, Meteorol. Z. 21 (1904), 441), and are 7 m wide times the root of the discharge in

@@ -28,17 +28,6 @@ void filter(Array2d<float>& cells, const Value& value) {
         line(cells.data() + column, width, cells.height());
 }
 
-template <typename Better>
-Array2d<float> extreme_around(Array2d<float> cells, int reach, const Better& better) {
-    filter(cells, [&](const std::vector<float>& line, int i) {
-        const auto first = line.begin() + std::max(0, i - reach);
-        return *std::min_element(
-            first, line.begin() + std::min<std::ptrdiff_t>(std::ssize(line), i + reach + 1),
-            better);
-    });
-    return cells;
-}
-
 }  // namespace
 
 void smooth(Array2d<float>& cells, double sigma) {
@@ -59,14 +48,6 @@ void smooth(Array2d<float>& cells, double sigma) {
         }
         return total / sum;
     });
-}
-
-Array2d<float> lowest_around(const Array2d<float>& cells, int reach) {
-    return extreme_around(cells, reach, std::less{});
-}
-
-Array2d<float> highest_around(const Array2d<float>& cells, int reach) {
-    return extreme_around(cells, reach, std::greater{});
 }
 
 void fill_outwards(std::span<Array2d<float>> layers, const std::function<bool(int, int)>& has) {

@@ -53,11 +53,6 @@ std::array<float, Count> bilinear(const Array2d<std::array<float, Count>>& cells
 /// @param sigma  in cells
 void smooth(Array2d<float>& cells, double sigma);
 
-/// The lowest and the highest value of the square around each cell.
-/// @param reach  cells from its middle to its sides
-Array2d<float> lowest_around(const Array2d<float>& cells, int reach);
-Array2d<float> highest_around(const Array2d<float>& cells, int reach);
-
 /// Gives cells that have none the mean of their neighbours that have one, from these outwards.
 /// @param has  whether a cell has values
 void fill_outwards(std::span<Array2d<float>> layers, const std::function<bool(int, int)>& has);

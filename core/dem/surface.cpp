@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
+
+#include "base/sliding_window.h"
 
 namespace relevo::dem {
 namespace {
@@ -20,26 +21,6 @@ using Post = std::int32_t;
 
 constexpr std::size_t index(int i) {
     return static_cast<std::size_t>(i);
-}
-
-/// The least values of windows along a line, by its blocks (van Herk 1992).
-/// @param reach  of a window to either side
-void slide(std::vector<float>& line, int reach, std::vector<float>& before) {
-    const int count = static_cast<int>(line.size()), block = 2 * reach + 1;
-    const float none = std::numeric_limits<float>::infinity();
-    before = line;
-    std::vector<float> behind = line;
-    for (int i = 1; i < count; ++i)
-        if (i % block != 0) before[index(i)] = std::min(before[index(i)], before[index(i - 1)]);
-    for (int i = count - 2; i >= 0; --i)
-        if ((i + 1) % block != 0)
-            behind[index(i)] = std::min(behind[index(i)], behind[index(i + 1)]);
-    for (int i = 0; i < count; ++i) {
-        const int last = std::min(i + reach, count - 1);
-        float least = i >= reach ? behind[index(i - reach)] : none;
-        if (i < reach) least = before[index(std::min(last, block - 1))];
-        line[index(i)] = std::min(least, before[index(last)]);
-    }
 }
 
 class Finder {
@@ -81,56 +62,6 @@ class Finder {
     bool has(int x, int y) const { return x >= 0 && y >= 0 && x < columns_ && y < rows_; }
     int posts(double m) const { return std::max(1, static_cast<int>(std::lround(m / apart_m_))); }
 
-    /// Calls `change` with each row, then with each column.
-    void along_lines(Array2d<float>& values,
-                     const std::function<void(std::vector<float>&)>& change) const {
-        std::vector<float> line(index(columns_));
-        for (int y = 0; y < rows_; ++y) {
-            line.assign(values.row(y).begin(), values.row(y).end());
-            change(line);
-            std::ranges::copy(line, values.row(y).begin());
-        }
-        line.resize(index(rows_));
-        for (int x = 0; x < columns_; ++x) {
-            for (int y = 0; y < rows_; ++y)
-                line[index(y)] = values.at(x, y);
-            change(line);
-            for (int y = 0; y < rows_; ++y)
-                values.at(x, y) = line[index(y)];
-        }
-    }
-
-    /// Without what is narrower than a square of twice the reach: the greatest of the least.
-    Array2d<float> opened(Array2d<float> values, int reach) const {
-        std::vector<float> room;
-        for (int pass = 0; pass < 2; ++pass) {
-            along_lines(values, [&](std::vector<float>& line) { slide(line, reach, room); });
-            for (float& value : values)
-                value = -value;
-        }
-        return values;
-    }
-
-    /// Means over squares. @param around_m  half of a side
-    Array2d<float> mean_of(Array2d<float> values, double around_m) const {
-        const int reach = posts(around_m);
-        std::vector<float> from;
-        along_lines(values, [&](std::vector<float>& line) {
-            from = line;
-            const int count = static_cast<int>(line.size());
-            double sum = 0;
-            for (int i = 0; i < std::min(reach, count); ++i)
-                sum += from[index(i)];
-            for (int i = 0; i < count; ++i) {
-                if (i + reach < count) sum += from[index(i + reach)];
-                if (i > reach) sum -= from[index(i - reach - 1)];
-                const int over = std::min(i + reach, count - 1) - std::max(i - reach, 0) + 1;
-                line[index(i)] = static_cast<float>(sum / over);
-            }
-        });
-        return values;
-    }
-
     /// Marks what stands above the ground as Canopy.
     void find_high() {
         Array2d<float> level = h_;
@@ -140,7 +71,9 @@ class Finder {
         for (double reach_m : {0.0, 4.0, 8.0, 15.0, 25.0, 40.0}) {
             reach_m = std::max(reach_m, apart_m_);
             if (reach_m <= before_m) continue;
-            const Array2d<float> lower = opened(level, posts(reach_m));
+            // Without what is narrower than twice the reach.
+            const int reach = posts(reach_m);
+            const Array2d<float> lower = highest_around(lowest_around(level, reach), reach);
             const auto most = static_cast<float>(kLow_m + kSlope * (reach_m - before_m));
             for (int y = 0; y < rows_; ++y)
                 for (int x = 0; x < columns_; ++x)
@@ -234,10 +167,8 @@ class Finder {
         Array2d<float> rough(columns_, rows_, 0);
         std::vector<float> room;
         for (float& height : tops_m)
-            height = std::isnan(height) ? 1e6F : -height;
-        along_lines(tops_m, [&](std::vector<float>& line) { slide(line, posts(kTop_m), room); });
-        for (float& height : tops_m)
-            height = -height;
+            if (std::isnan(height)) height = -1e6F;
+        tops_m = highest_around(std::move(tops_m), posts(kTop_m));
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x) {
                 if (kind_.at(x, y) != Kind::Canopy) continue;
@@ -245,9 +176,9 @@ class Finder {
                 rough.at(x, y) = roughness(x, y);
                 high.at(x, y) = 1;
             }
-        rough = mean_of(std::move(rough), kRoofAround_m);
-        uneven = mean_of(std::move(uneven), kRoofAround_m);
-        high = mean_of(std::move(high), kRoofAround_m);
+        rough = mean_around(std::move(rough), posts(kRoofAround_m));
+        uneven = mean_around(std::move(uneven), posts(kRoofAround_m));
+        high = mean_around(std::move(high), posts(kRoofAround_m));
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x)
                 if (kind_.at(x, y) == Kind::Canopy && (uneven.at(x, y) < kEven_m * high.at(x, y) ||
@@ -272,7 +203,7 @@ class Finder {
 
     /// Roofs that stand alone are crowns, unless they are large, and so are small ones with a peak.
     void drop_alone() {
-        const Array2d<float> town = mean_of(those_of(Kind::Roof), kAloneAround_m);
+        const Array2d<float> town = mean_around(those_of(Kind::Roof), posts(kAloneAround_m));
         each_piece(Kind::Roof, [&](const std::vector<Post>& piece) {
             const double area_m2 = static_cast<double>(piece.size()) * apart_m_ * apart_m_;
             const float around = town.at(piece.front() % columns_, piece.front() / columns_);
@@ -341,7 +272,7 @@ class Finder {
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x)
                 built.at(x, y) = house_.at(x, y) != 0 ? 1 : 0;
-        built = mean_of(std::move(built), kTown_m);
+        built = mean_around(std::move(built), posts(kTown_m));
         for (int y = 0; y < rows_; ++y)
             for (int x = 0; x < columns_; ++x)
                 if (kind_.at(x, y) == Kind::Ground && !std::isnan(h_.at(x, y)) &&

@@ -62,7 +62,7 @@ struct LandCover {
     std::string file;     ///< a raster of classes that GDAL opens; empty: no map
     std::string classes;  ///< what they are: a name that the program knows, or a table's file
     bool climate_alone = false;  ///< without the shares that come with the program
-    bool surface = false;        ///< houses, streets and trees are told from the ground by heights
+    bool surface = false;  ///< the heights are of roofs and tree tops, which are drawn as such
 
     bool operator==(const LandCover&) const = default;
 };

@@ -13,7 +13,7 @@ vec2 river_sites_m() {
 }
 
 /// Share of a pixel that a river covers.
-/// @param away_m, wide_m  its middle from that of the pixel, and its width
+/// @param away_m  from the middle of the pixel to the middle of the river  @param wide_m  width of the river
 float river_covered(in float away_m, in float wide_m, in float pixel_m) {
     float half_m = 0.5 * wide_m, reach_m = 0.5 * pixel_m;
     return max(min(half_m, away_m + reach_m) - max(-half_m, away_m - reach_m), 0.0) / pixel_m;

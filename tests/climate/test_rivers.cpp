@@ -1,4 +1,4 @@
-// Rivers by the heights of made-up valleys, and by those of Tyrol.
+// Rivers that are found in made-up valleys, and in Tyrol.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kApart_m = 200;
 
-/// A valley from the first row down to the last one, 1 degree steep, whose floor winds along
+/// A valley from the first row down to the last one, which falls by 0.5 % and winds along
 /// floor(row) [columns].
 class Valley {
   public:
@@ -26,17 +26,18 @@ class Valley {
     explicit Valley(double lowest_m = 50) : heights_(kWidth, kRows) {
         for (int row = 0; row < kRows; ++row)
             for (int column = 0; column < kWidth; ++column)
-                heights_.at(column, row) = static_cast<float>(lowest_m + 3.5 * (kRows - 1 - row) +
-                                                              20 * std::abs(column - floor(row)));
+                heights_.at(column, row) =
+                    static_cast<float>(lowest_m + (kRows - 1 - row) +
+                                       20 * std::max(std::abs(column - floor(row)) - 1, 0.0));
     }
 
     static double floor(double row) { return 48 + 12 * std::sin(row / 25); }
 
     Array2d<float>& heights() { return heights_; }
-    Array2d<RiverSite> rivers(float dryness) const {
+    Array2d<RiverSite> rivers(float dryness, double apart_m = kApart_m) const {
         return climate::rivers(
             {.height_m = heights_,
-             .apart_m = {kApart_m, kApart_m},
+             .apart_m = {apart_m, apart_m},
              .place =
                  [](double column, double row) {
                      return geo::geodetic_deg(47 - row * kApart_m / kDegree_m,
@@ -74,9 +75,9 @@ TEST(Rivers, RunAlongTheFloorOfAValleyAndGrow) {
     // 96 x 160 sites of 0.04 km2, of which nearly all drain to the last row's river: 614 km2 with
     // 3 x 300 mm of rain, of which exp(-2/3) runs off, are 9.0 m3/s.
     EXPECT_NEAR(before_m, 7 * std::sqrt(9.0), 1.5);
-    // Slopes have brooks at most.
+    // Slopes of 10 % have none.
     for (int row = 20; row < Valley::kRows - 3; ++row)
-        EXPECT_LT(rivers.at(static_cast<int>(Valley::floor(row)) - 20, row).width_m, 3) << row;
+        EXPECT_EQ(rivers.at(static_cast<int>(Valley::floor(row)) - 20, row).width_m, 0) << row;
 }
 
 TEST(Rivers, LeaveHollowsOverTheirRim) {
@@ -90,15 +91,18 @@ TEST(Rivers, LeaveHollowsOverTheirRim) {
     EXPECT_NEAR(rivers.at(column, row).width_m, whole.at(column, row).width_m, 0.5);
 }
 
-TEST(Rivers, NeedRainAndEndInTheSeaAndInVoids) {
+TEST(Rivers, NeedRainAndNearSitesAndEndInTheSeaAndInVoids) {
     const Array2d<RiverSite> dry = Valley().rivers(0.3F);
     EXPECT_TRUE(std::ranges::all_of(dry, [](const RiverSite& s) { return s.width_m == 0; }));
+    const Array2d<RiverSite> far = Valley().rivers(3, 1001);
+    EXPECT_TRUE(std::ranges::all_of(far, [](const RiverSite& s) { return s.width_m == 0; }));
     // Below 0 from row 60 on.
-    const Array2d<RiverSite> sea = Valley(-347).rivers(3);
+    const Array2d<RiverSite> sea = Valley(-99).rivers(3);
     const auto at = [](int row) { return static_cast<int>(std::lround(Valley::floor(row))); };
     EXPECT_GT(sea.at(at(50), 50).width_m, 0);
     for (int row = 64; row < Valley::kRows; ++row)
-        EXPECT_LT(sea.at(at(row), row).width_m, 3) << row;  // of brooks beside it
+        EXPECT_LT(sea.at(at(row), row).width_m, 0.5F * sea.at(at(50), 50).width_m)
+            << row;  // brooks on the shore
     Valley holed;
     for (int column = 0; column < Valley::kWidth; ++column)
         holed.heights().at(column, 100) = NAN;
