@@ -1,20 +1,19 @@
-//! provides  the level ground that is made up around a DEM seen from the air, in the colours that effects give to ground
+//! provides  the ground that is made up around a DEM seen from the air, in the colours that effects give to ground
 //! reads     depth, of the picture
 //! writes    radiance, exposed, and 1 where it is seen; each texel is BEYOND_PX pixels wide
 
-//@ include lib/beyond.glsl
+//@ include lib/beyond_relief.glsl
 //@ include lib/exposed.glsl
 //@ include lib/footprint.glsl
 //@ include lib/ground.glsl
 //@ include lib/pixel.glsl
-//@ include lib/surround.glsl
 //@ include lib/tangent.glsl
 
 uniform sampler2D depth;
 
 layout(location = 0) out vec4 beyond_out;
 
-/// Level ground at a point, as hooks of `albedo` get it.
+/// Ground at a point, as hooks of `albedo` get it: level, since they would take rough hills for rock.
 /// @param ray  of the pixel, at view depth 1
 Surface beyond_surface(in vec3 ray, in vec3 position_m, in float distance_m) {
     Surface s;
@@ -66,7 +65,15 @@ void main() {
     float distance_m = beyond_distance_m(view);
     // Texels above the horizon are for pixels just below it.
     if (distance_m < 0.0) distance_m = beyond_horizon_m();
+    float pixel = BEYOND_PX * length(frame.pixel_ray_dx.xyz);
+    distance_m = beyond_met_m(view, distance_m, pixel * distance_m);
     Surface s = beyond_surface(ray, distance_m * view, distance_m);
+    float finest_m = pixel * distance_m * inversesqrt(max(-dot(view, s.up), 0.02));
+    float relief_m;
+    vec3 normal = beyond_normal(s.ground_m.xy, s.up, finest_m, relief_m);
+    s.height_m += 0.6 * max(relief_m, 0.0);  // snow would show how little is known of the highest hills
+    s.height_unit = height_unit_of(s.height_m);
     hook_albedo(s);
+    s.normal = normal;
     beyond_out = vec4(exposed(hook_beyond(s, view)), 1.0);  // halves do not hold the light of a night
 }

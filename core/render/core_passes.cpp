@@ -24,7 +24,7 @@ constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
 constexpr int kMaxStored = 7;
 
 /// Pixels along a side of a texel of the ground beyond the DEM.
-constexpr double kBeyond_px = 4;
+constexpr double kBeyond_px = 3;
 
 /// Updates the textures of GroundLight that the frame's programs read.
 /// @param with_walls  walls may be visible where the ground is not

@@ -8,7 +8,6 @@
 //@ include lib/air.glsl
 //@ include lib/air_pixel.glsl
 //@ include lib/air_sun.glsl
-//@ include lib/beyond.glsl
 
 uniform bool haze_air = true; //@ static label("Air") description("On: the clear atmosphere of the sky, and haze where it is denser. Off: haze alone, in the colour of the sky behind it, as in the paper")
 uniform float haze_density = 0.0; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0. Air that is clearer than the atmosphere's own is drawn as the atmosphere")
@@ -69,22 +68,12 @@ vec3 haze_lit(in Surface s, in vec3 view, in vec3 depth, in vec3 strength) {
 
 #endif
 
-/// How far away ground is for the air. At the rim of a DEM that is seen from the air as far as the country around it in the
-/// same direction: ground that lies higher or lower than that would stand out of its haze along the DEM's edge.
-float haze_distance_m(in float distance_m, in vec3 view, in float rim) {
-    if (frame.beyond == 0.0) return distance_m;
-    const float most = 1.5;  // of its own distance, for mountains before the horizon
-    float country_m = beyond_distance_m(view);
-    return mix(distance_m, country_m < 0.0 ? most * distance_m : min(country_m, most * distance_m), rim);
-}
-
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
     // What is seen from outside, as a model on a table, has no air before it.
 #if !HAS_outside
     if (haze_air) {
-        float rim = air_rim_at(s.post), distance_m = haze_distance_m(s.distance_m, view, rim);
-        AirBetween air = air_between_eye_and(view, distance_m);
-        float scale = air_scale_before(rim, distance_m);
+        AirBetween air = air_between_eye_and(view, s.distance_m);
+        float scale = air_scale_before(air_rim_at(s.post), s.distance_m);
         vec3 passed = exp(-scale * (air.depth + haze_strength));
         vec3 once = air.once * (1.0 - passed);
 #if HAS_shafts

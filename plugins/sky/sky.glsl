@@ -311,14 +311,14 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     return radiance;
 }
 
-/// Level ground beyond the DEM, with the air before it as the DEM has it.
+/// Ground beyond the DEM, with the air before it as the DEM has it.
 vec3 sky_on_beyond(in Surface s, in vec3 view) {
-    vec3 to_sun;
-    vec3 direct = sun_light_at(s.height_m, s.up, to_sun);
-    vec3 light = light_of_sky_at(s.height_m, s.up) + max(dot(to_sun, s.up), 0.0) * direct;
+    float sea = sky_earth_sea ? surround_sea_here(s.ground_m.xy, s.up) : 0.0;
+    vec3 to_sun, direct = sun_light_at(s.height_m, s.up, to_sun);
+    float facing = dot(to_sun, normalize(mix(s.normal, s.up, sea)));
+    vec3 light = light_of_sky_at(s.height_m, s.up) + max(facing, 0.0) * direct;
     // Where the floor is seen, the sea is a map, and mirrors nothing.
     bool is_map = frame.sea_floor_share > 0.1;
-    float sea = sky_earth_sea ? surround_sea_here(s.ground_m.xy, s.up) : 0.0;
     float cosine = -dot(view, s.up), mirrored = is_map ? 0.0 : sea * surround_mirrored(cosine);
     vec3 radiance = light * mix(s.diffuse, is_map ? surround_sea_albedo : surround_deep_albedo, sea);
     radiance = mix(radiance, sky_on_background_radiance(normalize(view + 2.0 * cosine * s.up), false), mirrored);

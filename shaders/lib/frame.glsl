@@ -85,8 +85,8 @@ layout(std140, binding = 0) uniform Frame {
     float normal_levels;      // of normal pages
     float sea_floor_share;    // of the DEM's posts that are below a sea and have the height of its floor, 0..1
     float sea_rim_share;      // of the posts along the DEM's edge that are sea, 0..1
-    float beyond;             // 1 where level ground is made up beyond the DEM (lib/beyond.glsl), else 0
-    float beyond_m;           // height of the level ground beyond the DEM, before exaggeration [m]
+    float beyond;             // 1 where ground is made up beyond the DEM (lib/beyond.glsl), else 0
+    float beyond_m;           // height of that ground where it is level, before exaggeration [m]
     /// Picture: its pixels, exposure and time
     vec4 viewport;            // width, height [px], and their inverses
     vec4 picture;             // the whole picture; xy: width and height [px], zw: their inverses

@@ -1,4 +1,4 @@
-// The level ground around a DEM seen from the air: where it is, and that it is drawn nowhere else.
+// The ground that is made up around a DEM seen from the air: where it is, and that it is drawn nowhere else.
 
 #include <cmath>
 
@@ -7,6 +7,8 @@
 
 #include "drawn.h"
 #include "light/fields.h"
+#include "render/height_means.h"
+#include "support/gpu_snippet.h"
 
 namespace relevo::render::test_beyond {
 namespace {
@@ -16,7 +18,12 @@ using test::TestEffect;
 
 constexpr double kLowest_m = 430;
 
-/// A ridge of 400 m on a plain.
+dem::Heightfield plain() {
+    return test::field_of(65, 65, {500000, 100, 0, 5200000, 0, -100}, "EPSG:32632",
+                          [](int, int) { return kLowest_m; });
+}
+
+/// A ridge of 400 m on a plain, from the northern rim to the southern one.
 dem::Heightfield ridge() {
     return test::field_of(65, 65, {500000, 100, 0, 5200000, 0, -100}, "EPSG:32632",
                           [](int column, int) {
@@ -52,8 +59,8 @@ double distance_m(const Drawn& drawn, const glm::dvec3& ray) {
     return down_m < 0 && inside > 0 ? -down_m - std::sqrt(inside) : -1;
 }
 
-TEST(Beyond, IsLevelGroundOfTheRimsHeightUpToTheHorizon) {
-    Drawn drawn(ridge(), {kTell}, 240, 180, 2);
+TEST(Beyond, IsLevelAroundAPlainUpToTheHorizon) {
+    Drawn drawn(plain(), {kTell}, 240, 180, 2);
     drawn.frame().in_the_air = true;
     drawn.stand(0.5, 1.4, 3000, 0, -12);
     const image::ImageF image = drawn.radiance();
@@ -91,6 +98,54 @@ TEST(Beyond, IsSeenFromTheAirAlone) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
             ASSERT_EQ(image.at(x, y, 1), 0);
+}
+
+/// Made-up heights at places east and north of the ridge's centre, in km [m].
+class Relief {
+  public:
+    Relief() {
+        FrameBlock& frame = gpu_.frame();
+        means_.update(frame);
+        frame.height_range = {kLowest_m, 1.0F / 400, 1, 0};
+        frame.ground_extent = {-3250, -3250, 1.0F / 6500, 1.0F / 6500};
+        frame.posts = {65, 65, 1.0F / 65, 1.0F / 65};
+        frame.light_axes = {0.01F, 0, 0, -0.01F};
+        frame.normal_texels_per_m = 0.01F;
+        frame.beyond = 1;
+        frame.beyond_m = kLowest_m;
+        gpu_.bind(kHeightMeansTexture, *means_.texture());
+    }
+    double at(double east_km, double north_km) {
+        return gpu_
+            .run(fmt::format("result = vec4(beyond_relief_m(vec2({:.1f}, {:.1f}), 1.0));",
+                             1000 * east_km, 1000 * north_km),
+                 1, 1)[0]
+            .x;
+    }
+    FrameBlock& frame() { return gpu_.frame(); }
+
+  private:
+    dem::Heightfield field_ = ridge();
+    HeightMeans means_{field_};
+    test::GpuSnippet gpu_{"", "lib/beyond_relief.glsl"};
+};
+
+TEST(Beyond, GoesOnFromTheRimAndEndsInLevelGround) {
+    Relief relief;
+    EXPECT_NEAR(relief.at(0, 3.2), 400, 1) << "on the rim, which the ridge crosses";
+    EXPECT_NEAR(relief.at(0.5, 3.2), 400 * std::exp(-0.5), 1);
+    EXPECT_NEAR(relief.at(-3.2, 0), 0, 1) << "where the rim is a plain";
+    EXPECT_NEAR(relief.at(0, 3.3), 390, 20) << "a post beyond it";
+    const double near_m = relief.at(0, 4), far_m = relief.at(0, 6);
+    EXPECT_GT(near_m, 100);
+    EXPECT_LT(far_m, 0.7 * near_m);
+    double highest = 0;
+    for (double north = 8; north < 12; north += 0.5)
+        highest = std::max(highest, std::abs(relief.at(1, north)));
+    EXPECT_GT(highest, 3) << "hills";
+    EXPECT_EQ(relief.at(0, 30), 0) << "four widths away";
+    relief.frame().sea_floor_share = 1;
+    EXPECT_EQ(relief.at(0, 4), 0) << "a sea has none";
 }
 
 }  // namespace

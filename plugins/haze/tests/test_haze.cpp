@@ -158,33 +158,6 @@ TEST(Haze, OfTheDefaultIsTheAtmospheresAir) {
     }
 }
 
-TEST(Haze, AtTheRimOfAnAerialViewHasTheAirOfTheCountryAround) {
-    // From 5 km above level country, down at 30 degrees: it is 10 km away, by the Earth's curve
-    // 0.08 % more.
-    test::GpuSnippet gpu("haze");
-    gpu.frame().eye_m = glm::vec4(0, 0, 0, 5000);
-    gpu.frame().eye_up = glm::vec4(0, 0, 1, 0);
-    gpu.frame().height_range.z = 1;
-    gpu.frame().beyond_m = 0;
-    const auto distance_m = [&](double own_m, const char* view, double rim) {
-        return gpu
-            .run(fmt::format("result = vec4(haze_distance_m({:f}, normalize({}), {:f}));", own_m,
-                             view, rim),
-                 1, 1)[0]
-            .x;
-    };
-    constexpr const char *kDown = "vec3(0.0, 1.7320508, -1.0)", *kUp = "vec3(0.0, 1.0, 0.1)";
-    gpu.frame().beyond = 1;
-    EXPECT_NEAR(distance_m(9000, kDown, 1), 10000, 15) << "ground above the country";
-    EXPECT_NEAR(distance_m(11000, kDown, 1), 10000, 15) << "and below it";
-    EXPECT_NEAR(distance_m(9000, kDown, 0.5), 9500, 8);
-    EXPECT_NEAR(distance_m(9000, kDown, 0), 9000, 1e-2) << "not within the DEM";
-    EXPECT_NEAR(distance_m(3000, kDown, 1), 4500, 1e-2) << "a summit is still there";
-    EXPECT_NEAR(distance_m(3000, kUp, 1), 4500, 1e-2) << "and before the sky, too";
-    gpu.frame().beyond = 0;
-    EXPECT_NEAR(distance_m(9000, kDown, 1), 9000, 1e-2) << "other views";
-}
-
 TEST(Haze, IsNoClearerThanTheAtmosphere) {
     // Of an extinction, what the atmosphere does not have comes on top.
     test::GpuSnippet gpu("haze");
