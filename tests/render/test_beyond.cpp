@@ -1,4 +1,5 @@
-// The ground that is made up around a DEM seen from the air: where it is, and that it is drawn nowhere else.
+// The ground that is made up around a DEM seen from the air: where it is, and that it is drawn
+// nowhere else.
 
 #include <cmath>
 
