@@ -89,7 +89,7 @@ void Session::Impl::choose_exposure() {
     const double share =
         snowy_share(terrain->natural().climate_map(), state.dem()->to_frame(), state.utc());
     if (share < 0.5) return;
-    scene.exposure_ev = state.inputs.exposure_ev = -std::round(10 * share) / 10;
+    scene.exposure_ev = state.inputs.exposure_ev = -std::round(14 * share) / 10;
     log::info(fmt::format("snow and ice: {:g} EV; --exposure sets another", scene.exposure_ev));
 }
 

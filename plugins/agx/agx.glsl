@@ -72,7 +72,7 @@ vec3 agx_print(in vec3 colour) {
     colour.g += 0.5 * (sqrt(more * more + bend * bend) - abs(more)) + max(-more, 0.0);
     colour *= after / max(dot(colour, luminance), 1e-6);
     // An eye takes snow and clouds in sunlight for white, but for that of a low sun.
-    float white = 0.8 * smoothstep(0.8, 0.95, least / max(most, 1e-6)) * smoothstep(0.25, 0.5, after);
+    float white = 0.8 * smoothstep(0.6, 0.9, least / max(most, 1e-6)) * smoothstep(0.25, 0.5, after);
     colour = mix(colour, after * vec3(0.965, 1.0, 1.075), white * smoothstep(agx_high_sun, 0.42, frame.eye_sun.w));
     float pale = min(colour.r, min(colour.g, colour.b)) / max(most, 1e-6);
     float blue = clamp((colour.b - max(colour.r, colour.g)) / max(0.3 * most, 1e-6), 0.0, 1.0);

@@ -270,7 +270,9 @@ cover_Shares cover_shares(in ClimateGround ground, in LandClasses land, in vec2 
 
     vec2 bare = cover_tangents(cover_bare_deg);
     float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
-    shares.ice = smoothstep(0.0, 0.7, white.x + 0.3 * ragged) * holds;
+    // Cold ground that is as bright as ice is ice, whatever the climate has.
+    float bright = smoothstep(0.7, 1.4, land.tint.g) * (1.0 - smoothstep(-8.0, -4.0, ground.temperature)) * land.known;
+    shares.ice = max(smoothstep(0.0, 0.7, white.x + 0.3 * ragged), cover_ice ? bright : 0.0) * holds;
     float edge = 4.0 * white.y * (1.0 - white.y);
     shares.snow = smoothstep(0.12, 0.88, white.y + 0.22 * edge * ragged) * holds;
     return shares;
@@ -429,7 +431,8 @@ void cover_on_albedo(inout Surface s) {
     }
 #endif
     s.diffuse = albedo;
-    s.ambient = albedo;
+    // Snow lights the sky and the slopes around it, and these the snow: by 1 / (1 - 0.8 x 0.3) where all is white.
+    s.ambient = albedo * (1.0 + 0.3 * covered);
     s.emissive = vec3(0.0);
     s.specular = vec3(dot(s.material_weight, vec2(cover_specular[s.material.x], cover_specular[s.material.y])));
     s.shininess = dot(s.material_weight, vec2(cover_shininess[s.material.x], cover_shininess[s.material.y]));
