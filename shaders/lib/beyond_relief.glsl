@@ -49,12 +49,13 @@ float beyond_relief_m(in vec2 ground_m, in float finest_m) {
 
 /// Distance to the ground in a direction [m]: from above all of it, each step goes on to the height that the last one
 /// found. Behind a hill it may find the next one, which nobody sees in the haze.
-/// @param level_m  to level ground
+/// @param level_m  to level ground; returned above the horizon
 float beyond_met_m(in vec3 direction, in float level_m, in float finest_m) {
     const int steps = 7;
     float top_m = frame.height_range.x + 1.0 / frame.height_range.y - frame.beyond_m;
     float met_m = beyond_distance_above(direction, frame.height_range.z * top_m);
     if (met_m < 0.0) met_m = 0.7 * level_m;  // the eye is lower than the DEM's summits
+    if (beyond_distance_m(direction) < 0.0) return level_m;
     for (int i = 0; i < steps; ++i) {
         float height_m = beyond_relief_m((met_m * direction + frame.eye_m.xyz).xy, finest_m);
         float next_m = beyond_distance_above(direction, frame.height_range.z * height_m);

@@ -123,6 +123,17 @@ class Relief {
                  1, 1)[0]
             .x;
     }
+    /// From 5 km above the plain's middle northwards, down at a slope [m].
+    double met_m(double slope) {
+        frame().eye_m = {0, 0, kLowest_m + 5000, kLowest_m + 5000};
+        frame().eye_up = {0, 0, 1, 0};
+        return gpu_
+            .run(fmt::format("vec3 view = normalize(vec3(0.0, 1.0, {:f}));\n"
+                             "result = vec4(beyond_met_m(view, 200000.0, 1.0));",
+                             -slope),
+                 1, 1)[0]
+            .x;
+    }
     FrameBlock& frame() { return gpu_.frame(); }
 
   private:
@@ -145,6 +156,10 @@ TEST(Beyond, GoesOnFromTheRimAndEndsInLevelGround) {
         highest = std::max(highest, std::abs(relief.at(1, north)));
     EXPECT_GT(highest, 3) << "hills";
     EXPECT_EQ(relief.at(0, 30), 0) << "four widths away";
+    EXPECT_NEAR(relief.met_m(1.4), 4600 * std::hypot(1, 1 / 1.4), 40) << "the ridge that goes on";
+    EXPECT_NEAR(relief.met_m(0.05), 5000 / 0.05 * 1.07, 3000)
+        << "level ground, by the Earth's curve";
+    EXPECT_EQ(relief.met_m(-0.01), 200000) << "above the horizon";
     relief.frame().sea_floor_share = 1;
     EXPECT_EQ(relief.at(0, 4), 0) << "a sea has none";
 }
