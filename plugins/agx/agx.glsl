@@ -62,7 +62,7 @@ vec3 agx_print(in vec3 colour) {
     float before = max(dot(colour, luminance), 1e-6), above = max(before / agx_day_middle - 1.0, 0.0);
     float left = max(1.0 - before, 0.0) / (1.0 - agx_day_middle);
     float light = 1.0 + agx_day_contrast * above * left * left / (1.0 + 0.3 * above);  // as steep as shade where they meet
-    float shade = pow(min(before / agx_day_middle, 1.0), agx_day_contrast);
+    float shade = pow(clamp(before / agx_day_middle, 0.3, 1.0), agx_day_contrast);
     colour *= light * shade;
     float after = before * light * shade;
     // Air before ground of any colour, soils and roofs in its light would turn lilac: by day nothing has so little green.
