@@ -59,7 +59,7 @@ const vec3 sea_fade_m = vec3(40.0, 130.0, 420.0);
 
 const float sea_low_m = 4000.0;  // eyes higher than this above the water see maps, lower ones see water
 const float sea_least_sine = 0.5;  // the sun shades the floor from no lower: long shadows are of no use in a map
-const float sea_shadeless = 0.45;  // share of that light that comes from everywhere
+const float sea_shadeless = 0.25;  // share of that light that comes from everywhere
 const float sea_smooth_m = 30.0;  // posts or pixels that far apart have the floor's own slopes
 const float sea_land_smooth_m = 300.0;  // posts that far apart have the land's own slopes
 

@@ -105,7 +105,8 @@ TEST(Agx, HasTheContrastOfAPrintByDay) {
         EXPECT_NEAR(grey.x, grey.z, 1e-6) << i;  // greys stay grey
         EXPECT_GT(grey.x, greys[static_cast<std::size_t>(i - 1)].x) << i;
     }
-    EXPECT_NEAR(greys[100].x, std::pow(100 / 999.0, 1.22) * std::pow(0.1726, -0.22), 1e-4);  // shade
+    EXPECT_NEAR(greys[100].x, std::pow(100 / 999.0, 1.22) * std::pow(0.1726, -0.22),
+                1e-4);  // shade
     EXPECT_NEAR(greys[20].x, 20 / 999.0 * std::pow(0.3, 0.22), 1e-4) << "deep shade is no ink";
     EXPECT_NEAR(slope(168), slope(177), 0.03);  // no edge at the middle, which is at 172
     EXPECT_GT(greys[350].x, 0.35 * 1.05);
