@@ -73,7 +73,7 @@ void main() {
     vec3 normal = beyond_normal(s.ground_m.xy, s.up, finest_m, relief_m);
     s.height_m += 0.6 * max(relief_m, 0.0);  // snow would show how little is known of the highest hills
     s.height_unit = height_unit_of(s.height_m);
+    s.geometric_normal = s.ground_normal = s.normal = normal;
     hook_albedo(s);
-    s.normal = normal;
     beyond_out = vec4(exposed(hook_beyond(s, view)), 1.0);  // halves do not hold the light of a night
 }

@@ -23,6 +23,8 @@ constexpr double kLeastAerial_deg = 16, kAerialStep_deg = 1, kHighestAerial_deg 
 constexpr double kWideDem_m = 300e3;
 /// Over wider DEMs the Earth's curvature hides what is far.
 constexpr double kWidest_m = 2000e3;
+/// From as near as a DEM that small is seen, ground that is made up in its voids would look it.
+constexpr double kNear_m = 5e3;
 /// A longer strip, by its width, fills less than a third of the picture from any side.
 constexpr double kLongest = 3;
 /// A picture that is filled by this much is not bettered by standing higher, or by another side.
@@ -163,9 +165,10 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
 }
 
 bool has_aerial_view(const GroundNet& net, const AerialGround& ground) {
-    if (ground.posts.empty() || is_cut_out(net)) return false;
+    if (ground.posts.empty()) return false;
     const GroundBox box = box_of(net);
     const auto [shorter_m, longer_m] = std::minmax(box.size_m.x, box.size_m.y);
+    if (longer_m < kNear_m && is_cut_out(net)) return false;
     const bool is_strip = !ground.land_alone && longer_m > kLongest * shorter_m;
     return shorter_m > 0 && longer_m < kWidest_m && !is_strip;
 }

@@ -25,8 +25,7 @@ AerialAspect aerial_aspect(const Orbit& orbit, const GroundNet& net, const Aeria
                            const DefaultDay& day);
 
 /// False for DEMs that are seen as a whole: those without an extent, strips, those so wide that the
-/// Earth's curvature hides their far edge, and those cut out of their rectangle inland, such as a
-/// catchment, whose walls would stand on a plain.
+/// Earth's curvature hides their far edge, and small ones cut out of their rectangle inland.
 bool has_aerial_view(const GroundNet& net, const AerialGround& ground);
 
 struct AerialFraming {

@@ -133,7 +133,8 @@ void cover_part(inout cover_Shares shares, inout LandClasses land, in cover_Shap
     float middle = 0.9 / (1.0 + shape.across_m * shape.across_m * 0.0002);
     shares.rock = cover_mosaic(shares.rock, shape.small.r + 0.6 * shape.small.a, near);
     shares.forest = cover_mosaic(shares.forest, shape.broad.r + 0.7 * shape.small.g, middle);
-    shares.snow = cover_mosaic(shares.snow, 0.8 * shape.small.g + 0.8 * shape.small.a, middle);
+    vec4 patches = mix(shape.small, shape.broad, smoothstep(10.0, 50.0, shape.across_m));  // small ones repeat
+    shares.snow = cover_mosaic(shares.snow, 0.8 * patches.g + 0.8 * patches.a, middle);
     land.fields = cover_mosaic(land.fields, shape.broad.g + 0.7 * shape.small.r, near);
     land.bare = cover_mosaic(land.bare, shape.broad.a + 0.7 * shape.small.r, near);
     land.towns = cover_mosaic(land.towns, 0.6 * shape.broad.g + 0.6 * shape.small.r + 0.8 * shape.small.a, middle);

@@ -38,8 +38,8 @@ float beyond_relief_m(in vec2 ground_m, in float finest_m) {
     float away = posts / (frame.normal_texels_per_m * width_m);
     if (away > beyond_hill_reach) return 0.0;
     // No floor of a sea.
-    float rim_m = max(height_mean_linear(post, log2(max(posts * frame.light_grid.z, 1.0))), min(frame.beyond_m, 0.0)) -
-                  frame.beyond_m;
+    float wide = frame.light_grid.z * max(posts, finest_m * frame.normal_texels_per_m);
+    float rim_m = max(height_mean_linear(post, log2(max(wide, 1.0))), min(frame.beyond_m, 0.0)) - frame.beyond_m;
     float hilly = clamp(3.0 * abs(rim_m) * frame.height_range.y, 0.3, 1.3) * smoothstep(0.0, 0.05, away) *
                   (1.0 - smoothstep(1.0, beyond_hill_reach, away));
     float hill_m = beyond_hill_height * frame.light_map.y * beyond_hill * width_m;
@@ -59,7 +59,7 @@ float beyond_met_m(in vec3 direction, in float level_m, in float finest_m) {
     for (int i = 0; i < steps; ++i) {
         float height_m = beyond_relief_m((met_m * direction + frame.eye_m.xyz).xy, finest_m);
         float next_m = beyond_distance_above(direction, frame.height_range.z * height_m);
-        if (next_m > 0.0) met_m = mix(met_m, next_m, 0.6);
+        met_m = mix(met_m, next_m > 0.0 ? next_m : level_m, 0.6);  // else below the horizon of level ground
     }
     return met_m;
 }

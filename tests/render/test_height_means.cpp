@@ -96,6 +96,30 @@ TEST(HeightMeans, VoidsHaveTheHeightOfTheGroundAround) {
     }
 }
 
+TEST(HeightMeans, VoidsMeetTheGroundAroundWithoutStepsAndAreAsRough) {
+    const auto hills_m = [](int column, int row) {
+        return 500 + 30 * std::sin(column * 0.9) * std::cos(row * 0.7) + 2.0 * column;
+    };
+    Ground ground([&](int column, int row) {
+        return column > 47 ? std::numeric_limits<double>::quiet_NaN() : hills_m(column, row);
+    });
+    const auto rises_m = [&](int first, int last) {  // along rows, mean of the absolute values
+        double sum = 0;
+        for (int column = first; column < last; ++column)
+            for (const glm::vec4& each :
+                 ground.gpu.run("vec2 post = vec2(" + std::to_string(column) +
+                                    ", y);\nresult = vec4(height_of_texel(post + vec2(1.0, 0.0)) - "
+                                    "height_of_texel(post));",
+                                1, kRows))
+                sum += std::abs(each.x);
+        return sum / (last - first) / kRows;
+    };
+    const double known_m = rises_m(30, 46), border_m = rises_m(47, 48), filled_m = rises_m(60, 80);
+    EXPECT_LT(border_m, 2 * known_m);
+    EXPECT_GT(filled_m, 0.4 * known_m);
+    EXPECT_LT(filled_m, 2 * known_m);
+}
+
 TEST(HeightMeans, GentleGroundIsExaggeratedMoreThanSteepGround) {
     const auto exaggeration = [](double rise_m) {
         Ground ground([&](int column, int) { return rise_m * column; });

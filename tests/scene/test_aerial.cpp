@@ -197,14 +197,16 @@ TEST(Aerial, VoidsAtTheEdgeLeaveEnoughPostsInThePicture) {
     EXPECT_NEAR(std::abs(std::remainder(*framing.orbit.azimuth_deg - 45, 90)), 7, 3);
 }
 
-TEST(Aerial, WhatIsCutOutInlandIsSeenAsAWholeAndAnIslandIsNot) {
-    for (const double lowest_m : {500.0, 0.0}) {
-        const auto cut_m = [&](double u, double v) {
-            return std::abs(u) + std::abs(v) < 0.5 ? lowest_m + 400 + hills_m(u, v) : std::nan("");
-        };
-        const GroundNet net = dem_net(20e3, 20e3, 0, cut_m);  // half of it is void
-        EXPECT_EQ(has_aerial_view(net, aerial_of(net)), lowest_m == 0);
-    }
+TEST(Aerial, WhatIsSmallAndCutOutInlandIsSeenAsAWholeAndAnIslandIsNot) {
+    for (const double width_m : {3e3, 20e3})
+        for (const double lowest_m : {500.0, 0.0}) {
+            const auto cut_m = [&](double u, double v) {
+                return std::abs(u) + std::abs(v) < 0.5 ? lowest_m + 400 + hills_m(u, v)
+                                                       : std::nan("");
+            };
+            const GroundNet net = dem_net(width_m, width_m, 0, cut_m);  // half of it is void
+            EXPECT_EQ(has_aerial_view(net, aerial_of(net)), lowest_m == 0 || width_m > 5e3);
+        }
     const auto corner_m = [](double u, double v) { return u + v > 0.4 ? std::nan("") : 500.0; };
     const GroundNet most = dem_net(20e3, 20e3, 0, corner_m);
     EXPECT_TRUE(has_aerial_view(most, aerial_of(most)));
