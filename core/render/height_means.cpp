@@ -76,8 +76,8 @@ void fill_voids(Array2d<float>& height_m, const Array2d<float>& coarser_m, std::
         for (int row = first; row < last; ++row)
             for (int column = 0; column < height_m.width(); ++column)
                 if (float& height = height_m.at(column, row); std::isnan(height))
-                    height = coarser(coarser_m, column, row) +
-                             rough_m * noise_at(column, row, level);
+                    height =
+                        coarser(coarser_m, column, row) + rough_m * noise_at(column, row, level);
     });
 }
 

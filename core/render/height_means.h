@@ -14,8 +14,9 @@ inline constexpr const char* kHeightMeansTexture = "height_means";
 
 /// Heights of a whole DEM on the device, as means of ever more posts: the ground, generalised.
 /// Level k has means of 2^k x 2^k texels of level 0 [m], down to a texel a side. Voids have ground
-/// made up from what is around them, as rough as the rest. Levels are side by side in level 0 of the texture and not its
-/// mipmaps, because Mesa's software renderer fetches from one level for each 2 x 2 pixels.
+/// made up from what is around them, as rough as the rest. Levels are side by side in level 0 of
+/// the texture and not its mipmaps, because Mesa's software renderer fetches from one level for
+/// each 2 x 2 pixels.
 ///
 /// Level 0 has the posts, or means of 2 x 2, 4 x 4, ... posts of DEMs with more than kMaxPosts.
 class HeightMeans {
