@@ -217,6 +217,7 @@ vec3 cover_land(in LandClasses land, in Surface s, in ClimateGround ground, in f
     float drained = smoothstep(0.03, 0.12, shape.steep) - smoothstep(0.3, 1.1, shape.steep + max(ground.dryness - 0.9, 0.0));
     float watered = ground.green * (1.0 - 0.6 * max(drained, 0.0));
     vec3 grass = mix(cover_straw, cover_grass, watered);
+    grass = mix(mix(cover_steppe, cover_steppe_green, watered), grass, smoothstep(0.4, 1.1, ground.dryness));
     grass = mix(mix(grass, cover_tundra, 0.75), grass, smoothstep(0.7, 1.7, growth));
     vec3 low = mix(mix(grass, cover_heath, 0.55 * moor), mix(cover_scrub, cover_heath, 0.8 * moor), land.shrubs);
     vec3 plot = cover_plot(s, shape);
