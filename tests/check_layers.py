@@ -9,11 +9,11 @@ import re
 import sys
 
 RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "json": 1, "shader": 1, "sky": 1, "dem": 2, "mesh": 2, "sun": 2, "climate": 2, "weather": 2, "film": 2, "light": 3, "overlay": 3, "names": 3, "effect": 3, "output": 4, "report": 4,
-        "scene": 4, "chart": 5, "figure": 5, "web": 5, "render": 6, "session": 7}
+        "scene": 4, "zones": 4, "chart": 5, "figure": 5, "web": 5, "render": 6, "session": 7}
 
 # Library headers, and the only layers of core/ that may include them. What is not listed is free.
 OWNERS = {
-    "GDAL or PROJ": (re.compile(r"(gdal|ogr_|cpl_|proj\.h|vrtdataset)"), {"geo", "dem", "output", "overlay"}),
+    "GDAL or PROJ": (re.compile(r"(gdal|ogr_|cpl_|proj\.h|vrtdataset)"), {"geo", "dem", "output", "overlay", "zones"}),
     "GeographicLib": (re.compile(r"GeographicLib/"), {"geo"}),
     "ERFA": (re.compile(r"erfa"), {"sun"}),
     "libnova": (re.compile(r"libnova/"), {"sun"}),
@@ -78,7 +78,7 @@ def check_core(root):
 
 # Files that a stranger's file may name are opened by a checked type alone (base/allowed_name.h), in one place a library.
 OPENS = re.compile(r"\b(GDALOpen(Ex|Shared)?|VSIFOpen(Ex)?L|ifstream|fopen|ImageInput::open)\b|\bInputStream \w+[({]")
-OPENING_ROOMS = {"dem", "effect", "image", "output", "overlay", "scene", "session", "weather"}
+OPENING_ROOMS = {"dem", "effect", "image", "output", "overlay", "scene", "session", "weather", "zones"}
 OPENING_FILES = {"core/dem/gdal_open.cpp", "core/image/formats_openimageio.cpp"}  # and core/base/input_file.cpp
 
 

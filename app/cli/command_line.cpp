@@ -297,6 +297,7 @@ void add_verbs(CLI::App& app) {
     add_moon(line);
     add_plugins(line);
     add_thumbnail(line);
+    add_zones(line);
     add_cache(line);
     add_doctor(line);
     check_values(app);

@@ -21,5 +21,6 @@ void add_moon(Verb app);
 void add_plugins(Verb app);
 void add_thumbnail(Verb app);
 void add_cache(Verb app);
+void add_zones(Verb app);
 
 }  // namespace relevo::cli

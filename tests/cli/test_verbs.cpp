@@ -15,6 +15,7 @@ TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
     EXPECT_EQ(all.status, 0);
     for (const std::vector<std::string>& verb :
          std::vector<std::vector<std::string>>{{"capture"},
+                                               {"zones"},
                                                {"info"},
                                                {"doctor"},
                                                {"export", "heightmap"},
