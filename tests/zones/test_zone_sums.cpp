@@ -179,6 +179,23 @@ TEST(ZoneSums, OfAnotherCrsFollowItsStraightLines) {
     EXPECT_NEAR(ground.area_valid_m2, ground.area_m2, 1e-6 * ground.area_m2);
 }
 
+TEST(ZoneSums, LinesThatAnotherCrsBendsAreFollowed) {
+    Raster coarse = slope();
+    coarse.columns = coarse.rows = 90;
+    coarse.geotransform = {{480000, 1000, 0, 5240000, 0, -1000}};
+    const std::string raster = write_raster(folder() / "bent.tif", coarse);
+    const Ring corners = box(8.9, 46.6, 9.8, 47.2);
+    Ring dense;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (int k = 0; k < 300; ++k)
+            dense.push_back(corners[i] + k / 300.0 * (corners[(i + 1) % 4] - corners[i]));
+    const auto rows = rows_of(write_zones("bent.geojson", {text_of({corners}), text_of({dense})},
+                                          "urn:ogc:def:crs:OGC:1.3:CRS84"),
+                              raster);
+    EXPECT_NEAR(rows[0].area_m2, rows[1].area_m2, 1e-6 * rows[1].area_m2);
+    EXPECT_NEAR(rows[0].mean, rows[1].mean, 1e-6 * rows[1].mean);
+}
+
 TEST(ZoneSums, NameWhatIsNoPolygonAndGoOn) {
     const std::string raster = write_raster(folder() / "named.tif", slope());
     const std::string zones = write_zones(
