@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLeastShare = 1e-11;  // less is rounding
 constexpr int kMostCells = 1 << 20;    // of a window that is read at once
-constexpr double kApart = 1e-4;        // cells, of an outline that another CRS bends
+constexpr double kApart = 1e-5;        // cells, of an outline that another CRS bends
 constexpr int kMostHalvings = 12;
 
 /// From a CRS to cells of a raster, whose outer corner is (0, 0).

@@ -38,7 +38,7 @@ struct SumOptions {
 ///
 /// Cells are squares with one value each. Each counts by the share of it that lies in the zone, by
 /// the even-odd rule and exact but for rounding; cells without a value count for nothing. Outlines
-/// are straight between corners in the CRS of their file, and followed within 0.0001 cells where
+/// are straight between corners in the CRS of their file, and followed within 0.00001 cells where
 /// the raster has another one. Areas are metres of the CRS; of rasters in degrees, and with
 /// Weights::Ellipsoid, those on the ellipsoid of WGS 84.
 ///
