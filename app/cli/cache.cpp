@@ -43,7 +43,7 @@ void print_json(const CacheFolder& folder, const std::vector<dem::CachedDem>& de
                                         {"mib", mib_of(bytes_of(dems))},
                                         {"most_mib", mib_of(folder.most_bytes())},
                                         {"dems", list}};
-    fmt::print("{}", json_text(all));
+    fmt::print("{}", json_text(with_schema("relevo-cache-1", all)));
 }
 
 void print_list(const CacheFolder& folder, const std::vector<dem::CachedDem>& dems) {

@@ -84,7 +84,8 @@ void compare(const CompareArguments& arguments) {
                                 who, a.width, a.height, a.channels, b.width, b.height, b.channels));
     const Found found = difference(a, b, unit, arguments.tolerance);
     if (arguments.json)
-        fmt::print("{}", json_text({{"same", found.over == 0},
+        fmt::print("{}", json_text({{"schema", "relevo-compare-1"},
+                                    {"same", found.over == 0},
                                     {"worst", found.worst},
                                     {"mean", found.mean},
                                     {"values", found.values},

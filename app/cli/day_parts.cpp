@@ -27,7 +27,8 @@ std::string columns_of(const DayWords& words, bool light, bool holes) {
     for (const sun::EventKind kind : words.kinds)
         text += fmt::format(",{}", sun::name_of(kind));
     text += words.last_columns;
-    if (light) text += fmt::format(",{0},{0}_h", words.light);
+    if (light)
+        text += fmt::format(",{0},{0}_h,first_{1},last_{1},minutes", words.light, words.body);
     return text + (holes ? ",not_known,not_known_h" : "");
 }
 
@@ -54,7 +55,10 @@ std::string light_columns(const DayResult& result, std::size_t day, bool holes) 
     std::vector<sun::TimeSpan> lit;
     for (const light::LitInterval& interval : light.lit)
         lit.push_back({interval.begin.utc, interval.end.utc});
-    std::string text = fmt::format(",{},{:.4f}", spans_of(lit, zone), light.lit_s / 3600);
+    const auto time = [&](sun::Instant utc) { return sun::to_iso(utc, zone); };
+    std::string text = fmt::format(",{},{:.4f},{},{},{:.2f}", spans_of(lit, zone),
+                                   light.lit_s / 3600, lit.empty() ? "" : time(lit.front().begin),
+                                   lit.empty() ? "" : time(lit.back().end), light.lit_s / 60);
     if (holes)
         text += fmt::format(",{},{:.4f}", spans_of(not_known_of(light.lit), zone),
                             light.not_known_s / 3600);

@@ -276,7 +276,7 @@ void print_graph(const std::string& device) {
 void doctor(const std::string& wanted, bool as_json) {
     const Findings found = examine(wanted);
     if (as_json)
-        fmt::print("{}", json_text(to_json(found)));
+        fmt::print("{}", json_text(with_schema("relevo-doctor-1", to_json(found))));
     else
         print(found);
     if (!found.chosen) throw Error(ErrorCode::NoDevice, found.error);

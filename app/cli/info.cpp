@@ -199,7 +199,7 @@ void add_info(Verb app) {
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
             json["water"] = json_of(water, source.grid());
-            fmt::print("{}", json_text(json));
+            fmt::print("{}", json_text(with_schema("relevo-info-1", json)));
             return;
         }
         fmt::print("{}", dem::to_text(summary));

@@ -65,7 +65,7 @@ void print_list(const effect::Registry& registry, bool json) {
             broken.push_back(
                 {{"id", effect.id}, {"folder", effect.folder.string()}, {"error", effect.error}});
         const nlohmann::ordered_json all = {{"plugins", plugins}, {"broken", broken}};
-        fmt::print("{}", json_text(all));
+        fmt::print("{}", json_text(with_schema("relevo-plugins-1", all)));
         return;
     }
     for (const effect::Effect& effect : registry.effects())
@@ -89,7 +89,7 @@ void list(const effect::Registry& registry, bool json) {
 
 void info(const effect::Effect& effect, bool json) {
     if (json) {
-        fmt::print("{}", json_text(json_of(effect)));
+        fmt::print("{}", json_text(with_schema("relevo-plugins-info-1", json_of(effect))));
         return;
     }
     const effect::Manifest& manifest = effect.manifest;

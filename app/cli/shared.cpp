@@ -278,6 +278,19 @@ Check whole_number() {
             ""};
 }
 
+std::string schema_of(const Verb& verb) {
+    std::string name = verb.command();
+    std::ranges::replace(name, ' ', '-');
+    return fmt::format("relevo-{}-1", name);
+}
+
+nlohmann::ordered_json with_schema(const std::string& schema, const nlohmann::ordered_json& json) {
+    if (json.contains("schema")) return json;
+    nlohmann::ordered_json all{{"schema", schema}};
+    all.update(json);
+    return all;
+}
+
 std::string json_text(const nlohmann::ordered_json& json) {
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -135,6 +135,13 @@ Check any_number();
 /// A whole number that an int holds; else "expected a whole number but got 1.5".
 Check whole_number();
 
+/// What the JSON of a verb calls its shape: "relevo-sun-day-1". The number rises when a key changes
+/// its meaning or goes.
+std::string schema_of(const Verb& verb);
+
+/// The same object with `schema` as its first key, unless it has one.
+nlohmann::ordered_json with_schema(const std::string& schema, const nlohmann::ordered_json& json);
+
 /// JSON as the contract has it, two blanks a level. Text that is not UTF-8, such as a file's name,
 /// has U+FFFD for what cannot be said.
 std::string json_text(const nlohmann::ordered_json& json);

@@ -38,9 +38,6 @@ void PlaceArguments::add_to(Verb verb) {
     verb.add_option("--name", name, "Name of the place, for titles");
     verb.add_option("--eye-height", eye_height_m, "Height of the eye above the ground, m")
         .check(in_range(0.0, 10000.0));
-}
-
-void PlaceArguments::add_crs_to(Verb verb) {
     verb.add_option("--at-crs", crs, "CRS of --at, which is then X,Y[,H]: EPSG:n");
 }
 
@@ -131,6 +128,7 @@ report::View TerrainArguments::view(const std::optional<double>& eye_height_m,
 
 void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_of_verb) {
     endings = endings_of_verb;
+    schema = schema_of(verb);
     verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
     verb.add_option("--scale", scale, "Pixels of a PNG per unit of the drawing (1.5)")
@@ -159,13 +157,13 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
                           {"Description", drawing.description()}});
         } else {
             file->write(form == "svg"    ? chart::to_svg(forms.drawing())
-                        : form == "json" ? json_text(forms.json())
+                        : form == "json" ? json_text(with_schema(schema, forms.json()))
                                          : forms.csv());
         }
         file->finish();
     }
     if (json)
-        fmt::print("{}", json_text(forms.json()));
+        fmt::print("{}", json_text(with_schema(schema, forms.json())));
     else if (csv)
         fmt::print("{}", forms.csv());
     else if (path.empty())

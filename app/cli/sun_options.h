@@ -21,14 +21,12 @@
 /// What the verbs under `relevo sun` and `relevo moon` share.
 namespace relevo::cli {
 
-/// --at, --name and --eye-height; --at-crs.
+/// --at, --name and --eye-height; --at-crs, for an --at in its coordinates.
 struct PlaceArguments {
     std::string at, name, crs;
     std::optional<double> eye_height_m;
 
     void add_to(Verb verb);
-    /// --at-crs, for an --at in its coordinates.
-    void add_crs_to(Verb verb);
     /// @throws Error (Usage), (BadInput) for a CRS that is not known, a place outside of it
     geo::PlaceText parse() const;
 };
@@ -92,6 +90,7 @@ struct Forms {
 struct OutputArguments : ResultArguments {
     double scale = 1.5;
     bool csv = false, json = false;
+    std::string schema;  ///< of the verb's JSON
 
     void add_to(Verb verb, const std::vector<std::string>& endings_of_verb);
     /// Opens the file that -o names, before any work is done. Null without -o.

@@ -390,7 +390,6 @@ void add_sun_plane(Verb sun_verb) {
     arguments->terrain.add_to(verb);
     verb.option("DEM").required(false);
     arguments->place.add_to(verb);
-    arguments->place.add_crs_to(verb);
     arguments->points.add_to(verb);
     add_plane_options(verb, *arguments);
     arguments->days.add_to(verb);

@@ -40,7 +40,7 @@ struct Record {
 class Writer {
   public:
     Writer(const PointsJob& job, const OutputArguments& output, OutputFile* file)
-        : job_(job), file_(file) {
+        : job_(job), schema_(output.schema), file_(file) {
         file_json_ = file && output.ending() == "json";
         file_csv_ = file && !file_json_;
         out_json_ = output.json;
@@ -48,6 +48,7 @@ class Writer {
     }
     bool csv() const { return file_csv_ || out_csv_; }
     bool json() const { return file_json_ || out_json_; }
+    const std::string& schema() const { return schema_; }
 
     void add(const Record& record) {
         // Not before the first record is there: what is wrong with an option is said instead.
@@ -74,6 +75,7 @@ class Writer {
     }
 
     const PointsJob& job_;
+    const std::string& schema_;
     OutputFile* file_;
     bool file_csv_ = false, file_json_ = false, out_csv_ = false, out_json_ = false;
     bool first_ = true;
@@ -85,7 +87,8 @@ Record record_of(const PointsJob& job, const dem::NamedPlace& point, const std::
     const std::string lat = fmt::format("{}", angle_deg(point.at.place.lat_rad));
     const std::string lon = fmt::format("{}", angle_deg(point.at.place.lon_rad));
     const std::string head = fmt::format("{},{},{}", csv_field(name), lat, lon);
-    ordered_json json{{"name", name},
+    ordered_json json{{"schema", writer.schema()},
+                      {"name", name},
                       {"lat_deg", angle_deg(point.at.place.lat_rad)},
                       {"lon_deg", angle_deg(point.at.place.lon_rad)}};
     try {

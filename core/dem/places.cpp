@@ -288,14 +288,15 @@ std::vector<NamedPlace> read_points(const std::string& path, std::string_view wh
         if (places.size() >= kMostPlaces) refuse_many(errors);
         places.push_back(place_of(errors, std::move(point)));
     };
-    if (beginning == '<')
-        read_gpx(errors, GpxKind::Waypoints,
-                 [&](int, VectorPoint&& point) { add(std::move(point)); });
-    else
+    if (beginning == '<') {
+        for (const GpxKind kind : {GpxKind::Waypoints, GpxKind::Tracks, GpxKind::Routes})
+            if (places.empty())
+                read_gpx(errors, kind, [&](int, VectorPoint&& point) { add(std::move(point)); });
+    } else
         for (VectorPoint& point : read_geojson(errors).points)
             add(std::move(point));
     if (places.empty())
-        errors.refuse(beginning == '<' ? "no waypoints (wpt); tracks and routes are for sun along"
+        errors.refuse(beginning == '<' ? "no points, expected waypoints, a track or a route"
                                        : "no points, expected features with Point geometries");
     return places;
 }

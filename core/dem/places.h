@@ -35,7 +35,8 @@ struct NamedLine {
     std::vector<NamedPlace> places;  ///< two or more; gaps of a track are bridged
 };
 
-/// Rows of a CSV, waypoints of a GPX, points of a GeoJSON, in their order.
+/// Rows of a CSV, waypoints of a GPX (where it has none the points of its tracks, else of its
+/// routes), points of a GeoJSON, in their order.
 /// @param who  what errors begin with, "--points"
 /// @param crs  of x and y in a CSV, as geo::Crs::parse() reads it; empty: none. For other files an
 ///     error

@@ -129,7 +129,7 @@ Along along(const View& view, const WalkWords& words, const dem::NamedLine& line
 
 std::string json_of(const Along& result) {
     const light::LightAlong& found = result.found;
-    ordered_json json;
+    auto json = json_of_shape<ordered_json>("sun-along");
     json["name"] = result.name;
     json["zone"] = result.zone.name();
     add_assumption(json, result.assumption);

@@ -35,7 +35,7 @@ std::array<MonthSums, 12> months_of(const light::Carpet& carpet) {
 std::string json_of(const Carpet& result) {
     const light::Carpet& carpet = result.carpet;
     const light::Doubt& doubt = result.doubt;
-    ordered_json json;
+    auto json = json_of_shape<ordered_json>("sun-carpet");
     json["place"] = place_json<ordered_json>(result.place);
     json["zone"] = carpet.zone.name();
     add_assumption(json, result.assumption);

@@ -69,7 +69,7 @@ std::optional<light::DirectLight> find_light(const View& view, const geo::PlaceT
 /// @param day_json  of one, by its number, without light
 ordered_json days_json(const DayResult& result, std::size_t days,
                        const std::function<ordered_json(std::size_t)>& day_json) {
-    ordered_json json;
+    auto json = json_of_shape<ordered_json>(fmt::format("{}-day", result.words.body));
     json["place"] = place_json<ordered_json>(result.place);
     json["zone"] = result.asked.zone.name();
     add_assumption(json, result.asked.assumption);
@@ -85,14 +85,18 @@ ordered_json days_json(const DayResult& result, std::size_t days,
         if (result.light.empty()) return day;
         const std::string key = result.words.light;
         day[key] = lit_json(result.light[i].lit);
-        day[key + "_h"] = result.light[i].lit_s / 3600;
+        const light::LightDay& light = result.light[i];
+        day[key + "_h"] = light.lit_s / 3600;
+        const bool is_lit = !light.lit.empty();
+        const auto utc = [](sun::Instant at) { return utc_json<ordered_json>(at); };
+        day[fmt::format("first_{}_utc", result.words.body)] =
+            is_lit ? utc(light.lit.front().begin.utc) : ordered_json();
+        day[fmt::format("last_{}_utc", result.words.body)] =
+            is_lit ? utc(light.lit.back().end.utc) : ordered_json();
+        day["minutes"] = light.lit_s / 60;
         if (result.has_holes()) day["not_known_h"] = result.light[i].not_known_s / 3600;
         return day;
     };
-    if (result.asked.single) {
-        json.update(with_light(0));
-        return json;
-    }
     ordered_json& all = json["days"] = ordered_json::array();
     for (std::size_t i = 0; i < days; ++i)
         all.push_back(with_light(i));
@@ -151,13 +155,21 @@ ordered_json moon_json(const MoonDays& result, std::size_t i) {
 
 }  // namespace
 
-const DayWords kSunWords{"direct_sun", "twilight_definition",
-                         kTwilights,   "date,polar",
-                         kSunKinds,    ",day_length_h,golden_hour,blue_hour"};
+const DayWords kSunWords{"direct_sun",
+                         "sun",
+                         "twilight_definition",
+                         kTwilights,
+                         "date,polar",
+                         kSunKinds,
+                         ",day_length_h,golden_hour,blue_hour"};
 
-const DayWords kMoonWords{
-    "direct_moonlight", "phase_definition", kPhases,
-    "date,all_day",     kMoonKinds,         ",moon_up_h,illuminated_fraction,phase,phase_time"};
+const DayWords kMoonWords{"direct_moonlight",
+                          "moon",
+                          "phase_definition",
+                          kPhases,
+                          "date,all_day",
+                          kMoonKinds,
+                          ",moon_up_h,illuminated_fraction,phase,phase_time"};
 
 const char* polar_of(const sun::Day& day) {
     return day.sun == sun::Crossing::AboveAllDay   ? "day"

@@ -17,6 +17,7 @@ namespace relevo::report {
 /// What days of a body are called.
 struct DayWords {
     const char* light;       ///< key of direct light: "direct_sun"
+    const char* body;        ///< whose light it is, in names of columns: "sun"
     const char* key;         ///< of the next one
     const char* definition;  ///< of figures that this body has alone
     /// Columns of a table, with those of the kinds between.

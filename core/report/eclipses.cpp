@@ -158,7 +158,7 @@ Eclipses eclipses(const View& view, const Days& asked, const geo::PlaceText& at,
 }
 
 std::string json_of(const Eclipses& result) {
-    ordered_json json;
+    auto json = json_of_shape<ordered_json>("sun-eclipses");
     json["place"] = place_json<ordered_json>(result.place);
     json["zone"] = result.asked.zone.name();
     add_assumption(json, result.asked.assumption);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/units.h"
@@ -18,6 +19,13 @@ namespace relevo::report {
 /// An angle in degrees, rounded to 0.04 milliarcseconds: 236.9, not 236.89999999999998.
 inline double angle_deg(double angle_rad) {
     return std::round(degrees(angle_rad) * 1e8) / 1e8;
+}
+
+/// A JSON object that begins with its shape: "relevo-sun-day-1". The number rises when a key goes
+/// or changes its meaning.
+template <typename Json>
+Json json_of_shape(std::string_view name) {
+    return {{"schema", "relevo-" + std::string(name) + "-1"}};
 }
 
 /// "46.55,8.56" as --at takes it, whole.

@@ -49,7 +49,8 @@ BodyPosition position(sun::Body body, const sun::Refraction& air, const geo::Geo
 std::string json_of(const BodyPosition& result) {
     const sun::SkyPosition& sky = result.sky;
     const Number distance = result.distance();
-    ordered_json json = {{"utc", sun::to_iso(result.when.utc, 3)},
+    ordered_json json = {{"schema", fmt::format("relevo-{}-position-1", sun::name_of(result.body))},
+                         {"utc", sun::to_iso(result.when.utc, 3)},
                          {"azimuth_deg", degrees(sky.azimuth_rad)},
                          {"elevation_deg", degrees(sky.elevation_rad)},
                          {"apparent_elevation_deg", result.apparent_deg},

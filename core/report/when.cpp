@@ -54,7 +54,7 @@ std::string json_of(const When& result) {
     const light::TerrainHorizon& horizon = *result.horizon;
     const light::Alignments& found = result.found;
     const sun::Zone& zone = result.asked.zone;
-    ordered_json json;
+    auto json = json_of_shape<ordered_json>(fmt::format("{}-when", sun::name_of(result.body)));
     json["place"] = place_json<ordered_json>(horizon.place());
     json["eye_m"] = horizon.eye_m();
     json["target"] = place_json<ordered_json>(found.target);

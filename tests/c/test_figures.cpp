@@ -244,7 +244,7 @@ TEST_F(Figures, EventsAreThoseOfTheProgram) {
     const Result run = relevo({"sun", "day", "--at", "46.95,7.44,0", "--date", "2026-06-21", "--tz",
                                "Europe/Zurich", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
-    const auto json = nlohmann::json::parse(run.out)["events"];
+    const auto json = nlohmann::json::parse(run.out)["days"][0]["events"];
     ASSERT_EQ(count, json.size());
     for (std::size_t i = 0; i < count; ++i) {
         EXPECT_EQ(events[i].kind, json[i]["kind"]);

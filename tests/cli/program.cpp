@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -95,6 +96,14 @@ void expect_failure(const std::vector<std::string>& arguments, int status,
     EXPECT_EQ(result.status, status) << result.err;
     EXPECT_EQ(result.err, "relevo: error: " + message + "\n");
     EXPECT_EQ(result.out, "");
+}
+
+nlohmann::json of_one_day(const nlohmann::json& answer) {
+    if (!answer.contains("days") || answer["days"].size() != 1) return answer;
+    nlohmann::json all = answer;
+    all.erase("days");
+    all.update(answer["days"][0]);
+    return all;
 }
 
 std::string bundled_dem() {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace relevo::test {
 
 /// What the program did.
@@ -35,6 +37,10 @@ Measured measured(std::vector<std::string> arguments);
 /// else.
 void expect_failure(const std::vector<std::string>& arguments, int status,
                     const std::string& message);
+
+/// An answer about one day: the keys of the only one of its `days` beside those of all days. Others
+/// stay.
+nlohmann::json of_one_day(const nlohmann::json& answer);
 
 /// The DEM that comes along.
 std::string bundled_dem();

@@ -23,7 +23,7 @@ json json_of(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
     const Result run = relevo(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
-    return json::parse(run.out);
+    return of_one_day(json::parse(run.out));
 }
 
 std::string dem() {
@@ -90,7 +90,8 @@ TEST(MoonDayVerb, StandsMoonlightBesideTheFlatHorizon) {
               "direct light: any part of the moon's disc over");
     const Result csv = relevo({"moon", "day", dem(), "--at", kValley, "--from", "2026-03-25",
                                "--to", "2026-03-27", "--csv"});
-    EXPECT_NE(csv.out.find("phase_time,direct_moonlight,direct_moonlight_h\n2026-03-25,"),
+    EXPECT_NE(csv.out.find("phase_time,direct_moonlight,direct_moonlight_h,first_moon,last_moon,"
+                           "minutes\n2026-03-25,"),
               std::string::npos)
         << csv.out;
     EXPECT_NE(csv.err.find("could hide the moon"), std::string::npos) << csv.err;

@@ -173,7 +173,7 @@ TEST(SunAlongVerb, ATrackHasTimesOfItsOwn) {
 TEST(SunAlongVerb, StartsAtAnEventOfItsFirstPoint) {
     const json day = json::parse(relevo({"sun", "day", bundled_dem(), "--at", "36.30,-84.24",
                                          "--date", "2026-02-10", "--json"})
-                                     .out);
+                                     .out)["days"][0];
     const json rise = json_of(walk_csv(), {"--start", "2026-02-10 sunrise", "--speed", "20"});
     EXPECT_EQ(rise["stretches"][0]["from"]["utc"], day["sunrise_utc"]);
     const json light = json_of(walk_csv(), {"--start", "2026-02-10 first-light", "--speed", "20"});

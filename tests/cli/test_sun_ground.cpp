@@ -70,7 +70,7 @@ std::vector<std::string> with(std::vector<std::string> arguments,
 json json_of(const std::vector<std::string>& arguments) {
     const Result run = relevo(with(arguments, {"--json"}));
     EXPECT_EQ(run.status, 0) << run.err;
-    return json::parse(run.out);
+    return of_one_day(json::parse(run.out));
 }
 
 /// How often a text comes.
@@ -111,7 +111,10 @@ TEST(Holes, LightThroughThemIsSaidNotToBeKnown) {
     EXPECT_NEAR(object["hole_sectors"][0]["from_azimuth_deg"].get<double>(), 268, 0.5);
     EXPECT_GT(object["not_known_h"], 0.1);
     const std::string csv = relevo(with(day, {"--csv"})).out;
-    EXPECT_EQ(count(csv, ",direct_sun,direct_sun_h,not_known,not_known_h\n"), 1) << csv;
+    EXPECT_EQ(
+        count(csv, ",direct_sun,direct_sun_h,first_sun,last_sun,minutes,not_known,not_known_h\n"),
+        1)
+        << csv;
     EXPECT_EQ(count(csv, "# not known: direct sun through voids of the DEM"), 1) << csv;
     const std::string days =
         relevo(verb("day", holed(),

@@ -132,7 +132,7 @@ TEST(SunPlane, LitHoursAreThoseOfSunDay) {
         day.insert(day.end(), place.begin(), place.end());
         plane.insert(plane.end(), place.begin(), place.end());
         EXPECT_NEAR(json::parse(relevo(plane).out)["rows"][0]["lit_h"].get<double>(),
-                    json::parse(relevo(day).out)["direct_sun_h"].get<double>(), 1e-3);
+                    json::parse(relevo(day).out)["days"][0]["direct_sun_h"].get<double>(), 1e-3);
     }
 }
 

@@ -68,7 +68,7 @@ TEST(SunPoints, EachHasTheFiguresThatTheVerbGivesForItAlone) {
                 EXPECT_EQ(record, json::parse(alone.out)) << kPlaces[i];
             } else {
                 EXPECT_EQ(alone.err, "relevo: error: " + record["error"].get<std::string>() + "\n");
-                EXPECT_EQ(record.size(), 1U);
+                EXPECT_EQ(record.size(), 2U);  // and schema
             }
         }
         EXPECT_EQ(records[1].contains("error"), terrain);
@@ -157,12 +157,16 @@ TEST(SunPoints, GpxAndGeoJsonAreTakenToo) {
                                         "--date", "2026-02-10", "--json", "--points"};
     const json alone = json::parse(relevo({"sun", "day", bundled_dem(), "--at", "36.3,-84.24",
                                            "--date", "2026-02-10", "--json"})
-                                       .out);
-    for (const std::string& path : {gpx, geojson}) {
+                                       .out)["days"];
+    const std::string track =
+        file("track.gpx",
+             "<gpx version=\"1.1\" creator=\"t\"><trk><trkseg><trkpt lat=\"36.3\" lon=\"-84.24\">"
+             "<name>Hut</name></trkpt></trkseg></trk></gpx>");
+    for (const std::string& path : {gpx, track, geojson}) {
         const json records = json::parse(relevo(with(verb, {path})).out);
         ASSERT_EQ(records.size(), 1U);
         EXPECT_EQ(records[0]["name"], "Hut");
-        EXPECT_EQ(records[0]["direct_sun"], alone["direct_sun"]) << path;
+        EXPECT_EQ(records[0]["days"], alone) << path;
     }
 }
 

@@ -1,11 +1,15 @@
 #include <filesystem>
 #include <limits>
 
+#include <fmt/format.h>
+#include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "base/units.h"
 #include "cli/program.h"
 #include "dem/fixture.h"
+#include "geo/crs.h"
 #include "image/image.h"
 #include "support/support.h"
 
@@ -29,7 +33,7 @@ json json_of(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
     const Result run = relevo(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
-    return json::parse(run.out);
+    return of_one_day(json::parse(run.out));
 }
 
 /// Seconds of the day of a time in JSON.
@@ -305,6 +309,60 @@ TEST(SunWhenVerb, FindsTheSunOverASummit) {
         return a;
     }());
     EXPECT_EQ(split(csv.out, '\n').size(), found["passages"].size() + 4);
+}
+
+TEST(SunVerbs, SayTheShapeOfTheirJson) {
+    const std::vector<std::string> at{"--at", kValley};
+    struct Case {
+        std::vector<std::string> verb;
+        std::string schema;
+    };
+    for (const Case& c :
+         {Case{{"sun", "position", "--time", "2026-06-21T12:00Z"}, "relevo-sun-position-1"},
+          Case{{"moon", "position", "--time", "2026-06-21T12:00Z"}, "relevo-moon-position-1"},
+          Case{{"sun", "day", bundled_dem(), "--date", "2026-06-21"}, "relevo-sun-day-1"},
+          Case{{"moon", "day", "--date", "2026-06-21"}, "relevo-moon-day-1"},
+          Case{{"sun", "eclipses", "--year", "2026"}, "relevo-sun-eclipses-1"},
+          Case{{"sun", "horizon", bundled_dem()}, "relevo-sun-horizon-1"},
+          Case{{"sun", "plane", "--year", "2026", "--by", "year"}, "relevo-sun-plane-1"},
+          Case{{"sun", "carpet", bundled_dem(), "--year", "2026", "--step", "1h"},
+               "relevo-sun-carpet-1"}}) {
+        std::vector<std::string> arguments = c.verb;
+        arguments.insert(arguments.end(), at.begin(), at.end());
+        arguments.insert(arguments.end(), {"--json", "-q"});
+        const Result run = relevo(arguments);
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_TRUE(run.out.starts_with("{\n  \"schema\": \"" + c.schema + "\"")) << run.out;
+    }
+}
+
+TEST(SunDayVerb, OfOneDayIsAListOfOneWithFirstAndLastSun) {
+    const std::vector<std::string> arguments{"sun",    "day",    bundled_dem(), "--at",
+                                             kValley,  "--date", "2026-12-21",  "--tz",
+                                             kNewYork, "-q"};
+    const auto with = [&](const std::string& more) {
+        std::vector<std::string> all = arguments;
+        all.push_back(more);
+        return relevo(all).out;
+    };
+    const json days = json::parse(with("--json"))["days"];
+    ASSERT_EQ(days.size(), 1U);
+    EXPECT_EQ(days[0]["date"], "2026-12-21");
+    EXPECT_EQ(days[0]["first_sun_utc"], days[0]["direct_sun"].front()["first_utc"]);
+    EXPECT_EQ(days[0]["last_sun_utc"], days[0]["direct_sun"].back()["last_utc"]);
+    EXPECT_NEAR(days[0]["minutes"].get<double>(), 60 * days[0]["direct_sun_h"].get<double>(), 1e-9);
+    const std::string csv = with("--csv");
+    EXPECT_NE(csv.find(",direct_sun,direct_sun_h,first_sun,last_sun,minutes\n"), csv.npos) << csv;
+    // The same place in UTM zone 16.
+    std::vector<std::string> utm = arguments;
+    const auto comma = kValley.find(',');
+    const geo::Geodetic place{radians(std::stod(kValley.substr(0, comma))),
+                              radians(std::stod(kValley.substr(comma + 1))), 0};
+    const glm::dvec2 at = geo::Crs::parse("EPSG:32616", "test").from_geodetic(place);
+    utm[4] = fmt::format("{:.4f},{:.4f}", at.x, at.y);
+    utm.insert(utm.end(), {"--at-crs", "EPSG:32616", "--json"});
+    EXPECT_NEAR(json::parse(relevo(utm).out)["days"][0]["minutes"].get<double>(),
+                days[0]["minutes"].get<double>(), 1e-3);
 }
 
 TEST(EventTimes, AreTakenWhereATimeIs) {

@@ -81,7 +81,7 @@ json answer(std::vector<std::string> arguments, std::string* said = nullptr) {
     const Result run = relevo(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
     if (said) *said = run.err;
-    return run.status == 0 ? json::parse(run.out) : json();
+    return run.status == 0 ? of_one_day(json::parse(run.out)) : json();
 }
 
 const std::vector<std::string> kDay{"--at", "46.9515,8.9995", "--date", "2026-03-05"};

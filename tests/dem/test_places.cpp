@@ -155,7 +155,7 @@ TEST(Places, WhatCannotBeUsedIsNamedByItsLine) {
              {"g.gpx", "<gpx version=\"1.1\" creator=\"t\"><wpt lat=\"nan\" lon=\"3\"/></gpx>",
               "line 1: lat=\"nan\", expected degrees such as 46.91 or -33.9"},
              {"h.gpx", "<gpx version=\"1.1\" creator=\"t\"></gpx>",
-              "no waypoints (wpt); tracks and routes are for sun along"},
+              "no points, expected waypoints, a track or a route"},
              {"i.json", "{\"type\":\"Point\",\"coordinates\":[1,1e99]}",
               "line 1: latitude 1e+99, longitude 1: no place on Earth, expected -90 to 90 and -180 "
               "to 360 degrees"},

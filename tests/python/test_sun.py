@@ -103,7 +103,7 @@ def test_events(program):
     events = relevo.sun.events(*PLACE, datetime.date(2026, 6, 21), "Europe/Zurich")
     expected = json.loads(
         program("sun", "day", "--at", "46.95,7.44,0", "--date", "2026-06-21", "--tz", "Europe/Zurich", "--json")
-    )["events"]
+    )["days"][0]["events"]
     assert [event.kind for event in events] == [event["kind"] for event in expected]
     for event, other in zip(events, expected):
         assert event.azimuth == pytest.approx(other["azimuth_deg"], abs=1e-6)

@@ -38,7 +38,7 @@ def test_figures_are_those_of_the_program(site, path, program, tmp_path):
         made = dem.sun.tiles("sky_view", tmp_path / "tiles", tiles=64)
         alone = relevo.open(site).sun.day(**AT, date="2026-12-21")
     said = program("sun", "day", site, "--surroundings", path, "--at", "36.245,-84.245", "--date", "2026-12-21", "--json")
-    assert day["days"][0]["direct_sun_h"] == json.loads(said)["direct_sun_h"] != alone["days"][0]["direct_sun_h"]
+    assert day["days"][0]["direct_sun_h"] == json.loads(said)["days"][0]["direct_sun_h"] != alone["days"][0]["direct_sun_h"]
     program("sun", "hours", site, "--surroundings", path, "--date", "2026-12-21", "--tz", "UTC", "-o", str(tmp_path / "h.tif"))
     with rasterio.open(tmp_path / "h.tif") as file:
         numpy.testing.assert_array_equal(file.read(1), hours.values)

@@ -115,7 +115,7 @@ TEST(SunOverlay, APointsHoursAreThoseOfItsDay) {
         "sun day {} --at {:.9f},{:.9f} --date 2026-12-24 --tz America/New_York --json > {}",
         bundled_path(), place.lat_rad * 180 / M_PI, place.lon_rad * 180 / M_PI,
         csv.string() + " #"));
-    const auto day = nlohmann::json::parse(read_text(csv, "test"));
+    const auto day = nlohmann::json::parse(read_text(csv, "test"))["days"][0];
     // A ray of its own against a sweep: 2 minutes.
     EXPECT_NEAR(shown->value_at(place), day["direct_sun_h"].get<double>(), 2 / 60.0);
 }
