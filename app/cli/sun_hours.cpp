@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
 #include "figure/hours.h"
@@ -26,8 +27,23 @@ struct HoursArguments {
     DaysArguments days;
     RefractionArguments refraction;
     std::optional<std::string> step;
+    std::string tilt = "ground", azimuth;
     figure::Hours figure;
 };
+
+/// The position that all posts have; none: that of the ground.
+std::optional<light::Plane> plane_of(const HoursArguments& arguments) {
+    if (arguments.tilt == "ground") {
+        if (!arguments.azimuth.empty())
+            bad_usage("--azimuth: a tilt of ground has the azimuth of the DEM");
+        return std::nullopt;
+    }
+    const double tilt_deg = *parse_number(arguments.tilt);
+    if (arguments.azimuth.empty() && tilt_deg > 0)
+        bad_usage("--azimuth: missing; where the plane faces: 0 north, 90 east, 180 south");
+    return light::Plane{radians(tilt_deg),
+                        arguments.azimuth.empty() ? 0 : radians(*parse_number(arguments.azimuth))};
+}
 
 sun::TimeSpan time_of(const report::Days& days) {
     return {days.zone.day(days.first).begin, days.zone.day(days.last).end};
@@ -53,9 +69,10 @@ void check(const HoursArguments& arguments) {
         if (is_band(path) && !std::filesystem::exists(path))
             bad_usage(fmt::format("--bands: {}: {}", path, kCommas));
     if (arguments.step) step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
+    plane_of(arguments);
     const std::string repeated = arguments.figure.repeated_word();
     if (!repeated.empty()) bad_usage(fmt::format("--bands: {} is named twice", repeated));
-    for (const char* option : {"--linke", "--albedo"})
+    for (const char* option : {"--linke", "--albedo", "--tilt", "--azimuth"})
         if (arguments.raster.has(option) && !arguments.figure.has_irradiation())
             bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected", option));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
@@ -113,6 +130,7 @@ void run_hours(HoursArguments& arguments) {
     figure.time = time_of(days);
     figure.zone = days.zone;
     figure.refraction = arguments.refraction.name();
+    figure.irradiation.plane = plane_of(arguments);
     if (arguments.step)
         figure.step_s = step_s_of(*arguments.step, figure::kStep_s.min, figure::kStep_s.max);
     Summary sum;
@@ -147,6 +165,13 @@ void add_sun_hours(Verb sun_verb) {
         .check({check_band, ""});
     add_number(verb, figure::kLinke, arguments->figure.irradiation.linke);
     add_number(verb, figure::kAlbedo, arguments->figure.irradiation.albedo);
+    verb.add_option("--tilt", arguments->tilt,
+                    "Irradiation of a plane at each post, degrees: 0 level, 90 a wall; or ground, "
+                    "as the DEM is inclined there (ground)")
+        .check({fault_of_tilt, ""});
+    verb.add_option("--azimuth", arguments->azimuth,
+                    "Where that plane faces, degrees clockwise from true north")
+        .check({fault_of_azimuth, ""});
     verb.callback([arguments] { run_hours(*arguments); });
 }
 

@@ -31,7 +31,26 @@ Check year_number() {
             ""};
 }
 
+/// What is wrong with a number; empty: nothing. @param more  said in addition
+std::string fault_in(const figure::Range& range, const std::string& text, const char* more) {
+    const auto number = parse_number(text);
+    if (number && *number >= range.min && *number <= range.max) return {};
+    return fmt::format("expected {} to {}{}", range.min, range.max,
+                       fmt::format(fmt::runtime(more), text));
+}
+
 }  // namespace
+
+std::string fault_of_tilt(const std::string& text) {
+    if (text == "ground") return {};
+    return fault_in(figure::kTilt_deg, text, " degrees, or ground, but got {}");
+}
+
+std::string fault_of_azimuth(const std::string& text) {
+    return fault_in(figure::kAzimuth_deg, text,
+                    " degrees, clockwise from true north, but got {}; PVGIS counts from south: add "
+                    "180");
+}
 
 void PlaceArguments::add_to(Verb verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]").required();

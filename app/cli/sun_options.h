@@ -41,6 +41,10 @@ struct DaysArguments : report::DaysText {
     report::Days parse(const geo::Geodetic& place, bool tell = true) const;
 };
 
+/// What is wrong with --tilt (a number or `ground`) and with --azimuth of a plane; empty: nothing.
+std::string fault_of_tilt(const std::string& text);
+std::string fault_of_azimuth(const std::string& text);
+
 /// Reads --step of time, "3min" or minutes alone.
 /// @throws Error (Usage) where it is none, or not within the bounds
 double step_s_of(const std::string& step, double least_s, double most_s);

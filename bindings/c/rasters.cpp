@@ -14,6 +14,7 @@
 #include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/units.h"
 #include "dem.h"
 #include "dem/clip.h"
 #include "dem/files_of.h"
@@ -289,18 +290,31 @@ void take_bands(json::ObjectReader& reader, figure::Hours& figure) {
     if (!repeated.empty()) refuse(repeated + " is named twice");
 }
 
+/// Tilt and azimuth of a plane; none: the ground's.
+std::optional<light::Plane> plane_of(json::ObjectReader& reader) {
+    const bool tilted = reader.has("tilt"), faces = reader.has("azimuth");
+    const light::Plane plane{radians(number(reader, figure::kTilt_deg)),
+                             radians(number(reader, figure::kAzimuth_deg))};
+    if (faces && !tilted) reader.fail(reader.line_of("azimuth"), "azimuth", "needs tilt");
+    if (!faces && plane.tilt_rad > 0)
+        reader.fail(reader.line_of("tilt"), "tilt", "needs azimuth, where the plane faces");
+    if (!tilted) return std::nullopt;
+    return plane;
+}
+
 void sun_hours(FigureCall& call, json::ObjectReader& reader) {
     figure::Hours figure;
     const Days days = days_of(reader);
     const std::string zone = reader.string("zone", "");
     take_bands(reader, figure);
     figure.step_s = number(reader, figure::kStep_s);
-    for (const char* key : {"linke", "albedo"})
+    for (const char* key : {"linke", "albedo", "tilt", "azimuth"})
         if (reader.has(key) && !figure.has_irradiation())
             reader.fail(reader.line_of(key), key,
                         "needs one of the bands global, beam, diffuse, reflected");
     figure.irradiation.linke = number(reader, figure::kLinke);
     figure.irradiation.albedo = number(reader, figure::kAlbedo);
+    figure.irradiation.plane = plane_of(reader);
     call.take_common(reader, figure);
     figure.refraction = refraction_of(reader);
     reader.finish();

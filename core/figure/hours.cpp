@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/units.h"
 #include "figure/sun_over_middle.h"
 #include "light/raster/horizons.h"
 
@@ -59,10 +60,14 @@ Array2d<float> values_of(const Band& band, light::SunHours& hours) {
 
 /// A sentence for the file's metadata.
 std::string definition_of(const light::SunHoursOptions::Irradiation& irradiation) {
+    const std::optional<light::Plane>& plane = irradiation.plane;
     return fmt::format(
-        "irradiation of the ground as it is inclined, clear sky of the European Solar Radiation "
+        "irradiation of {}, clear sky of the European Solar Radiation "
         "Atlas (Rigollier et al. 2000), Linke turbidity {:.4g}: beam with the terrain's shade, "
         "diffuse alike from all of the open sky, reflected by ground of albedo {:.4g}",
+        plane ? fmt::format("a plane of tilt {:.6g} that faces {:.6g} degrees at each post",
+                            degrees(plane->tilt_rad), degrees(plane->azimuth_rad))
+              : "the ground as it is inclined",
         irradiation.linke, irradiation.albedo);
 }
 

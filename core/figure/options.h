@@ -26,8 +26,8 @@ inline constexpr Option kLinke{
     {3, 1, 10}, "linke", "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)"};
 inline constexpr Option kAlbedo{
     {0.2, 0, 1}, "albedo", "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)"};
-inline constexpr Range kTilt_deg{0, 0, 90};
-inline constexpr Range kAzimuth_deg{0, 0, 360};  ///< without a default for a tilt above 0
+inline constexpr Option kTilt_deg{{0, 0, 90}, "tilt", ""};
+inline constexpr Option kAzimuth_deg{{0, 0, 360}, "azimuth", ""};  ///< needed for a tilt above 0
 inline constexpr Option kSkyDirections{
     {36, 4, 3600}, "directions", "Number of azimuths around each post (36)"};
 /// Without it: all posts, and no means.

@@ -241,7 +241,9 @@ RELEVO_API relevo_result relevo_shadow(relevo_dem* dem, const char* options, flo
 /* Hours of direct sun, and what belongs to them.
  * @param options  "date", or "from" and "to" (both included), or "year"; "zone"; "step" [s] (180);
  *     "bands" (["hours"]): hours, first, last [min from the beginning], spells; global, beam,
- *     diffuse, reflected [kWh/m2]; "linke" (3), "albedo" (0.2)
+ *     diffuse, reflected [kWh/m2]; "linke" (3), "albedo" (0.2),
+ *     "tilt" and "azimuth" of a plane at each post [degrees, clockwise from true north] (the
+ * ground's)
  * @param count    columns * rows * number of bands */
 RELEVO_API relevo_result relevo_sun_hours(relevo_dem* dem, const char* options, float* values,
                                           size_t count, const relevo_progress* progress,

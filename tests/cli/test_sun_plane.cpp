@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
@@ -150,6 +154,84 @@ TEST(SunPlane, TheGroundsOwnPlaneIsTheDems) {
                 "2026-06-21", "--by", "day", "--json", "-q"});
     ASSERT_EQ(by_crs.status, 0) << by_crs.err;
     EXPECT_NEAR(json::parse(by_crs.out)["place"]["lat_deg"], 47.267, 0.01);
+}
+
+/// What a raster of `sun hours` has at a post, of each band.
+std::vector<double> values_at(const std::string& path, int column, int row) {
+    GDALAllRegister();
+    GDALDataset* const raster = GDALDataset::Open(path.c_str());
+    std::vector<double> values;
+    for (int band = 1; band <= raster->GetRasterCount(); ++band) {
+        double value = 0;
+        EXPECT_EQ(raster->GetRasterBand(band)->RasterIO(GF_Read, column, row, 1, 1, &value, 1, 1,
+                                                        GDT_Float64, 0, 0),
+                  CE_None);
+        values.push_back(value);
+    }
+    GDALClose(raster);
+    return values;
+}
+
+TEST(SunPlane, RastersOfAPlaneAreThoseOfItsPoints) {
+    const std::string out = (scratch_dir("planes") / "planes.tif").string();
+    const int column = 100, row = 80;
+    std::array<double, 6> to{};
+    {
+        GDALAllRegister();
+        GDALDataset* const dem = GDALDataset::Open(bundled_dem().c_str());
+        dem->GetGeoTransform(to.data());
+        GDALClose(dem);
+    }
+    const std::string at =
+        fmt::format("{:.8f},{:.8f}", to[3] + (row + 0.5) * to[5], to[0] + (column + 0.5) * to[1]);
+    double worst = 0;
+    for (const auto& [tilt, azimuth] :
+         {std::pair{"0", "0"}, {"35", "150"}, {"60", "20"}, {"90", "180"}})
+        for (const std::vector<std::string>& time :
+             {std::vector<std::string>{"--date", "2026-03-20"}, {"--year", "2026"}}) {
+            std::vector<std::string> raster{
+                "sun", "hours", bundled_dem(), "--bands", "beam,diffuse,reflected",
+                "-o",  out,     "--overwrite"};
+            std::vector<std::string> point{
+                "sun",    "plane",  bundled_dem(), "--at", at,
+                "--limb", "center", "--json",      "--by", time[0] == "--year" ? "year" : "day"};
+            for (std::vector<std::string>* arguments : {&raster, &point}) {
+                arguments->insert(arguments->end(), time.begin(), time.end());
+                arguments->insert(arguments->end(), {"--tilt", tilt, "--azimuth", azimuth, "-q"});
+            }
+            ASSERT_EQ(relevo(raster).status, 0);
+            const std::vector<double> found = values_at(out, column, row);
+            const json expected = json::parse(relevo(point).out)["rows"][0];
+            const double global = expected["global_kwh_m2"];
+            int band = 0;
+            for (const char* key : {"beam_kwh_m2", "diffuse_kwh_m2", "reflected_kwh_m2"})
+                worst = std::max(worst, std::abs(found[static_cast<std::size_t>(band++)] -
+                                                 expected[key].get<double>()) /
+                                            global);
+        }
+    fmt::print("[ accuracy ] planes of rasters and of points: worst {:.2f} % of global\n",
+               100 * worst);
+    EXPECT_LT(worst, 0.003);
+}
+
+TEST(SunPlane, RastersRefuseAPositionThatIsNone) {
+    const auto fails = [](const std::vector<std::string>& more, const std::string& why) {
+        std::vector<std::string> arguments{"sun",
+                                           "hours",
+                                           bundled_dem(),
+                                           "--date",
+                                           "2026-06-21",
+                                           "-o",
+                                           (scratch_dir("planes") / "none.tif").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 2);
+        EXPECT_NE(run.err.find(why), run.err.npos) << run.err;
+    };
+    fails({"--bands", "beam", "--tilt", "30"}, "--azimuth: missing");
+    fails({"--bands", "beam", "--azimuth", "30"}, "a tilt of ground has the azimuth of the DEM");
+    fails({"--bands", "beam", "--tilt", "91", "--azimuth", "0"}, "expected 0 to 90");
+    fails({"--tilt", "30", "--azimuth", "0"}, "--tilt: needs --bands");
 }
 
 TEST(SunPlane, PointsHaveTheirOwnPlanes) {

@@ -39,11 +39,13 @@ def test_bands_of_hours(dem, written):
         tz="-05:00",
         bands=["hours", "first", "global"],
         linke=2,
+        tilt=30,
+        azimuth=200,
         step=datetime.timedelta(minutes=2),
     )
     expected = written(
         "sun", "hours", dem.name, "--from", "2026-12-20", "--to", "2026-12-21", "--tz", "-05:00", "--bands",
-        "hours,first,global", "--linke", 2, "--step", "2min",
+        "hours,first,global", "--linke", 2, "--step", "2min", "--tilt", 30, "--azimuth", 200,
     )
     numpy.testing.assert_array_equal(values, expected)
     assert values.units == ("h", "min", "kWh/m2")

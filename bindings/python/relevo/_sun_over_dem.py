@@ -157,7 +157,8 @@ class SunOverDem(OfSun, _OverDem):
         self, date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
         year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...]] = "hours", step: Union[float, datetime.timedelta, None] = None,
-        linke: Optional[float] = None, albedo: Optional[float] = None, terrestrial_refraction: Optional[float] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, tilt: Optional[float] = None,
+        azimuth: Optional[float] = None, terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Clip] = None,
         clip_crs: Optional[Crs] = None, progress: Optional[Progress] = None,
     ) -> Raster:
@@ -172,6 +173,8 @@ class SunOverDem(OfSun, _OverDem):
         step: of the sun, of at most four days [s] (180)
         linke: Linke turbidity of irradiation (3)
         albedo: of the ground, of irradiation (0.2)
+        tilt, azimuth: of a plane at each post that irradiation falls on: 0 level, 90 a wall; where it faces, clockwise
+            from true north [degrees]. None: as the ground is inclined
         """
         options = library_options(locals())
         options["bands"], alone = band_list(bands)
@@ -282,7 +285,8 @@ class SunOverDem(OfSun, _OverDem):
         sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None,
         end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
-        linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, tilt: Optional[float] = None,
+        azimuth: Optional[float] = None, soft: Optional[bool] = None,
         directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Sequence[float]] = None,
         clip_crs: Optional[Crs] = None, progress: Optional[Progress] = None,
@@ -299,7 +303,8 @@ class SunOverDem(OfSun, _OverDem):
         resume: bool = False, overwrite: bool = False, time: Optional[Time] = None, times: Optional[Times] = None,
         sun: Union[str, Sequence[float], None] = None, date: Optional[Date] = None, start: Optional[Date] = None, end: Optional[Date] = None, year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...], None] = None, step: Union[float, datetime.timedelta, None] = None,
-        linke: Optional[float] = None, albedo: Optional[float] = None, soft: Optional[bool] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, tilt: Optional[float] = None,
+        azimuth: Optional[float] = None, soft: Optional[bool] = None,
         directions: Optional[int] = None, level: Optional[bool] = None, terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Sequence[float]] = None,
         clip_crs: Optional[Crs] = None, progress: Optional[Progress] = None,

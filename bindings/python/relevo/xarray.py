@@ -171,7 +171,8 @@ class Accessor:
         self, date: Optional[Date] = None, *, start: Optional[Date] = None, end: Optional[Date] = None,
         year: Optional[int] = None, tz: Optional[Zone] = None,
         bands: Union[str, list[str], tuple[str, ...]] = "hours", step: Union[float, datetime.timedelta, None] = None,
-        linke: Optional[float] = None, albedo: Optional[float] = None, terrestrial_refraction: Optional[float] = None,
+        linke: Optional[float] = None, albedo: Optional[float] = None, tilt: Optional[float] = None,
+        azimuth: Optional[float] = None, terrestrial_refraction: Optional[float] = None,
         refraction: Optional[str] = None, highest: Optional[float] = None, clip: Optional[Clip] = None,
         clip_crs: Optional[Crs] = None, halo: Optional[float] = None, progress: Optional[Progress] = None,
     ) -> xarray.DataArray:

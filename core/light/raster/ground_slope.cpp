@@ -4,9 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include <glm/mat2x2.hpp>
+#include <glm/geometric.hpp>
 
 #include "base/parallel_for.h"
+#include "base/units.h"
 #include "geo/local_frame.h"
 
 namespace relevo::light {
@@ -80,6 +81,21 @@ glm::dvec2 rise_at(const dem::Posts& posts, int column, int row) {
 GroundSlope::GroundSlope(const SunTerrain& terrain, const WindowHeights& heights,
                          const Window& window)
     : GroundSlope(window) {
+    fill(terrain, window, [&](int column, int row, const glm::dmat2& to_metres) {
+        return to_metres * Around(terrain.grid(), heights.view, column, row).rise();
+    });
+}
+
+GroundSlope::GroundSlope(const SunTerrain& terrain, const Window& window, const Plane& plane)
+    : GroundSlope(window) {
+    const double steep = std::tan(std::min(plane.tilt_rad, radians(89.999)));
+    const glm::dvec2 rise =
+        -steep * glm::dvec2(std::sin(plane.azimuth_rad), std::cos(plane.azimuth_rad));
+    fill(terrain, window, [&](int, int, const glm::dmat2&) { return rise; });
+}
+
+void GroundSlope::fill(const SunTerrain& terrain, const Window& window,
+                       const std::function<glm::dvec2(int, int, const glm::dmat2&)>& rise) {
     const dem::Grid& grid = terrain.grid();
     // Posts next to each other have one north: those of a block of the grid, whatever the window.
     constexpr int kTogether = 32;
@@ -94,8 +110,8 @@ GroundSlope::GroundSlope(const SunTerrain& terrain, const WindowHeights& heights
             const geo::Axes axes = terrain.frame().axes(place.lat_rad, place.lon_rad);
             const int end = std::min(block + width, window.end_column());
             for (int column = std::max(block, window.column); column < end; ++column) {
-                const glm::dvec2 rise = to_metres * Around(grid, heights.view, column, row).rise();
-                const glm::vec3 gradient(rise.x * axes.east + rise.y * axes.north);
+                const glm::dvec2 up = rise(column, row, to_metres);
+                const glm::vec3 gradient(up.x * axes.east + up.y * axes.north);
                 const int to_x = column - window.column, to_y = row - window.row;
                 x.at(to_x, to_y) = gradient.x;
                 y.at(to_x, to_y) = gradient.y;
@@ -107,6 +123,16 @@ GroundSlope::GroundSlope(const SunTerrain& terrain, const WindowHeights& heights
         for (int row = first; row < last; ++row)
             fill_row(row);
     });
+}
+
+std::array<float, kLongestRun> raised_over_planes(const SweepRun& run, const GroundSlope& planes,
+                                                  const glm::ivec2& first,
+                                                  const glm::vec3& towards) {
+    std::array<float, kLongestRun> raised;
+    for (int i = 0; i < run.count; ++i)
+        raised[static_cast<std::size_t>(i)] =
+            std::max(run.found[i], glm::dot(planes.at(first.x + i, first.y), towards));
+    return raised;
 }
 
 }  // namespace relevo::light

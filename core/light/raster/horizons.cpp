@@ -1,6 +1,7 @@
 #include "light/raster/horizons.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -34,8 +35,10 @@ void add_directions(const SunPlan& plan, const SkyViewOptions& options, const Wi
         const glm::vec3 towards(direction.field.direction());
         each_horizon(direction, part, [&](const SunTile&, const SweepRun& run) {
             const int x = run.column - part.column, y = run.row - part.row;
-            add_sky(run.found, &slope.x.at(x, y), &slope.y.at(x, y), &slope.z.at(x, y), run.count,
-                    towards, &sum.at(x, y));
+            std::array<float, kLongestRun> raised;
+            if (options.plane) raised = raised_over_planes(run, slope, {x, y}, towards);
+            add_sky(options.plane ? raised.data() : run.found, &slope.x.at(x, y), &slope.y.at(x, y),
+                    &slope.z.at(x, y), run.count, towards, &sum.at(x, y));
         });
         if (options.done) options.done(1.0 / static_cast<double>(plan.suns().size()));
     }
@@ -97,8 +100,9 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
 SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
     const Window part = plan.terrain().window_of(options.part);
     const WindowHeights heights(plan.terrain().posts(), part);
-    GroundSlope slope =
-        options.level ? GroundSlope(part) : GroundSlope(plan.terrain(), heights, part);
+    GroundSlope slope = options.level   ? GroundSlope(part)
+                        : options.plane ? GroundSlope(plan.terrain(), part, *options.plane)
+                                        : GroundSlope(plan.terrain(), heights, part);
     SkyView result;
     result.share = Array2d<float>(part.columns, part.rows, 0);
     add_directions(plan, options, part, slope, result.share);

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/array2d.h"
 #include "dem/posts.h"
+#include "light/plane/transposition.h"
 #include "light/raster/sun_plan.h"
 
 namespace relevo::light {
@@ -42,6 +44,7 @@ struct SkyViewOptions {
     double refraction = 0.13;
     /// Of a level plane at each post instead of the ground as it is inclined.
     bool level = false;
+    std::optional<Plane> plane{};  ///< likewise, a plane in this position
     /// As a share of what an endless plane as inclined as the ground sees: 1 where nothing rises
     /// over the ground's own slope. Not with `level`.
     bool of_open_slope = false;

@@ -160,7 +160,7 @@ HorizonHours::Tables HorizonHours::tables_over(const geo::Geodetic& middle) cons
 void HorizonHours::add(const Window& part, SunHours& result) const {
     Ground ground{WindowHeights(terrain_.posts(), part), std::nullopt};
     if (options_.irradiation) {
-        ground.inclined.emplace(terrain_, part);
+        ground.inclined.emplace(terrain_, part, options_.irradiation->plane);
         ground.air = Array2d<float>(part.columns, part.rows);
         for (int y = 0; y < part.rows; ++y)
             for (int x = 0; x < part.columns; ++x)
@@ -187,6 +187,7 @@ void HorizonHours::add(const Window& part, SunHours& result) const {
 
 void HorizonHours::add_direction(const Direction& direction, const AirTables& tables,
                                  const Window& part, const Ground& ground, SunHours& result) const {
+    using Places = std::array<float, kLongestRun>;  // in a table
     const auto& [low, high] = tables;
     const auto bottom_m = static_cast<float>(terrain_.lowest_m()),
                a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m()));
@@ -215,20 +216,31 @@ void HorizonHours::add_direction(const Direction& direction, const AirTables& ta
         const int from = run.column - static_cast<int>(lift.reference.x);
         const auto base = static_cast<float>(lift.at(lift.reference.x, run.row)),
                    a_post = static_cast<float>(lift.per_post.x);
-        std::array<float, kLongestRun> at;
-        find_entries(run.found, run.count, base + static_cast<float>(DirectionTable::kLowest_rad),
-                     a_post, from, static_cast<float>(DirectionTable::kEntry_rad),
-                     DirectionTable::kEntries, at.data());
+        const auto find = [&](const float* tangents, Places& places) {
+            find_entries(tangents, run.count,
+                         base + static_cast<float>(DirectionTable::kLowest_rad), a_post, from,
+                         static_cast<float>(DirectionTable::kEntry_rad), DirectionTable::kEntries,
+                         places.data());
+        };
+        const auto entry_at = [](float place) {
+            const float whole = std::floor(place);
+            return Entry{static_cast<std::size_t>(whole), place - whole};
+        };
+        Places at, of_beams;
+        find(run.found, at);
         const int x = run.column - part.column, y = run.row - part.row;
+        const bool has_plane = ground.inclined && options_.irradiation->plane;
+        if (has_plane)
+            find(raised_over_planes(run, ground.inclined->slope, {x, y}, towards).data(), of_beams);
         for (int i = 0; i < run.count; ++i) {
-            const float whole = std::floor(at[static_cast<std::size_t>(i)]);
-            const Entry entry{static_cast<std::size_t>(whole),
-                              at[static_cast<std::size_t>(i)] - whole};
+            const auto k = static_cast<std::size_t>(i);
+            const Entry entry = entry_at(at[k]);
             const float in_low = entry.of(low.hours_over()), in_high = entry.of(high.hours_over());
             result.hours.at(x + i, y) +=
                 in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
             if (ground.inclined)
-                add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
+                add_beam(has_plane ? entry_at(of_beams[k]) : entry,
+                         base + a_post * static_cast<float>(from + i), x + i, y);
         }
     });
 }

@@ -28,7 +28,7 @@ class LightSoFar {
           clearance_m_(part.columns, part.rows, kDark_m),
           result_(result),
           with_periods_(options.spells) {
-        if (options.irradiation) ground_.emplace(plan.terrain(), part);
+        if (options.irradiation) ground_.emplace(plan.terrain(), part, options.irradiation->plane);
     }
 
     /// The light from the sun before to this one.

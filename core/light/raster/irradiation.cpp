@@ -191,6 +191,7 @@ void SkyLight::add(const Window& of, SunHours& result) const {
     of_sky.directions = options_.irradiation->sky_directions;
     of_sky.refraction = options_.refraction;
     of_sky.part = of;
+    of_sky.plane = options_.irradiation->plane;
     const SkyView view = sky_view(plan_, of_sky);
     const SunTerrain& terrain = plan_.terrain();
     const Window part = terrain.window_of(of);

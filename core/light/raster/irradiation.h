@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -24,8 +25,11 @@ struct InclinedGround {
     Window window;
     GroundSlope slope;
 
-    InclinedGround(const SunTerrain& terrain, const Window& of)
-        : window(of), slope(terrain, WindowHeights(terrain.posts(), of), of) {}
+    /// @param plane  instead of the ground as it is
+    InclinedGround(const SunTerrain& terrain, const Window& of, const std::optional<Plane>& plane)
+        : window(of),
+          slope(plane ? GroundSlope(terrain, of, *plane)
+                      : GroundSlope(terrain, WindowHeights(terrain.posts(), of), of)) {}
 };
 
 /// Places all over a DEM, for what changes slowly over the Earth.

@@ -8,6 +8,7 @@
 
 #include "base/array2d.h"
 #include "dem/posts.h"
+#include "light/plane/transposition.h"
 #include "light/raster/sun_plan.h"
 #include "sun/refraction.h"
 #include "sun/time.h"
@@ -26,9 +27,10 @@ struct SunHoursOptions {
     bool spells = false;
     /// What the ground gets of sun and sky, as it is inclined, through air without clouds.
     struct Irradiation {
-        double linke = 3;         ///< turbidity of the air, as in ClearSky
-        double albedo = 0.2;      ///< of the ground around
-        int sky_directions = 36;  ///< of the sky view, as in SkyViewOptions
+        double linke = 3;              ///< turbidity of the air, as in ClearSky
+        double albedo = 0.2;           ///< of the ground around
+        int sky_directions = 36;       ///< of the sky view, as in SkyViewOptions
+        std::optional<Plane> plane{};  ///< in this position at each post, instead of the ground
     };
     std::optional<Irradiation> irradiation;
     Window part{};                     ///< as in ShadowOptions
