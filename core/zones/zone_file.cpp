@@ -110,11 +110,12 @@ dem::Dataset open_vectors(const std::string& path) {
     const dem::GdalMessages messages;
     dem::Dataset dataset =
         dem::open_by_gdal(AllowedName(path), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers.data());
-    if (!dataset)
-        messages.refuse(
-            path,
-            "no polygons that can be read, expected a GeoPackage, GeoJSON, FlatGeobuf or "
-            "Shapefile");
+    if (!dataset) {
+        constexpr const char* kWhat =
+            "no polygons that can be read, expected a GeoPackage, GeoJSON, FlatGeobuf or Shapefile";
+        if (messages.any_failure()) messages.refuse(path, kWhat);
+        dem::refuse(path, kWhat);
+    }
     return dataset;
 }
 
