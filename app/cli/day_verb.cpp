@@ -19,7 +19,7 @@ void DayArguments::add_to(Verb verb, const std::vector<std::string>& endings) {
 
 void run_days(const DayArguments& arguments, const DayFigure& figure) {
     FilesInUse files;
-    OutputFile* const file = arguments.output.open(files, arguments.terrain.dem);
+    const OpenResults results = arguments.output.open(files, arguments.terrain.dem);
     std::optional<dem::Posts> posts;
     const auto load = [&]() -> const dem::Posts* {
         if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
@@ -33,9 +33,9 @@ void run_days(const DayArguments& arguments, const DayFigure& figure) {
             return figure.forms(arguments.days.parse(point.at.place, false), point.at, ground)
                 .point;
         };
-        return deliver_points(arguments.points, points,
-                              {figure.columns(ground != nullptr), figure.remarks, forms},
-                              arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
+        return deliver_points(
+            arguments.points, points, {figure.columns(ground != nullptr), figure.remarks, forms},
+            arguments.output, results, sun::is_zone_by_place(arguments.days.zone));
     }
     const geo::PlaceText at = arguments.place.parse();
     const report::Days asked = arguments.days.parse(at.place);
@@ -45,7 +45,7 @@ void run_days(const DayArguments& arguments, const DayFigure& figure) {
                               .csv = forms.csv,
                               .json = forms.point.json,
                               .print = forms.print},
-                             file);
+                             results);
 }
 
 }  // namespace relevo::cli

@@ -20,6 +20,7 @@ using light::WalkLight;
 struct AlongArguments {
     TerrainArguments terrain;
     std::string crs, start, zone, name;
+    std::string by = "stretch";
     int track = 0;
     std::optional<double> speed_kmh, eye_height_m;
     RefractionArguments refraction;
@@ -62,6 +63,34 @@ std::string csv_of(const report::Along& result) {
     return text;
 }
 
+std::string hours_csv(const report::Along& result) {
+    std::string text = csv_remarks({result.found.definition, "refraction of the sun: " + result.air,
+                                    "minutes of the walk in each hour; time is its begin"});
+    text += "time,sun_min,terrain_min,night_min,not_known_min\n";
+    for (const report::WalkHour& hour : report::hours_of(result)) {
+        text += sun::to_iso(hour.begin, result.zone);
+        for (const WalkLight light : kLights)
+            text += fmt::format(",{:.3f}", hour.time_s[static_cast<std::size_t>(light)] / 60);
+        text += '\n';
+    }
+    return text;
+}
+
+void print_hours(const report::Along& result) {
+    fmt::print("{:<28}{:>10}{:>20}{:>8}{:>12}\n", "hour from", "sun", "shade by terrain", "night",
+               "not known");
+    for (const report::WalkHour& hour : report::hours_of(result)) {
+        const auto minutes = [&](WalkLight light) {
+            return hour.time_s[static_cast<std::size_t>(light)] / 60;
+        };
+        fmt::print("{:<28}{:>6.1f} min{:>16.1f} min{:>4.0f} min{:>8.1f} min\n",
+                   sun::to_iso(hour.begin, result.zone), minutes(WalkLight::Sun),
+                   minutes(WalkLight::Terrain), minutes(WalkLight::Night),
+                   minutes(WalkLight::NotKnown));
+    }
+    fmt::print("\n{}\nrefraction of the sun: {}\n", result.found.definition, result.air);
+}
+
 void print_text(const report::Along& result) {
     const light::LightAlong& found = result.found;
     fmt::print("track               {}{:.2f} km, {} points\n",
@@ -102,7 +131,7 @@ void run_along(AlongArguments arguments) {
     const std::string path = dems.back();
     dems.pop_back();
     FilesInUse files;
-    OutputFile* const file = arguments.output.open(files, arguments.terrain.dem);
+    const OpenResults results = arguments.output.open(files, arguments.terrain.dem);
     files.add_input(path, "the track");
     // Before the DEM: one from the net opens the net to all that GDAL reads.
     const dem::NamedLine line = dem::read_line(path, "sun along", arguments.crs, arguments.track);
@@ -125,12 +154,13 @@ void run_along(AlongArguments arguments) {
                                          words, line, path, posts);
     if (!arguments.name.empty()) result.name = arguments.name;
     report::warn_of(result.found.doubt);
+    const bool by_hour = arguments.by == "hour";
     arguments.output.deliver(
         {.drawing = {},
-         .csv = [&] { return csv_of(result); },
-         .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
-         .print = [&] { print_text(result); }},
-        file);
+         .csv = [&] { return by_hour ? hours_csv(result) : csv_of(result); },
+         .json = [&] { return nlohmann::ordered_json::parse(json_of(result, by_hour)); },
+         .print = [&] { by_hour ? print_hours(result) : print_text(result); }},
+        results);
 }
 
 }  // namespace
@@ -153,6 +183,9 @@ void add_sun_along(Verb sun_verb) {
         .check(whole_number())
         .check(in_range(1, 1'000'000));
     verb.add_option("--points-crs", arguments->crs, "CRS of columns x and y in a CSV: EPSG:n");
+    verb.add_option("--by", arguments->by,
+                    "Rows: stretch of one light, or hour of the clock (stretch)")
+        .check(one_of({"stretch", "hour"}));
     verb.add_option("--name", arguments->name, "Name of the walk (default: the track's own)");
     verb.add_option("--eye-height", arguments->eye_height_m,
                     "Height of the eye above the ground, m (0)")

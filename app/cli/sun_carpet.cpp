@@ -85,7 +85,7 @@ void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizo
 void run_carpet(const CarpetArguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
+    const OpenResults results = output.open(files, arguments.terrain.dem);
     const report::Days asked = arguments.days.parse(arguments.place.parse().place);
     const double step_s = step_s_of(arguments.step, 1, 86400);
     if (step_s != std::round(step_s))
@@ -114,7 +114,7 @@ void run_carpet(const CarpetArguments& arguments) {
                     .csv = [&] { return csv_of(carpet, horizon, result.doubt); },
                     .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
                     .print = [&] { print_text(carpet, horizon, result.doubt); }},
-                   file);
+                   results);
 }
 
 }  // namespace

@@ -147,8 +147,10 @@ chart::Drawing draw(const HorizonArguments& arguments, const std::optional<repor
 /// The form of the table: as --format says, else by the name's ending.
 std::string format_of(const HorizonArguments& arguments) {
     if (!arguments.format.empty()) return arguments.format;
-    const std::string ending = arguments.output.ending();
-    return ending == "hor" ? "pvsyst" : ending == "txt" ? "pvgis" : "csv";
+    const OutputArguments& output = arguments.output;
+    if (output.has("hor") + output.has("txt") + (output.has("csv") || output.csv) > 1)
+        bad_usage("-o: tables of several formats have different steps; write them one by one");
+    return output.has("hor") ? "pvsyst" : output.has("txt") ? "pvgis" : "csv";
 }
 
 /// How many directions are looked at. @throws Error (Usage) for a step that is no part of a turn
@@ -166,8 +168,7 @@ int directions_of(const HorizonArguments& arguments, const std::string& format) 
 
 void check_format(const HorizonArguments& arguments, const std::string& format) {
     const OutputArguments& output = arguments.output;
-    if (!arguments.format.empty() &&
-        (output.json || output.is_drawing() || output.ending() == "json"))
+    if (!arguments.format.empty() && (output.json || output.has_drawing() || output.has("json")))
         bad_usage(
             "--format: applies to tables; pass -o with a name that ends in csv, hor, txt, or none "
             "for standard output");
@@ -192,11 +193,11 @@ std::optional<report::Days> asked_of(const HorizonArguments& arguments) {
         bad_usage(
             "--from and --to: a panorama shows one day or one year; pass --date or "
             "--year");
-    if (!arguments.output.is_drawing()) refuse_days(arguments);
+    if (!arguments.output.has_drawing()) refuse_days(arguments);
     return asked;
 }
 
-void run_points(const HorizonArguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const HorizonArguments& arguments, FilesInUse& files, const OpenResults& results) {
     if (arguments.days.given()) refuse_days(arguments);
     const auto points = arguments.points.read(files, arguments.output);
     const int directions = directions_of(arguments, "csv");
@@ -224,17 +225,17 @@ void run_points(const HorizonArguments& arguments, FilesInUse& files, OutputFile
                     {"terrain horizon: apparent elevations; --json has the definition of "
                      "each point"},
                     forms},
-                   arguments.output, file, false);
+                   arguments.output, results, false);
 }
 
 void run_horizon(const HorizonArguments& arguments) {
     OutputArguments output = arguments.output;
     const std::string format = format_of(arguments);
     check_format(arguments, format);
-    if (!arguments.format.empty() && output.path.empty()) output.csv = true;
+    if (!arguments.format.empty() && output.paths.empty()) output.csv = true;
     FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    if (arguments.points.given()) return run_points(arguments, files, file);
+    const OpenResults results = output.open(files, arguments.terrain.dem);
+    if (arguments.points.given()) return run_points(arguments, files, results);
     const std::optional<report::Days> asked = asked_of(arguments);
     const int directions = directions_of(arguments, format);
     const geo::PlaceText at = arguments.place.parse();
@@ -255,7 +256,7 @@ void run_horizon(const HorizonArguments& arguments) {
                     .csv = table,
                     .json = [&] { return json_of(horizon, profile, doubt); },
                     .print = [&] { print_text(horizon, profile, doubt); }},
-                   file);
+                   results);
 }
 
 }  // namespace

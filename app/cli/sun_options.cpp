@@ -148,7 +148,9 @@ report::View TerrainArguments::view(const std::optional<double>& eye_height_m,
 void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_of_verb) {
     endings = endings_of_verb;
     schema = schema_of(verb);
-    verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
+    verb.add_option("-o,--output", paths,
+                    fmt::format("Write {}; may be repeated", fmt::join(endings, ", ")))
+        .one_word();
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
     verb.add_option("--scale", scale, "Pixels of a PNG per unit of the drawing (1.5)")
         .check(in_range(0.25, 8.0));
@@ -156,18 +158,33 @@ void OutputArguments::add_to(Verb verb, const std::vector<std::string>& endings_
     verb.add_flag("--json", json, "One JSON object on standard output").excludes(csv_flag);
 }
 
-OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
-    if (path.empty()) return nullptr;
-    check_ending();
+OutputFile* open_result(const ResultArguments& result, FilesInUse& files, const DemArguments& dem) {
+    result.check_ending();
     dem.add_named(files);
-    OutputFile& file = files.open_output(path, overwrite, "-o");
+    OutputFile& file = files.open_output(result.path, result.overwrite, "-o");
     dem.add_all(files);
     return &file;
 }
 
-void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
-    if (file) {
-        const std::string form = ending();
+OpenResults OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
+    OpenResults results;
+    for (const std::string& path : paths) {
+        const ResultArguments result{.path = path, .overwrite = overwrite, .endings = endings};
+        results.push_back({result.ending(), open_result(result, files, dem)});
+    }
+    return results;
+}
+
+bool OutputArguments::has(std::string_view ending) const {
+    return std::ranges::any_of(paths, [&](const std::string& path) {
+        return ResultArguments{.path = path, .overwrite = {}, .endings = {}}.ending() == ending;
+    });
+}
+
+void OutputArguments::deliver(const Forms& forms, const OpenResults& results) const {
+    std::vector<OutputFile*> files;
+    for (const auto& [form, file] : results) {
+        files.push_back(file);
         if (form == "png") {
             const chart::Drawing drawing = forms.drawing();
             image::write(*file, chart::to_image(drawing, scale),
@@ -179,13 +196,13 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
                         : form == "json" ? json_text(with_schema(schema, forms.json()))
                                          : forms.csv());
         }
-        file->finish();
     }
+    OutputFile::finish_all(files);
     if (json)
         fmt::print("{}", json_text(with_schema(schema, forms.json())));
     else if (csv)
         fmt::print("{}", forms.csv());
-    else if (path.empty())
+    else if (results.empty())
         forms.print();
 }
 

@@ -90,23 +90,39 @@ struct Forms {
     std::function<void()> print;  ///< on standard output, for people
 };
 
-/// -o, --overwrite, --scale, --csv, --json.
-struct OutputArguments : ResultArguments {
+/// Opens a file that -o names, before any work is done.
+/// @param dem  what the verb reads besides
+/// @throws Error (Usage) for an unknown ending, and as FilesInUse
+OutputFile* open_result(const ResultArguments& result, FilesInUse& files, const DemArguments& dem);
+
+/// A file that -o names, and in small letters its ending, by which it has its form.
+struct OpenResult {
+    std::string ending;
+    OutputFile* file;
+};
+using OpenResults = std::vector<OpenResult>;
+
+/// -o, once or several times, --overwrite, --scale, --csv, --json.
+struct OutputArguments {
+    std::vector<std::string> paths, endings;  ///< as given; what the verb writes
+    bool overwrite = false;
     double scale = 1.5;
     bool csv = false, json = false;
     std::string schema;  ///< of the verb's JSON
 
     void add_to(Verb verb, const std::vector<std::string>& endings_of_verb);
-    /// Opens the file that -o names, before any work is done. Null without -o.
+    /// Opens the files that -o names, before any work is done.
     /// @param dem  what the verb reads besides
     /// @throws Error (Usage) for an unknown ending, and as FilesInUse
-    OutputFile* open(FilesInUse& files, const DemArguments& dem) const;
-    bool is_drawing() const { return ending() == "svg" || ending() == "png"; }
+    OpenResults open(FilesInUse& files, const DemArguments& dem) const;
+    /// Whether one of them has that ending.
+    bool has(std::string_view ending) const;
+    bool has_drawing() const { return has("svg") || has("png"); }
 
-    /// Writes the file that -o names, and on standard output what --csv or --json ask for; without
-    /// any of them the text for people.
-    /// @param file  as open() gave it
-    void deliver(const Forms& forms, OutputFile* file) const;
+    /// Writes them, and on standard output what --csv or --json ask for; without any of these the
+    /// text for people. The files appear together or not at all.
+    /// @param results  as open() gave them
+    void deliver(const Forms& forms, const OpenResults& results) const;
 };
 
 using geo::compass_point;

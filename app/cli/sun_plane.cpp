@@ -282,7 +282,7 @@ void warn_of_distance(const PlaneRun& run, const geo::Geodetic& place) {
                                  distance_m / 1000));
 }
 
-void run_points(PlaneRun& run, FilesInUse& files, OutputFile* file) {
+void run_points(PlaneRun& run, FilesInUse& files, const OpenResults& results) {
     const PlaneArguments& arguments = run.arguments;
     const auto points = arguments.points.read(files, arguments.output);
     if (arguments.terrain.given()) run.posts.emplace(arguments.terrain.load());
@@ -297,14 +297,14 @@ void run_points(PlaneRun& run, FilesInUse& files, OutputFile* file) {
         remarks.push_back(text);
     remarks.emplace_back("plane, sun and horizon of each point: --json");
     deliver_points(arguments.points, points, {plane_columns(sum_by(arguments)), remarks, forms},
-                   arguments.output, file,
+                   arguments.output, results,
                    !run.table && sun::is_zone_by_place(arguments.days.zone));
 }
 
 void run_plane(const PlaneArguments& arguments) {
     check(arguments);
     FilesInUse files;
-    OutputFile* const file = arguments.output.open(files, arguments.terrain.dem);
+    const OpenResults results = arguments.output.open(files, arguments.terrain.dem);
     PlaneRun run{arguments, {}, {}, {}};
     if (!arguments.horizon.empty()) {
         files.add_input(arguments.horizon, "the horizon");
@@ -317,7 +317,7 @@ void run_plane(const PlaneArguments& arguments) {
         files.add_input(arguments.irradiance, "the irradiance");
         run.table = read_table(arguments);
     }
-    if (arguments.points.given()) return run_points(run, files, file);
+    if (arguments.points.given()) return run_points(run, files, results);
     const dem::NamedPlace point{.at = arguments.place.parse()};
     if (arguments.terrain.given()) run.posts.emplace(arguments.terrain.load());
     const PlaneTable table = table_of(run, point);
@@ -326,7 +326,7 @@ void run_plane(const PlaneArguments& arguments) {
     arguments.output.deliver({.csv = [&] { return plane_csv(table); },
                               .json = [&] { return plane_json(table); },
                               .print = [&] { fmt::print("{}", plane_csv(table)); }},
-                             file);
+                             results);
 }
 
 void add_plane_options(Verb verb, PlaneArguments& arguments) {

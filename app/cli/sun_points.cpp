@@ -39,15 +39,15 @@ struct Record {
 /// The records of a file of points, in its order, to all who want them.
 class Writer {
   public:
-    Writer(const PointsJob& job, const OutputArguments& output, OutputFile* file)
-        : job_(job), schema_(output.schema), file_(file) {
-        file_json_ = file && output.ending() == "json";
-        file_csv_ = file && !file_json_;
+    Writer(const PointsJob& job, const OutputArguments& output, const OpenResults& results)
+        : job_(job), schema_(output.schema) {
+        for (const auto& [ending, file] : results)
+            (ending == "json" ? json_files_ : csv_files_).push_back(file);
         out_json_ = output.json;
-        out_csv_ = output.csv || (!file && !output.json);
+        out_csv_ = output.csv || (results.empty() && !output.json);
     }
-    bool csv() const { return file_csv_ || out_csv_; }
-    bool json() const { return file_json_ || out_json_; }
+    bool csv() const { return !csv_files_.empty() || out_csv_; }
+    bool json() const { return !json_files_.empty() || out_json_; }
     const std::string& schema() const { return schema_; }
 
     void add(const Record& record) {
@@ -61,23 +61,27 @@ class Writer {
     }
     void finish() {
         write_json("\n]\n");
-        if (file_) file_->finish();
+        std::vector<OutputFile*> files = csv_files_;
+        files.insert(files.end(), json_files_.begin(), json_files_.end());
+        OutputFile::finish_all(files);
     }
 
   private:
     void write_csv(const std::string& text) {
-        if (file_csv_) file_->write(text);
+        for (OutputFile* const file : csv_files_)
+            file->write(text);
         if (out_csv_) fmt::print("{}", text);
     }
     void write_json(const std::string& text) {
-        if (file_json_) file_->write(text);
+        for (OutputFile* const file : json_files_)
+            file->write(text);
         if (out_json_) fmt::print("{}", text);
     }
 
     const PointsJob& job_;
     const std::string& schema_;
-    OutputFile* file_;
-    bool file_csv_ = false, file_json_ = false, out_csv_ = false, out_json_ = false;
+    std::vector<OutputFile*> csv_files_, json_files_;
+    bool out_csv_ = false, out_json_ = false;
     bool first_ = true;
 };
 
@@ -149,7 +153,7 @@ bool PointsArguments::given() const {
 
 std::vector<dem::NamedPlace> PointsArguments::read(FilesInUse& files,
                                                    const OutputArguments& output) const {
-    if (output.is_drawing())
+    if (output.has_drawing())
         bad_usage(
             "--points: a drawing is of one place; pass -o with a name that ends in csv, json");
     files.add_input(path, "the file of points");
@@ -157,13 +161,13 @@ std::vector<dem::NamedPlace> PointsArguments::read(FilesInUse& files,
 }
 
 void deliver_points(const PointsArguments& arguments, const std::vector<dem::NamedPlace>& points,
-                    const PointsJob& job, const OutputArguments& output, OutputFile* file,
+                    const PointsJob& job, const OutputArguments& output, const OpenResults& results,
                     bool zone_by_place) {
     if (zone_by_place) log::info("times are local times of each point; --tz sets another zone");
     const auto name_of = [&](std::size_t i) {
         return points[i].name.empty() ? std::to_string(i + 1) : points[i].name;
     };
-    Writer writer(job, output, file);  // of one point at least
+    Writer writer(job, output, results);  // of one point at least
     std::optional<Progress> progress;
     if (isatty(STDERR_FILENO) != 0)
         progress.emplace(arguments.path, static_cast<double>(points.size()), kPatience_s);

@@ -52,7 +52,7 @@ struct PointsJob {
 /// @param zone_by_place  days or times are counted by the clocks of each point, which is said
 /// @throws Error (BadInput) once all is written, where points have no figures
 void deliver_points(const PointsArguments& arguments, const std::vector<dem::NamedPlace>& points,
-                    const PointsJob& job, const OutputArguments& output, OutputFile* file,
+                    const PointsJob& job, const OutputArguments& output, const OpenResults& results,
                     bool zone_by_place);
 
 }  // namespace relevo::cli

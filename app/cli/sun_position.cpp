@@ -108,7 +108,7 @@ void print_text(const BodyPosition& result) {
                figure("bright_limb_from_zenith_deg"));
 }
 
-void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const PositionArguments& arguments, FilesInUse& files, const OpenResults& results) {
     const auto points = arguments.points.read(files, arguments.output);
     const scene::TimeSpec spec = arguments.time.spec();
     session::needs_dem(spec);  // reports invalid words before any work
@@ -127,13 +127,13 @@ void run_points(const PositionArguments& arguments, FilesInUse& files, OutputFil
                 .json = [=] { return nlohmann::ordered_json::parse(json_of(*result)); },
                 .doubt = {}};
         }};
-    deliver_points(arguments.points, points, job, arguments.output, file, zone_by_place);
+    deliver_points(arguments.points, points, job, arguments.output, results, zone_by_place);
 }
 
 void run_position(const PositionArguments& arguments) {
     FilesInUse files;
-    OutputFile* const file = arguments.output.open(files, {});
-    if (arguments.points.given()) return run_points(arguments, files, file);
+    const OpenResults results = arguments.output.open(files, {});
+    if (arguments.points.given()) return run_points(arguments, files, results);
     const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
     report::check_has_ground(at);
     const BodyPosition result =
@@ -147,7 +147,7 @@ void run_position(const PositionArguments& arguments) {
              },
          .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
          .print = [&] { print_text(result); }},
-        file);
+        results);
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ OutputFile* RasterArguments::open(FilesInUse& files) const {
     if (!tiles.given() && tiles.resume) bad_usage("--resume: needs --tiles");
     if (!tiles.given() && tiles.halo_km) bad_usage("--halo: needs --tiles");
     if (plan.on && !tiles.given()) bad_usage("plan: needs --tiles");
-    if (!tiles.given()) return output.open(files, dem);
+    if (!tiles.given()) return open_result(output, files, dem);
     const std::filesystem::path folder = output.path;
     dem.add_named(files);
     if (output.overwrite)

@@ -15,7 +15,7 @@ namespace relevo::cli {
 /// the figure -k and --highest.
 struct RasterArguments {
     DemArguments dem;
-    OutputArguments output;
+    ResultArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;
     bool dry_run = false;
@@ -27,7 +27,7 @@ struct RasterArguments {
     /// @param figure  lives until the command line has been read
     void add_to(Verb verb_of_rasters, figure::Figure& figure);
     /// Opens the result, before any work is done; of tiles, each is opened later: null.
-    /// @throws Error as OutputArguments::open, (Usage) for creation options that there are not
+    /// @throws Error as open_result(), (Usage) for creation options that there are not
     OutputFile* open(FilesInUse& files) const;
     /// @throws Error (Usage, BadInput) as dem::load, dem::parse_clip and dem::window_of
     figure::RasterGround load() const;

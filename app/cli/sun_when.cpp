@@ -100,7 +100,7 @@ void print_text(const report::When& result) {
     fmt::print("\n{}\n{}\n", found.definition, horizon.description());
 }
 
-void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* file) {
+void run_points(const WhenArguments& arguments, FilesInUse& files, const OpenResults& results) {
     arguments.days.parse({}, false);  // what is wrong with them is said before any work
     const auto points = arguments.points.read(files, arguments.output);
     const dem::Posts posts = arguments.terrain.load();
@@ -117,14 +117,14 @@ void run_points(const WhenArguments& arguments, FilesInUse& files, OutputFile* f
     };
     deliver_points(arguments.points, points,
                    {columns_of(arguments.body), {directions_of(arguments.body)}, forms},
-                   arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
+                   arguments.output, results, sun::is_zone_by_place(arguments.days.zone));
 }
 
 void run_when(const WhenArguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    if (arguments.points.given()) return run_points(arguments, files, file);
+    const OpenResults results = output.open(files, arguments.terrain.dem);
+    if (arguments.points.given()) return run_points(arguments, files, results);
     const geo::PlaceText at = arguments.place.parse();
     const report::Days asked = arguments.days.parse(at.place);
     // What is wrong with these is said before any work.
@@ -138,7 +138,7 @@ void run_when(const WhenArguments& arguments) {
                     .csv = [&] { return csv_of(result); },
                     .json = [&] { return nlohmann::ordered_json::parse(json_of(result)); },
                     .print = [&] { print_text(result); }},
-                   file);
+                   results);
 }
 
 }  // namespace

@@ -127,7 +127,29 @@ Along along(const View& view, const WalkWords& words, const dem::NamedLine& line
     return result;
 }
 
-std::string json_of(const Along& result) {
+std::vector<WalkHour> hours_of(const Along& result) {
+    constexpr double kHour_s = 3600;
+    const std::vector<light::WalkStretch>& stretches = result.found.stretches;
+    const sun::Instant first = stretches.front().from.utc, last = stretches.back().to.utc;
+    const sun::CivilTime wall = result.zone.local(first).wall;
+    std::vector<WalkHour> hours;
+    auto stretch = stretches.begin();
+    for (sun::Instant begin = first - 60.0 * wall.minute - wall.second; begin < last;
+         begin = begin + kHour_s) {
+        WalkHour hour{.begin = begin};
+        const sun::Instant end = begin + kHour_s;
+        for (; stretch != stretches.end(); ++stretch) {
+            const double time_s =
+                std::min(stretch->to.utc, end) - std::max(stretch->from.utc, begin);
+            if (time_s > 0) hour.time_s[static_cast<std::size_t>(stretch->light)] += time_s;
+            if (stretch->to.utc > end) break;  // goes on in the next hour
+        }
+        hours.push_back(hour);
+    }
+    return hours;
+}
+
+std::string json_of(const Along& result, bool by_hour) {
     const light::LightAlong& found = result.found;
     auto json = json_of_shape<ordered_json>("sun-along");
     json["name"] = result.name;
@@ -146,6 +168,17 @@ std::string json_of(const Along& result) {
             {"length_m", sum.length_m},
             {"time_share", share(sum.time_s, found.duration_s)},
             {"length_share", share(sum.length_m, found.length_m)}};
+    }
+    if (by_hour) {
+        ordered_json& hours = json["hours"] = ordered_json::array();
+        for (const WalkHour& hour : hours_of(result)) {
+            ordered_json& row = hours.emplace_back();
+            row["time"] = sun::to_iso(hour.begin, result.zone);
+            for (std::size_t i = 0; i < light::kWalkLights; ++i)
+                row[fmt::format("{}_min", light::name_of(static_cast<light::WalkLight>(i)))] =
+                    hour.time_s[i] / 60;
+        }
+        return json.dump();
     }
     ordered_json& stretches = json["stretches"] = ordered_json::array();
     for (const light::WalkStretch& stretch : found.stretches)

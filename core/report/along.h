@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dem/places.h"
 #include "light/point/light_along.h"
@@ -44,6 +46,15 @@ struct Along {
 ///     light::Walk and light::light_along()
 Along along(const View& view, const WalkWords& words, const dem::NamedLine& line,
             const std::string& path, const dem::Posts& posts);
-std::string json_of(const Along& result);
+/// How long a walk has each light in an hour of the zone's clocks.
+struct WalkHour {
+    sun::Instant begin;
+    std::array<double, light::kWalkLights> time_s{};  ///< by WalkLight
+};
+/// From the hour in which it begins to that in which it ends, also those in between without light.
+std::vector<WalkHour> hours_of(const Along& result);
+
+/// @param by_hour  `hours` in the place of `stretches`
+std::string json_of(const Along& result, bool by_hour = false);
 
 }  // namespace relevo::report

@@ -60,7 +60,8 @@ void add_cuts(const Edge& edge, const Edge& other, std::vector<double>& cuts) {
     cut(other.low.y + share * (other.high.y - other.low.y));
 }
 
-/// Cuts edges where they meet.
+/// Cuts edges where they meet, and leaves level ones out: what is enclosed may change its side
+/// there.
 std::vector<Edge> cut_where_they_meet(const std::vector<Edge>& edges) {
     const Bands bands(edges);
     std::vector<std::vector<double>> cuts(edges.size());
@@ -69,7 +70,7 @@ std::vector<Edge> cut_where_they_meet(const std::vector<Edge>& edges) {
             for (const std::size_t j : bands[band]) {
                 const Edge &a = edges[i], &b = edges[j];
                 const double lower_y = std::max(a.low.y, b.low.y);
-                if (i == j || lower_y > std::min(a.high.y, b.high.y) ||
+                if (i == j || a.low.y == a.high.y || lower_y > std::min(a.high.y, b.high.y) ||
                     bands.at(lower_y) != band ||  // each pair once
                     std::max(a.low.x, a.high.x) < std::min(b.low.x, b.high.x) ||
                     std::max(b.low.x, b.high.x) < std::min(a.low.x, a.high.x))
@@ -79,6 +80,7 @@ std::vector<Edge> cut_where_they_meet(const std::vector<Edge>& edges) {
     std::vector<Edge> pieces;
     pieces.reserve(edges.size());
     for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (edges[i].low.y == edges[i].high.y) continue;
         std::ranges::sort(cuts[i]);
         glm::dvec2 from = edges[i].low;
         for (const double y : cuts[i]) {
@@ -116,8 +118,7 @@ std::vector<Edge> even_odd_edges(std::span<const Ring> rings) {
     for (const Ring& ring : rings)
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const glm::dvec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-            if (a.y < b.y) edges.push_back({a, b});
-            if (b.y < a.y) edges.push_back({b, a});
+            if (a != b) edges.push_back(a.y < b.y ? Edge{a, b} : Edge{b, a});
         }
     if (edges.empty()) return edges;
     edges = cut_where_they_meet(edges);

@@ -57,8 +57,14 @@ class ToCells {
 
   private:
     glm::dvec2 cell(const glm::dvec2& at) const {
-        if (from_) return grid_.post(from_->to_geodetic(at.x, at.y)) + 0.5;
-        return grid_.affine().inverse(at) + 0.5;
+        const glm::dvec2 place =
+            (from_ ? grid_.post(from_->to_geodetic(at.x, at.y)) : grid_.affine().inverse(at)) + 0.5;
+        return {on_edge(place.x), on_edge(place.y)};
+    }
+    /// What lies on the edge of cells but for rounding is there: no neighbour counts.
+    static double on_edge(double at) {
+        const double edge = std::round(at);
+        return std::abs(at - edge) < 1e-9 ? edge : at;
     }
     /// Adds corners between two until chords are near enough.
     void follow(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& cell_a,
@@ -123,7 +129,7 @@ struct Sum {
     double min = std::numeric_limits<double>::infinity(), max = -min;
 
     void add(double value, double share, double weighs, double cell_m2, double limit) {
-        cells += share;
+        ++cells;
         weight += share * weighs;
         weighted += share * weighs * value;
         valid_m2 += share * cell_m2;

@@ -18,7 +18,7 @@ enum class Weights {
 
 /// A zone over one band; NaN where there is no value.
 struct ZoneRow {
-    double cells = 0;          ///< with a value: sum of the shares that lie in the zone
+    double cells = 0;          ///< with a value, that the zone reaches into
     double area_m2 = 0;        ///< of the zone's polygon, also where there is no raster
     double area_valid_m2 = 0;  ///< of it, on cells with a value
     double mean = std::numeric_limits<double>::quiet_NaN();      ///< by share and weight

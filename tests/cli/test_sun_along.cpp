@@ -170,6 +170,26 @@ TEST(SunAlongVerb, ATrackHasTimesOfItsOwn) {
     EXPECT_EQ(csv["stretches"][0]["from"]["utc"], "2026-02-10T12:00:00.000Z");
 }
 
+TEST(SunAlongVerb, HoursOfTheClockHaveAllOfTheWalk) {
+    const std::vector<std::string> when{"--start", "2026-02-10T07:20", "--speed", "3"};
+    const json whole = json_of(walk_csv(), when);
+    std::vector<std::string> hourly = when;
+    hourly.insert(hourly.end(), {"--by", "hour"});
+    const json hours = json_of(walk_csv(), hourly)["hours"];
+    ASSERT_GE(hours.size(), 2U);
+    EXPECT_EQ(hours[0]["time"], "2026-02-10T07:00:00-05:00");
+    EXPECT_EQ(hours[1]["time"], "2026-02-10T08:00:00-05:00");
+    double first_min = 0;
+    for (const char* const light : {"sun", "terrain", "night", "not_known"}) {
+        double sum_min = 0;
+        for (const json& hour : hours)
+            sum_min += hour[std::string(light) + "_min"].get<double>();
+        EXPECT_NEAR(sum_min, 60 * whole[light]["duration_h"].get<double>(), 1e-4) << light;
+        first_min += hours[0][std::string(light) + "_min"].get<double>();
+    }
+    EXPECT_NEAR(first_min, 40, 1e-4);
+}
+
 TEST(SunAlongVerb, StartsAtAnEventOfItsFirstPoint) {
     const json day = json::parse(relevo({"sun", "day", bundled_dem(), "--at", "36.30,-84.24",
                                          "--date", "2026-02-10", "--json"})

@@ -365,6 +365,28 @@ TEST(SunDayVerb, OfOneDayIsAListOfOneWithFirstAndLastSun) {
                 days[0]["minutes"].get<double>(), 1e-3);
 }
 
+TEST(SunVerbs, WriteAsManyFilesAsAreNamed) {
+    const auto run = [](const std::vector<std::string>& names) {
+        std::vector<std::string> arguments{"sun",   "day",    bundled_dem(), "--at",
+                                           kValley, "--date", "2026-12-21",  "-q"};
+        for (const std::string& name : names) {
+            arguments.emplace_back("-o");
+            arguments.push_back(out(name));
+        }
+        return relevo(arguments);
+    };
+    ASSERT_EQ(run({"three.csv", "three.json", "three.svg"}).status, 0);
+    EXPECT_EQ(json::parse(read_text(out("three.json"), "test"))["days"].size(), 1U);
+    EXPECT_NE(read_text(out("three.csv"), "test").find("direct_sun_h"), std::string::npos);
+    EXPECT_NE(read_text(out("three.svg"), "test").find("<svg"), std::string::npos);
+    // None appears where one cannot.
+    EXPECT_EQ(run({"four.csv", "three.json"}).status, 3);
+    EXPECT_FALSE(std::filesystem::exists(out("four.csv")));
+    EXPECT_EQ(run({"five.csv", "five.csv"}).status, 2);
+    EXPECT_EQ(run({"six.csv", "six.tif"}).status, 2);
+    EXPECT_FALSE(std::filesystem::exists(out("six.csv")));
+}
+
 TEST(EventTimes, AreTakenWhereATimeIs) {
     const json day = json_of(
         {"sun", "day", "--at", "46.55,8.56", "--date", "2026-06-21", "--tz", "Europe/Zurich"});

@@ -29,6 +29,7 @@ OTHERWISE = {
 OF_COMMAND = {
     "sun position": {"time", "date"},  # times, and no events
     "sun shadow": {"at"},
+    "sun along": {"by"},  # rows of a table
     # Of the panorama alone.
     "sun horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},
     "moon horizon": {"date", "from", "to", "year", "tz", "refraction", "limb", "dip", "highest"},

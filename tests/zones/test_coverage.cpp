@@ -97,6 +97,12 @@ TEST(Coverage, FollowsTheEvenOddRule) {
     EXPECT_NEAR(sum(tie), 8, 1e-12);
     EXPECT_NEAR(share(tie, 1, 1), 0.5, 1e-12);
     EXPECT_NEAR(share(tie, 2, 1), 0, 1e-12);
+    // A pentagram, whose level side others cross: its points alone.
+    Ring star;
+    for (const int corner : {0, 2, 4, 1, 3})
+        star.push_back(glm::dvec2(6, 5) + 4.0 * glm::dvec2(std::sin(0.4 * kPi * corner),
+                                                           -std::cos(0.4 * kPi * corner)));
+    EXPECT_NEAR(sum(shares_of({star})), 16 * 0.775676752, 1e-6);
     // The same with a corner where it crosses.
     EXPECT_NEAR(sum(shares_of({{{1, 1}, {3, 3}, {5, 5}, {5, 1}, {3, 3}, {1, 5}}})), 8, 1e-12);
     // Two boxes that lie partly on each other; their upper and lower sides are one line.
