@@ -275,8 +275,8 @@ TEST(PointWork, HasTheFiguresOfTheCommandLine) {
             test::answer_of(fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
                                         (test::source_dir() / "data/dem/jacksboro.tif").string(),
                                         wanted.refraction == "none" ? "--no-refraction" : ""));
-        EXPECT_NEAR(work.answer()->lit_s / 3600, json["direct_sun_h"], 1e-6);
-        EXPECT_NEAR(work.answer()->flat_s / 3600, json["day_length_h"], 1e-6);
+        EXPECT_NEAR(work.answer()->lit_s / 3600, json["days"][0]["direct_sun_h"], 1e-6);
+        EXPECT_NEAR(work.answer()->flat_s / 3600, json["days"][0]["day_length_h"], 1e-6);
     }
 }
 
