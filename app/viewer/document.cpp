@@ -238,7 +238,7 @@ void add_scene(CommandLine& command, const scene::Scene& scene) {
     add_options(command, scene);
     if (scene.overlay) add_overlay(command, *scene.overlay);
     add_effects(command, scene.effects);
-    if (!scene.ortho || scene.resolution == 0)
+    if (!scene.sheet.is_on() && (!scene.ortho || scene.resolution == 0))
         command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
 }
 

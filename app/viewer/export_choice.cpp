@@ -25,18 +25,19 @@ void set_picture(ExportOrder& order, const ExportChoice& choice, const scene::St
     scene.width_px = choice.size_px.x;
     scene.height_px = choice.size_px.y;
     scene.samples = choice.samples;
-    scene.transparent = choice.is_transparent && choice.can_be_transparent();
+    scene.transparent = choice.is_transparent && choice.can_be_transparent() && !kind.is_sheet;
     scene.stamps = stamps;
     if (stamps.attribution_text.empty()) scene.stamps.attribution = false;
-    scene.stamps.margin = stamps.margin && kind.has_lens();
+    scene.stamps.margin = kind.is_sheet || (stamps.margin && kind.has_lens());
     scene.ortho = kind.is_ortho;
     scene.view.panorama = kind.panorama;
     scene.view.stereo = kind.stereo;
-    scene.resolution = 0;  // the sheet has a size
-    scene.sheet = {};
+    scene.resolution = 0;  // the choice has a size
+    scene.sheet = choice.sheet();
     scene::check_panorama(scene);
     scene::check_stereo(scene);
     scene::check_sheet(scene, order.path);
+    if (kind.is_sheet) return;  // its file has the pixels that its paper asks for
     order.encoding.bits = choice.file_format().bits;
     if (choice.file_format().has_quality) order.encoding.quality = choice.quality;
     image::check_encoding(
@@ -48,12 +49,17 @@ void set_picture(ExportOrder& order, const ExportChoice& choice, const scene::St
 
 void ExportChoice::set_kind(int index) {
     kind = index;
-    if (!of().is_picture()) return;
+    if (!of().is_picture() || of().is_sheet) return;
     size_px = of().size_px;
     if (of().is_ortho)
         format = kTiff;
     else if (format == kTiff)
         format = kPng;
+}
+
+scene::Sheet ExportChoice::sheet() const {
+    if (!of().is_sheet) return {};
+    return {.paper = lower(kExportPapers[static_cast<std::size_t>(paper)]), .scale = map_scale};
 }
 
 double ExportChoice::aspect() const {
@@ -89,7 +95,7 @@ ExportOrder order_of(const ExportChoice& choice, const scene::Stamps& stamps,
     const std::string stem = scene::NameTemplate(choice.name, {})
                                  .name({.number = 1, .dem = dem, .utc = utc, .zone = zone});
     if (stem.empty() || stem.ends_with('/')) bad_input(tr("the name is empty"));
-    const char* const ending = kind.is_picture() ? choice.file_format().ending : kind.ending;
+    const char* const ending = kind.ending[0] ? kind.ending : choice.file_format().ending;
     ExportOrder order{.scene = scene,
                       .path = path_in(choice.folder, stem + "." + ending),
                       .kind = choice.kind,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -37,20 +38,25 @@ using scene::Panorama, scene::Stereo;
 
 struct ExportKind {
     const char* name;
-    const char* ending = "";  ///< of what is no picture
+    const char* ending = "";  ///< of what has one format only
     glm::ivec2 size_px{0};
     bool is_ortho = false;
     Panorama panorama = Panorama::None;
     Stereo stereo = Stereo::None;
+    bool is_sheet = false;  ///< a map on paper
 
-    bool is_picture() const { return ending[0] == '\0'; }
+    bool is_picture() const { return ending[0] == '\0' || is_sheet; }
     bool is_panorama() const { return panorama != Panorama::None; }
     /// Whether it is seen through one lens, so that it has one scale and direction.
     bool has_lens() const { return is_picture() && !is_panorama() && stereo == Stereo::None; }
 };
-inline constexpr std::array<ExportKind, 9> kExportKinds = {
+inline constexpr std::array<ExportKind, 10> kExportKinds = {
     {{tr_later("picture"), "", {1920, 1080}},
      {tr_later("map of all of the DEM, with georeference"), "", {2048, 2048}, true},
+     {.name = tr_later("map sheet on paper, PDF"),
+      .ending = "pdf",
+      .is_ortho = true,
+      .is_sheet = true},
      {tr_later("panorama"), "", {8192, 1024}, false, Panorama::Cylindrical},
      {tr_later("sphere (equirectangular)"), "", {4096, 2048}, false, Panorama::Equirectangular},
      {tr_later("stereo pair"), "", {2560, 1024}, false, Panorama::None, Stereo::Parallel},
@@ -59,7 +65,9 @@ inline constexpr std::array<ExportKind, 9> kExportKinds = {
      {tr_later("solid for a 3D printer, STL"), "stl"},
      {tr_later("figures of the overlay, as GeoTIFF"), "tif"}}};
 /// Indices of kExportKinds.
-inline constexpr int kPicture = 0, kMap = 1, kMesh = 6, kSolid = 7, kFigures = 8;
+inline constexpr int kPicture = 0, kMap = 1, kSheet = 2, kMesh = 7, kSolid = 8, kFigures = 9;
+
+inline constexpr std::array<const char*, 5> kExportPapers = {{"A4", "A3", "A2", "A1", "A0"}};
 
 inline constexpr double kLeastError_m = 0.001, kMostError_m = 10000;
 
@@ -71,6 +79,9 @@ struct ExportChoice {
     int samples = 4, quality = image::kQuality;
     bool is_transparent = false, is_centred = true;
     double error_m = 1;  ///< of a mesh
+    int paper = 0;       ///< index of kExportPapers
+    /// n of a sheet's scale 1 : n; 0: the roundest at which all of the DEM fits.
+    double map_scale = 0;
     std::string folder;  ///< empty: the working folder
     std::string name = "{dem}_{time:%Y%m%dT%H%M}";
 
@@ -82,6 +93,10 @@ struct ExportChoice {
     bool can_be_transparent() const {
         return file_format().has_alpha && of().stereo != Stereo::Anaglyph;
     }
+    /// @param n  of a sheet's 1 : n; below 1: as large as fits
+    void set_map_scale(double n) { map_scale = n >= 1 ? std::min(n, 1e9) : 0; }
+    /// The paper of a sheet.
+    scene::Sheet sheet() const;
     /// Another kind, with a size and a format that suit it.
     void set_kind(int index);
     /// Width over height, of a stereo pair of each of its two.

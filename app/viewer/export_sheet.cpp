@@ -55,6 +55,15 @@ void format_fields(ExportChoice& choice) {
     ImGui::EndDisabled();
 }
 
+void paper_fields(ExportChoice& choice) {
+    ImGui::Combo(tr_label("Paper"), &choice.paper, kExportPapers.data(),
+                 static_cast<int>(kExportPapers.size()));
+    double scale = choice.map_scale;
+    if (ImGui::InputDouble(tr_label("Scale 1 :"), &scale, 0, 0, "%.0f"))
+        choice.set_map_scale(scale);
+    if (choice.map_scale == 0) ImGui::TextDisabled("%s", tr("0: all of the DEM fits"));
+}
+
 /// Part of the displayed image as an exported picture has it. @returns whether all of it is known
 bool draw_view(const ExportView& view, ImVec2 at, ImVec2 size) {
     constexpr int kColumns = 48, kRows = 32;
@@ -101,10 +110,18 @@ void ExportSheet::kind_field(ExportChoice& choice) {
     if (!ImGui::BeginCombo(tr_label("What"), tr(choice.of().name))) return;
     for (std::size_t i = 0; i < kExportKinds.size(); ++i)
         if (ImGui::Selectable(tr_label(kExportKinds[i].name), &kExportKinds[i] == &choice.of()))
-            choice.set_kind(static_cast<int>(i));
+            set_kind(choice, static_cast<int>(i));
     ImGui::Separator();
     if (ImGui::Selectable(tr_label("film ..."))) command_ = Command::Film;
     ImGui::EndCombo();
+}
+
+void ExportSheet::set_kind(ExportChoice& choice, int index) {
+    choice.set_kind(index);
+    if (!choice.of().is_sheet) return;
+    for (const auto& [word, member] : scene::stamp_words())
+        stamps_.*member =
+            member != &scene::Stamps::attribution || !stamps_.attribution_text.empty();
 }
 
 void ExportSheet::stamp_fields(const ExportKind& kind) {
@@ -116,7 +133,7 @@ void ExportSheet::stamp_fields(const ExportKind& kind) {
         ImGui::Checkbox(std::string(word).c_str(), &(stamps_.*member));
         ImGui::EndDisabled();
     }
-    ImGui::BeginDisabled(!kind.has_lens());
+    ImGui::BeginDisabled(!kind.has_lens() || kind.is_sheet);
     ImGui::Checkbox(tr_label("Around the picture, so that nothing lies on it"), &stamps_.margin);
     ImGui::EndDisabled();
     if (stamps_.title)
@@ -127,13 +144,18 @@ void ExportSheet::stamp_fields(const ExportKind& kind) {
 }
 
 void ExportSheet::fields(ExportChoice& choice, const ExportView& view, glm::vec2 window_px) {
-    ImGui::PushItemWidth(-widest({tr("For"), tr("What"), tr("Pixels"), tr("Format"), tr("Quality"),
-                                  tr("Samples"), tr("Title"), tr("Source")}));
+    ImGui::PushItemWidth(
+        -widest({tr("For"), tr("What"), tr("Pixels"), tr("Format"), tr("Quality"), tr("Samples"),
+                 tr("Title"), tr("Source"), tr("Paper"), tr("Scale 1 :")}));
     use_field(choice, window_px);
     kind_field(choice);
     if (choice.of().is_picture()) {
-        size_fields(choice);
-        format_fields(choice);
+        if (choice.of().is_sheet) {
+            paper_fields(choice);
+        } else {
+            size_fields(choice);
+            format_fields(choice);
+        }
         stamp_fields(choice.of());
     } else if (choice.kind == kFigures) {
         if (!view.has_figures)
@@ -167,6 +189,7 @@ void ExportSheet::preview(const ExportChoice& choice, const ExportView& view) co
             is_whole = draw_view(view, {at.x + static_cast<float>(i) * eye, at.y}, {eye, size.y});
     list.AddRect(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::Dummy(size);
+    if (kind.is_sheet) return;
     const style::Sized small(style::Size::Small);
     constexpr double kCm_a_px = 2.54 / 300;
     ImGui::TextDisabled("%s", tr_format("at 300 dpi {:.1f} x {:.1f} cm",
@@ -210,7 +233,7 @@ void ExportSheet::buttons(const ExportOrder& wanted, bool is_taken, const Export
     if (view.done) {
         ImGui::ProgressBar(static_cast<float>(*view.done),
                            {16 * ImGui::GetFontSize(), ImGui::GetFrameHeight()},
-                           tr_format("drawing ... {:.0f} %", 100 * *view.done).c_str());
+                           tr_format("{:.0f} % done", 100 * *view.done).c_str());
         ImGui::SameLine();
         ImGui::BeginDisabled(!view.cancel);
         if (ImGui::Button(tr_label("Cancel"))) view.cancel();

@@ -47,6 +47,8 @@ class ExportSheet {
 
   private:
     void use_field(ExportChoice& choice, glm::vec2 window_px);
+    /// A map sheet has all stamps until the user takes some away.
+    void set_kind(ExportChoice& choice, int index);
     void kind_field(ExportChoice& choice);
     void fields(ExportChoice& choice, const ExportView& view, glm::vec2 window_px);
     void stamp_fields(const ExportKind& kind);

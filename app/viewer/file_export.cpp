@@ -1,5 +1,6 @@
 #include "viewer/file_export.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "mesh/refine.h"
 #include "output/mesh_file.h"
 #include "scene/map_view.h"
+#include "scene/sheet.h"
 #include "session/picture_file.h"
 #include "session/record.h"
 #include "viewer/export.h"
@@ -53,6 +55,12 @@ void FileExport::run() {
     on_change_();
 }
 
+void FileExport::tell(double share) {
+    if (is_cancelled_) throw Cancelled();
+    share_ = std::max<double>(share_, share);
+    on_change_();
+}
+
 std::string FileExport::write_picture() {
     scene::Scene scene = order_.scene;
     // Linear light has no stamps.
@@ -70,7 +78,8 @@ std::string FileExport::write_picture() {
     std::vector<OutputFile*> beside;
     for (const std::filesystem::path& file_beside : session::files_beside(scene, path))
         beside.push_back(&files.open_output(file_beside, order_.overwrite, "export"));
-    const session::PictureFormat format{.bits = order_.encoding.bits};
+    const session::PictureFormat format{.bits = order_.encoding.bits,
+                                        .map_alone = scene::is_pdf(path)};
     const bool linear = image::holds_linear_light(path);
     const bool in_bands = session::needs_bands(scene, format, linear);
     if (in_bands) image::check_bands(path);
@@ -78,17 +87,12 @@ std::string FileExport::write_picture() {
     session::SceneInputs inputs(RELEVO_VERSION);
     inputs.record(scene);
     dem::add_all(scene.dems, files);
-    const auto on_frame = [this](double share) {
-        if (is_cancelled_) throw Cancelled();
-        share_ = share;
-        on_change_();
-    };
     session::Session session(scene,
                              {.device = device_,
                               .dem = dem_,
                               .radiance = linear,
                               .format = format,
-                              .on_frame = on_frame},
+                              .on_frame = [this](double share) { tell(share); }},
                              files);
     std::optional<image::Picture> picture;
     if (!in_bands) picture = session.make_picture();
@@ -118,6 +122,7 @@ std::string FileExport::write_mesh() {
                                     .is_stl = is_solid};
     options.mesh.error_m = order_.error_m;
     options.mesh.solid = is_solid;
+    options.mesh.on_share = [this](double share) { tell(share); };
     options.mesh.max_triangles = scene.dem.memory.posts * 4 / mesh::kBytesATriangle;
     const dem::Holes holes = scene.holes == dem::Holes::Mark ? dem::Holes::Fill : scene.holes;
     const output::MeshFile made = output::write_mesh(
@@ -125,6 +130,7 @@ std::string FileExport::write_mesh() {
         output::read_ground(dem::Source::open(scene.dems, scene.dem), scene.dem,
                             {.holes = holes, .exaggeration = scene.exaggeration, .remedy = ""}),
         options);
+    if (is_cancelled_) throw Cancelled();
     files.finish_outputs();
     return tr_format("{}: mesh saved in {}, {} triangles, worst error {:.2g} m",
                      printable(order_.path), folder_of(order_.path), made.mesh.surface.triangles(),

@@ -4,7 +4,6 @@
 #include <exception>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -26,13 +25,12 @@ class FileExport {
     /// Waits for the file.
     ~FileExport();
 
-    /// The share of a picture that is drawn, 0 to 1; none of a mesh.
-    std::optional<double> share() const {
-        return order_.is_picture() ? std::optional<double>(share_) : std::nullopt;
-    }
-    /// Ends a picture without a file, after the frame in work.
+    /// The share that is done, 0 to 1.
+    double share() const { return share_; }
+    bool is_picture() const { return order_.is_picture(); }
+    /// Ends it without a file, after the frame or the part of the mesh in work.
     void cancel() { is_cancelled_ = true; }
-    bool can_cancel() const { return order_.is_picture() && !is_cancelled_; }
+    bool can_cancel() const { return !is_cancelled_; }
 
     bool is_done() const { return is_done_; }
     /// "tyrol.png: picture saved, 1920 x 1080", or that it was cancelled. Requires is_done().
@@ -41,6 +39,8 @@ class FileExport {
 
   private:
     void run();
+    /// @throws Cancelled
+    void tell(double share);
     std::string write_picture();
     std::string write_mesh();
 

@@ -11,6 +11,7 @@ std::string change_name(const Document& from, const Document& to) {
     if (!(from.scene.effects == to.scene.effects)) return tr("effects");
     if (!(from.overlay == to.overlay) || !(from.scene.overlay == to.scene.overlay))
         return tr("layers");
+    if (from.scene.land_cover != to.scene.land_cover) return tr("houses and trees");
     if (from.scene.exaggeration != to.scene.exaggeration) return tr("heights");
     if (from.scene.exposure_ev != to.scene.exposure_ev) return tr("exposure");
     if (from.zone.name() != to.zone.name()) return tr("time zone");

@@ -58,7 +58,10 @@ void SceneSaver::save_job() {
 std::string SceneSaver::progress() const {
     if (!export_) return {};
     if (!export_->can_cancel()) return tr("writing the file ...");
-    return tr_format("drawing the picture, {:.0f} %; Ctrl+P: cancel", 100 * *export_->share());
+    const double percent = 100 * export_->share();
+    return export_->is_picture()
+               ? tr_format("drawing the picture, {:.0f} %; Ctrl+P: cancel", percent)
+               : tr_format("making the mesh, {:.0f} %; Ctrl+P: cancel", percent);
 }
 
 void SceneSaver::draw_sheet() {
@@ -78,6 +81,7 @@ void SceneSaver::draw_sheet() {
                         to = camera_of(pose_for(document, choice.is_centred, aspect), state.land);
     scene::Scene map = scene;
     map.ortho = choice.of().is_ortho;
+    map.sheet = choice.sheet();
     std::function<void()> cancel;
     if (export_ && export_->can_cancel()) cancel = [&] { export_->cancel(); };
     if (!export_ && state.saving_progress) cancel = [&] { parts_.overlay.cancel_export(); };

@@ -91,6 +91,8 @@ void each_of(ExportChoice& choice, FilmFile& film, const Each& each) {
     each("transparent", choice.is_transparent);
     each("centred", choice.is_centred);
     each("error_m", choice.error_m);
+    each("paper", choice.paper, 0, static_cast<int>(kExportPapers.size()) - 1);
+    each("map_scale", choice.map_scale);
     each("folder", choice.folder);
     each("name", choice.name);
     each("film_width_px", film.size_px.x, kLeastFilm_px, kMostFilm_px);
@@ -121,6 +123,7 @@ void read_exports(const json& from, Settings& settings) {
     each_of(settings.exporting, settings.film, Reader{has_any ? from["export"] : json()});
     double& error_m = settings.exporting.error_m;
     error_m = std::clamp(error_m, kLeastError_m, kMostError_m);
+    settings.exporting.set_map_scale(settings.exporting.map_scale);
     if (!contains(kFilmEndings, settings.film.ending)) settings.film.ending = FilmFile().ending;
     if (!contains(kExportSamples, settings.exporting.samples))
         settings.exporting.samples = ExportChoice().samples;

@@ -7,6 +7,7 @@
 #include <imgui_stdlib.h>
 
 #include "base/units.h"
+#include "dem/surface.h"
 #include "scene/options.h"
 #include "viewer/sheet.h"
 #include "viewer/state.h"
@@ -93,6 +94,16 @@ void exaggeration(State& state) {
     state.step = true;
 }
 
+/// Where heights are dense enough to show houses.
+void surface(State& state) {
+    bool& shown = state.document.scene.land_cover.surface;
+    if (state.spacing_m > dem::kSurfacePosts_m && !shown) return;
+    state.step = ImGui::Checkbox(tr_label("Houses and trees in the heights"), &shown) || state.step;
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", tr("The heights are those of a surface model: draws its roofs, "
+                                   "walls, streets and trees as such"));
+}
+
 /// Of displayed times. "auto" is that of the place.
 void zone(State& state) {
     ImGui::InputTextWithHint(
@@ -115,6 +126,7 @@ void view_panel(State& state, double aspect) {
     exaggeration(state);
     zone(state);
     backdrop(state);
+    surface(state);
     ImGui::PopItemWidth();
 }
 

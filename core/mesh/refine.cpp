@@ -31,11 +31,15 @@ class Refinement {
     }
 
     /// @returns whether the triangles are enough
-    bool run(std::int64_t max_triangles) {
-        while (!queue_.empty()) {
+    bool run(std::int64_t max_triangles, const std::function<void(double)>& on_share) {
+        constexpr int kPosts = 4096;  // between two words
+        for (int posts = 0; !queue_.empty();) {
             const Entry entry = queue_.top();
             queue_.pop();
             if (entry.version != state_[entry.triangle].version) continue;
+            // Half of the error takes about twice as many triangles.
+            if (on_share && posts++ % kPosts == 0)
+                on_share(std::min(1.0, error_m_ / entry.urgency));
             if (mesh_.triangles() + 2 > max_triangles) return false;
             const LatticePoint post = state_[entry.triangle].farthest;
             mark(post);
@@ -243,11 +247,12 @@ std::int64_t cut_corner_contacts(Array2d<float>& height_m) {
 }
 
 std::optional<GridMesh> refine(const Array2d<float>& height_m, Array2d<std::uint8_t>& roles,
-                               double error_m, std::int64_t max_triangles) {
+                               double error_m, std::int64_t max_triangles,
+                               const std::function<void(double)>& on_share) {
     // Three edges a triangle are numbered with 32 bits.
     constexpr std::int64_t kMost = std::int64_t{1} << 30;
     Refinement refinement(height_m, roles, error_m);
-    if (!refinement.run(std::min(max_triangles, kMost))) return std::nullopt;
+    if (!refinement.run(std::min(max_triangles, kMost), on_share)) return std::nullopt;
     return refinement.ground();
 }
 

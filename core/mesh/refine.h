@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -51,8 +52,10 @@ inline constexpr std::int64_t kBytesATriangle = 72;
 /// @param height_m  2 to Delaunay::kMaxSide of both; NaN for voids
 /// @param roles     of its posts; become vertices: all kFixed. kVertex is added
 /// @param error_m   above 0; infinite: the fixed posts alone
+/// @param on_share  is told now and then about how much is done, 0 to 1; may throw
 /// @returns none if that takes more than `max_triangles`
 std::optional<GridMesh> refine(const Array2d<float>& height_m, Array2d<std::uint8_t>& roles,
-                               double error_m, std::int64_t max_triangles);
+                               double error_m, std::int64_t max_triangles,
+                               const std::function<void(double)>& on_share = {});
 
 }  // namespace relevo::mesh

@@ -154,7 +154,7 @@ class Maker {
             fix_net(roles, kBendShare * allowed_m, bend_m);
             auto refined = mesh::refine(height_m_, roles,
                                         bend_m > 0 ? (1 - kBendShare) * allowed_m : allowed_m,
-                                        options_.max_triangles);
+                                        options_.max_triangles, options_.on_share);
             if (!refined) too_many();
             top_ = std::move(*refined);
             place_points();

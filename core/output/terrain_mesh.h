@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,8 @@ struct TerrainMeshOptions {
     /// fiftieth of the longer side.
     std::optional<double> base_m{};
     std::int64_t max_triangles = std::int64_t{1} << 24;
+    /// Is told now and then about how much is done, 0 to 1; may throw.
+    std::function<void(double)> on_share{};
 };
 
 /// Triangles of a DEM, and how good they are.

@@ -1,4 +1,6 @@
 // The export sheet: what it asks for becomes a file, and no file is lost by it.
+#include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -143,6 +145,68 @@ TEST_F(ExportOrders, MeshesAreThoseOfTheirCommand) {
     }
 }
 
+TEST_F(ExportOrders, OfMeshesSayHowFarTheyAreAndCanBeCancelled) {
+    choice_.folder = folder_.string();
+    choice_.name = "fine";
+    choice_.error_m = 0.01;
+    choice_.set_kind(kMesh);
+    std::vector<double> shares;
+    {
+        FileExport* made = nullptr;
+        std::atomic<bool> is_made = false;
+        FileExport mesh(order(), "software", nullptr, [&] {
+            while (!is_made)
+                std::this_thread::yield();
+            if (made->is_done()) return;
+            shares.push_back(made->share());
+            if (made->share() > 0.3) made->cancel();
+        });
+        made = &mesh;
+        is_made = true;
+        ASSERT_TRUE(WindowedProgram::wait([&] { return mesh.is_done(); }));
+        EXPECT_THAT(mesh.result(), HasSubstr("cancelled, no file was written"));
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    ASSERT_GT(shares.size(), 5U);
+    EXPECT_LT(shares.front(), 0.01);
+    EXPECT_GT(shares.back(), 0.3);
+    EXPECT_LT(shares.back(), 0.9);
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(ExportOrders, MapSheetsAreThoseOfTheirCommand) {
+    choice_.folder = folder_.string();
+    choice_.name = "sheet";
+    choice_.is_transparent = true;  // pictures alone are
+    choice_.set_kind(kSheet);
+    choice_.map_scale = 2e6;
+    stamps_.scale = stamps_.north = true;
+    scene_.time.at = "2026-06-21T18:00:00Z";
+    const ExportOrder wanted = order();
+    EXPECT_EQ(wanted.path, folder_ / "sheet.pdf");
+    EXPECT_THAT(files_of(wanted), ElementsAre(wanted.path));
+    EXPECT_THAT(command_of(wanted),
+                testing::AllOf(HasSubstr(" --sheet a4"), HasSubstr(" --map-scale 2000000"),
+                               testing::Not(HasSubstr("--size"))));
+    FilesInUse files;
+    scene::Scene scene = scene_;
+    session::Session session(scene, {.device = "software"}, files);
+    {
+        FileExport file(wanted, "software", session.dem(), [] {});
+        WindowedProgram::wait([&] { return file.is_done(); });
+        EXPECT_THAT(file.result(), HasSubstr("picture saved"));
+    }
+    ExportOrder captured = wanted;
+    captured.path = folder_ / "command.pdf";
+    ASSERT_EQ(
+        std::system(fmt::format("{}/bin/{} --device software 2> {}", test::build_dir().string(),
+                                command_of(captured), (folder_ / "said.txt").string())
+                        .c_str()),
+        0)
+        << read_text(folder_ / "said.txt", "test");
+    EXPECT_TRUE(read_text(wanted.path, "test") == read_text(captured.path, "test"));
+}
+
 TEST_F(ExportOrders, OfPicturesSayHowFarTheyAreAndCanBeCancelled) {
     choice_.folder = folder_.string();
     choice_.name = "poster";
@@ -173,6 +237,8 @@ TEST_F(ExportOrders, AreRemembered) {
                           .is_transparent = true,
                           .is_centred = false,
                           .error_m = 2.5,
+                          .paper = 3,
+                          .map_scale = 25000,
                           .folder = "/some/where",
                           .name = "{dem}"};
     settings.film = {.size_px = {640, 360},
@@ -186,7 +252,7 @@ TEST_F(ExportOrders, AreRemembered) {
     // Whatever stands there, the sheet has what can be.
     std::ofstream(folder_ / "config/settings.json")
         << R"({"export": {"kind": 77, "width_px": 1e300, "quality": -5, "format": "x", "samples": 3,)"
-           R"( "error_m": 0, "name": [], "film_format": "avi", "film_samples": 0}})";
+           R"( "error_m": 0, "paper": 9, "map_scale": 0.5, "name": [], "film_format": "avi", "film_samples": 0}})";
     const Settings odd = memory.settings();
     EXPECT_EQ(odd.exporting.kind, kFigures);
     EXPECT_EQ(odd.exporting.format, kPng);
@@ -194,6 +260,8 @@ TEST_F(ExportOrders, AreRemembered) {
     EXPECT_EQ(odd.exporting.quality, 1);
     EXPECT_EQ(odd.exporting.samples, 4);
     EXPECT_EQ(odd.exporting.error_m, kLeastError_m);
+    EXPECT_EQ(odd.exporting.paper, 4);
+    EXPECT_EQ(odd.exporting.map_scale, 0);
     EXPECT_EQ(odd.exporting.name, ExportChoice().name);
     EXPECT_EQ(odd.film.ending, "mp4");
     EXPECT_EQ(odd.film.samples, 1);
