@@ -37,9 +37,7 @@ class Refinement {
             const Entry entry = queue_.top();
             queue_.pop();
             if (entry.version != state_[entry.triangle].version) continue;
-            // Half of the error takes about twice as many triangles.
-            if (on_share && posts++ % kPosts == 0)
-                on_share(std::min(1.0, error_m_ / entry.urgency));
+            if (on_share && posts++ % kPosts == 0) on_share(share_done(entry.urgency));
             if (mesh_.triangles() + 2 > max_triangles) return false;
             const LatticePoint post = state_[entry.triangle].farthest;
             mark(post);
@@ -62,6 +60,12 @@ class Refinement {
         LatticePoint farthest;
         std::uint32_t version = 0;
     };
+
+    /// Half of the error takes about twice as many triangles, until all posts are vertices.
+    double share_done(double urgency) const {
+        const double all = static_cast<double>(height_m_.width()) * height_m_.height();
+        return std::min(1.0, std::max(error_m_ / urgency, mesh_.points() / all));
+    }
 
     void mark(const LatticePoint& post) { roles_.at(post.column, post.row) |= kVertex; }
 
