@@ -133,8 +133,10 @@ TEST_F(Viewer, LooksToTheMoon) {
 /// With the panel View open.
 class ViewPanel : public Viewer {
   protected:
-    void open_panel() {
-        open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    void open_panel() { open_panel_of({dem_}); }
+    void open_panel_of(std::vector<std::string> words) {
+        words.insert(words.end(), {"--only", "--time", "2026-06-21T18:00:00Z"});
+        open(words);
         // The heading below Sun.
         act({"mousemove", "190", "173", "click", "1"});
         act({"mousemove", "900", "60"});
@@ -142,7 +144,7 @@ class ViewPanel : public Viewer {
     }
     /// Drags a slider of the panel. @param y  of its row
     void slide(int y, int from_x, int to_x) { drag(1, from_x, y, to_x - from_x, 0); }
-    static constexpr int kLens = 199, kExposure = 251, kHeights = 277, kZone = 303;
+    static constexpr int kLens = 199, kExposure = 251, kHeights = 277, kZone = 303, kSurface = 355;
 };
 
 TEST_F(ViewPanel, LensExposureAndHeightsAreThoseOfTheScene) {
@@ -184,6 +186,25 @@ TEST_F(ViewPanel, TimesAreShownInAnotherZone) {
         now = scene();
         return now["time"]["at"].get<std::string>().ends_with("+09:00");
     })) << now;
+}
+
+/// A field with a house, at posts two metres apart.
+TEST_F(ViewPanel, HousesInTheHeightsAreDrawnAndTakenBack) {
+    std::ofstream asc(folder_ / "roofs.asc");
+    asc << "ncols 120\nnrows 120\nxllcorner 680000\nyllcorner 5237000\ncellsize 2\n";
+    for (int row = 0; row < 120; ++row)
+        for (int column = 0; column < 120; ++column)
+            asc << (row > 40 && row < 60 && column > 50 && column < 60 ? 612 : 600)
+                << (column == 119 ? "\n" : " ");
+    asc.close();
+    open_panel_of({(folder_ / "roofs.asc").string(), "--crs", "EPSG:32632"});
+    const auto is_on = [&] { return scene().value("surface", false); };
+    EXPECT_FALSE(is_on());
+    act({"mousemove", "18", std::to_string(kSurface), "click", "1"});
+    EXPECT_TRUE(wait(is_on));
+    ASSERT_TRUE(settles());
+    act({"mousemove", "900", "500", "key", "ctrl+z"});
+    EXPECT_TRUE(wait([&] { return !is_on(); }));
 }
 
 TEST_F(Viewer, KeysReachMenusAndPanelsAndGoBackToTheScene) {
