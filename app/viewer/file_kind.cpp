@@ -25,6 +25,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::array<std::string_view, 5> kVectors = {".kml", ".shp", ".fgb", ".gpkg", ".tab"};
+
 /// The member "type" of an object; empty: none.
 std::string type_of(const json& object) {
     const auto type = object.is_object() ? object.find("type") : object.end();
@@ -90,6 +92,13 @@ FileKind kind_of_raster(const std::string& path) {
 
 }  // namespace
 
+bool is_name_of_layer(const std::string& path) {
+    const std::string ending = lower(std::filesystem::path(path).extension().string());
+    constexpr std::array<std::string_view, 4> kOthers = {".json", ".geojson", ".gpx", ".csv"};
+    return contains(kVectors, std::string_view(ending)) ||
+           contains(kOthers, std::string_view(ending)) || image::is_picture_name(path);
+}
+
 bool is_raster_file(const std::string& path) {
     try {
         overlay::photo_kind(path);
@@ -103,7 +112,6 @@ FileKind kind_of_file(const std::string& path) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(path, unknown)) return FileKind::Dem;
     const std::string ending = lower(std::filesystem::path(path).extension().string());
-    constexpr std::array<std::string_view, 5> kVectors = {".kml", ".shp", ".fgb", ".gpkg", ".tab"};
     try {
         if (dem::is_tile_index(path)) return FileKind::Dem;
         if (ending == ".json" || ending == ".geojson") return kind_of_json(path);

@@ -21,6 +21,9 @@ enum class FileKind {
 /// The kind of a file by its name and contents. Files that cannot be read are DEMs.
 FileKind kind_of_file(const std::string& path);
 
+/// Whether a name is that of a file that goes on or over a DEM: tracks, places, pictures, scenes.
+bool is_name_of_layer(const std::string& path);
+
 /// Whether GDAL opens a file as a raster.
 bool is_raster_file(const std::string& path);
 

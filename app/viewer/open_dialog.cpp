@@ -11,8 +11,10 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "base/contains.h"
 #include "base/text.h"
 #include "viewer/document.h"
+#include "viewer/file_kind.h"
 #include "viewer/settings.h"
 #include "viewer/sheet.h"
 #include "viewer/translation.h"
@@ -22,13 +24,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> folders_in(const fs::path& folder) {
+/// What is in a folder, by name. @param is_listed  of an entry
+template <typename IsListed>
+std::vector<std::string> names_in(const fs::path& folder, const IsListed& is_listed) {
     std::vector<std::string> names;
     std::error_code ignored;
     for (fs::directory_iterator it(folder, ignored), end; it != end; it.increment(ignored)) {
         if (ignored) break;
         const std::string name = it->path().filename().string();
-        if (!name.starts_with('.') && it->is_directory(ignored)) names.push_back(name);
+        if (!name.starts_with('.') && is_listed(*it)) names.push_back(name);
     }
     std::ranges::sort(names);
     return names;
@@ -97,8 +101,14 @@ void OpenDialog::open_panel(const std::string& dem) {
 void OpenDialog::go_to(const fs::path& folder) {
     folder_ = folder.lexically_normal();
     if (!folder_.has_filename() && folder_.has_relative_path()) folder_ = folder_.parent_path();
-    folders_ = folders_in(folder_);
-    dems_ = dems_in(folder_);
+    std::error_code ignored;
+    folders_ = names_in(folder_, [&](const auto& entry) { return entry.is_directory(ignored); });
+    files_ = dems_in(folder_);
+    const std::vector<std::string> layers = names_in(folder_, [&](const auto& entry) {
+        return entry.is_regular_file(ignored) && is_name_of_layer(entry.path().string()) &&
+               !contains(files_, entry.path().filename().string());
+    });
+    files_.insert(files_.end(), layers.begin(), layers.end());
     name_ = folder_.string();
     if (!name_.ends_with('/')) name_ += '/';
     takes_focus_ = true;
@@ -121,9 +131,9 @@ void OpenDialog::list() {
     if (ImGui::Selectable("..")) return go_to(folder_.parent_path());
     for (const std::string& name : folders_)
         if (ImGui::Selectable((printable(name) + "/").c_str())) return go_to(folder_ / name);
-    for (const std::string& name : dems_)
+    for (const std::string& name : files_)
         if (ImGui::Selectable(printable(name).c_str())) return choose(folder_ / name);
-    if (dems_.empty()) ImGui::TextDisabled("%s", tr("no DEM in this folder"));
+    if (files_.empty()) ImGui::TextDisabled("%s", tr("nothing in this folder that can be opened"));
 }
 
 void OpenDialog::draw(glm::vec2 size_px) {

@@ -35,7 +35,7 @@ class OpenDialog {
     bool takes_focus_ = false;  // the input field, in the next frame
     int visits_ = 0;            // of folders: the input field has another identifier in each
     std::filesystem::path folder_;
-    std::vector<std::string> folders_, dems_;
+    std::vector<std::string> folders_, files_;
     std::string name_;                 // in the input field
     std::vector<std::string> chosen_;  // in the panel
 };

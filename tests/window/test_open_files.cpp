@@ -39,6 +39,13 @@ std::string grid_text(const std::string& nodata = "-9999") {
     return text;
 }
 
+TEST(FileKind, ListsOfFilesHaveWhatCanBeOpened) {
+    for (const char* const name : {"Walk.GPX", "a/huts.csv", "x.geojson", "scene.json", "p.jpg"})
+        EXPECT_TRUE(viewer::is_name_of_layer(name)) << name;
+    for (const char* const name : {"notes.txt", "gpx", "walk.gpx.part"})
+        EXPECT_FALSE(viewer::is_name_of_layer(name)) << name;
+}
+
 TEST(FileKind, IsSeenInNameAndContents) {
     using viewer::kind_of_file;
     const std::string dem = (test::source_dir() / "data/dem/jacksboro.tif").string();
