@@ -25,7 +25,7 @@ using report::BodyPosition;
 
 struct PositionArguments {
     sun::Body body = sun::Body::Sun;
-    std::string at;
+    PlaceArguments place;
     PointsArguments points;
     TimeArguments time;
     RefractionArguments refraction;
@@ -134,7 +134,7 @@ void run_position(const PositionArguments& arguments) {
     FilesInUse files;
     const OpenResults results = arguments.output.open(files, {});
     if (arguments.points.given()) return run_points(arguments, files, results);
-    const geo::PlaceText at = geo::parse_place(arguments.at, "--at");
+    const geo::PlaceText at = arguments.place.parse();
     report::check_has_ground(at);
     const BodyPosition result =
         result_of(arguments, at, session::parse(arguments.time.spec(), {}, at));
@@ -158,7 +158,8 @@ void add_position(Verb parent, sun::Body body) {
     const Verb verb = parent.add_verb(
         "position", body == sun::Body::Sun ? "Position of the sun"
                                            : "Position of the moon, its phase and bright limb");
-    verb.add_option("--at", arguments->at, "Place: LAT,LON[,H]");
+    verb.add_option("--at", arguments->place.at, "Place: LAT,LON[,H]");
+    verb.add_option("--at-crs", arguments->place.crs, "CRS of --at, which is then X,Y[,H]: EPSG:n");
     arguments->points.add_to(verb);
     arguments->time.add_to(verb);
     verb.option("--time").required();

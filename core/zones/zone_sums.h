@@ -21,9 +21,9 @@ struct ZoneRow {
     double cells = 0;          ///< with a value, that the zone reaches into
     double area_m2 = 0;        ///< of the zone's polygon, also where there is no raster
     double area_valid_m2 = 0;  ///< of it, on cells with a value
-    double mean = std::numeric_limits<double>::quiet_NaN();      ///< by share and weight
-    double integral = std::numeric_limits<double>::quiet_NaN();  ///< mean x area_valid_m2
-    double min = std::numeric_limits<double>::quiet_NaN();       ///< of the cells it reaches into
+    double mean = std::numeric_limits<double>::quiet_NaN();  ///< by share and weight
+    double integral = 0;                                     ///< mean x area_valid_m2
+    double min = std::numeric_limits<double>::quiet_NaN();   ///< of the cells it reaches into
     double max = std::numeric_limits<double>::quiet_NaN();
     double share_above = std::numeric_limits<double>::quiet_NaN();  ///< by weight, of its values
     std::string fault;                                              ///< why it has no values
