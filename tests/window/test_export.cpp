@@ -360,7 +360,7 @@ TEST_F(ExportWindow, AsksBeforeAFileIsReplacedAndRemembersTheNextTime) {
 TEST_F(ExportWindow, FiguresOfTheOverlayGoWhereTheSheetSays) {
     fs::create_directories(folder_ / "config/relevo");
     std::ofstream(folder_ / "config/relevo/settings.json")
-        << R"({"export": {"kind": 8, "folder": "/proc", "name": "hours"}})";
+        << R"({"export": {"kind": 9, "folder": "/proc", "name": "hours"}})";
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
     ASSERT_TRUE(changes([&] { act({"key", "o"}); }));
     open_sheet();
