@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "base/contains.h"
@@ -47,6 +48,35 @@ bool colour_widget(const Param& param, std::array<float, 4>& v) {
         shown[i] = static_cast<float>(linear_of_srgb(shown[i]));
     v = shown;
     return true;
+}
+
+/// The wheel's motion over the slider before this, if the hand moved there: a panel that scrolls
+/// below a cursor changes no value.
+float wheel_over_slider() {
+    const ImGuiID moved_to = ImHashStr("wheel"), here = ImGui::GetItemID();
+    ImGuiStorage& storage = *ImGui::GetStateStorage();
+    const auto last = static_cast<ImGuiID>(storage.GetInt(moved_to));
+    if (!ImGui::IsItemHovered()) {
+        if (last == here) storage.SetInt(moved_to, 0);
+        return 0;
+    }
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)
+        storage.SetInt(moved_to, static_cast<int>(here));
+    else if (last != here)
+        return 0;
+    ImGui::SetItemUsingMouseWheel();
+    return io.MouseWheel;
+}
+
+/// A hundredth of the range a notch, or of a wide one a twentieth of the value; whole numbers by
+/// one at least.
+void scroll(const Param& param, ParamValue& value, double notches) {
+    const shader::ParamRange& range = *param.range;
+    const double width = range.max - range.min;
+    double by = is_wide(range) ? std::max(value[0], width / 1e4) / 20 : width / 100;
+    if (param.type == ParamType::Int) by = std::max(1.0, std::round(by));
+    value[0] = std::clamp(value[0] + notches * by, range.min, range.max);
 }
 
 /// @returns true if the value was changed
@@ -138,7 +168,14 @@ void param_row(State& state, const Param& param) {
                           param.is_static ? tr("Each value compiles another shader.") : "");
     if (widget(param, value) && shader::is_valid(param, value))
         state.set_value(param, shader::format_value(param, value));
-    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+    const bool is_slider = param.range && param.words.empty() && param.type != ParamType::Bool &&
+                           shader::component_count(param.type) == 1 && !param.is_static;
+    const float notches = is_slider ? wheel_over_slider() : 0;
+    if (notches != 0) {
+        scroll(param, value, notches);
+        state.set_value(param, shader::format_value(param, value));
+    }
+    state.step = state.step || notches != 0 || ImGui::IsItemDeactivatedAfterEdit();
     const bool is_default = !has_values(state.document.scene.effects, param.address);
     if (reset_button(is_default) || (resets && !is_default))
         state.set_effects(without_values(state.document.scene.effects, param.address));

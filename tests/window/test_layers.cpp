@@ -356,6 +356,29 @@ TEST_F(LayersInWindow, HaveTheSettingsOfTheirEffects) {
     })) << scene().dump();
 }
 
+// A panel that scrolls below a resting cursor changes no value.
+TEST_F(LayersInWindow, TheWheelMovesASliderToWhichTheCursorWasMoved) {
+    open({dem_, "--only", "contours"});
+    click(60, 300);
+    ASSERT_TRUE(settles());
+    const auto values = [&] { return scene()["effects"].value("set", nlohmann::json()).dump(); };
+    const std::string before = values();
+    act({"mousemove", "60", "323"});  // on the name of the row
+    act({"click", "--repeat", "3", "--delay", "100", "5"});
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(values(), before);
+    act({"click", "--repeat", "9", "--delay", "100", "4"});  // the panel is back
+    ASSERT_TRUE(settles());
+    act({"mousemove", "220", "323"});
+    ASSERT_TRUE(settles(3));
+    act({"click", "--repeat", "2", "--delay", "150", "4"});
+    EXPECT_TRUE(wait([&] {
+        return scene()["effects"].dump().find("contours.interval_m") != std::string::npos;
+    })) << scene().dump();
+    act({"mousemove", "900", "500", "key", "ctrl+z", "key", "ctrl+z"});
+    EXPECT_TRUE(wait([&] { return values() == before; }));
+}
+
 // What the window's picture shows of a choice is what a capture of the saved scene shows.
 TEST_F(LayersInWindow, InAnotherOrderAreThoseOfACapture) {
     open_with_hours({"--overlay-opacity", "0.7", "--enable", "contours", "--order",
